@@ -46,7 +46,7 @@ module epcont_assembly_bodies
 contains
 
   !> Bodies with room for their factors, without a law.
-  pure function new_bodies(scene, single) result(bodies)
+  function new_bodies(scene, single) result(bodies)
     type(planned_scene), intent(in) :: scene   !! with the numbers of its equations
     logical, intent(in) :: single              !! factored in single precision
     type(factored_bodies) :: bodies
@@ -76,7 +76,7 @@ contains
   end subroutine factor_system
 
   !> Forces of the prescribed displacements: minus K_fp u_p on the free freedoms.
-  pure subroutine settle(self, scene)
+  subroutine settle(self, scene)
     class(factored_bodies), intent(inout) :: self
     type(planned_scene), intent(in) :: scene   !! that they are of
     real(wp), allocatable :: prescribed(:, :)
@@ -106,7 +106,7 @@ contains
 
   !> Estimate of the condition of the stiffness in the 1-norm: the largest of the bodies. What has yielded is
   !! not as stiff as it was when it was assembled first.
-  pure subroutine estimate_condition(self, scene, condition)
+  subroutine estimate_condition(self, scene, condition)
     class(factored_bodies), intent(inout) :: self
     type(planned_scene), intent(in) :: scene   !! with the numbers of its equations
     real(wp), intent(out) :: condition         !! 1 where all bodies are rigid
@@ -132,7 +132,7 @@ contains
 
   !> Displacements under nodal forces and a part of the prescribed displacements, SUPORT freedoms at zero
   !! [directions, nodes].
-  pure function displacements(self, scene, force, load_factor) result(u)
+  function displacements(self, scene, force, load_factor) result(u)
     class(factored_bodies), intent(in) :: self
     type(planned_scene), intent(in) :: scene   !! with the numbers of its equations
     real(wp), intent(in) :: force(:, :)  !! [directions, nodes]
@@ -199,7 +199,7 @@ contains
 
   !> The other half: displacements under all that has been put on, SUPORT freedoms at zero
   !! [directions, nodes].
-  pure function finish(self, scene, half, load_factor, at_contact) result(u)
+  function finish(self, scene, half, load_factor, at_contact) result(u)
     class(factored_bodies), intent(in) :: self
     type(planned_scene), intent(in) :: scene       !! with the numbers of its equations
     type(half_solved_body), intent(in) :: half(:)  !! all that has been put on [bodies]

@@ -288,7 +288,7 @@ contains
   end subroutine solve_lower
 
   !> The second half. Of the inner rows those before `first` are not wanted.
-  pure subroutine solve_upper(self, inner, border, first)
+  subroutine solve_upper(self, inner, border, first)
     class(body_stiffness), intent(in) :: self
     real(wp), contiguous, intent(inout) :: inner(:, :)   !! [order of the matrix, 1]
     real(wp), contiguous, intent(inout) :: border(:, :)   !! [border, 1]

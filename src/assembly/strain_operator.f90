@@ -7,6 +7,7 @@ module epcont_assembly_strain_operator
   use epcont_element_kinematics, only: components, directions
   use epcont_material_linear_law, only: linear_law
   use epcont_model_model, only: model_type
+  use epcont_system_threads, only: threads_over
   implicit none
   private
   public :: strain_operator, new_strain_operator
@@ -26,55 +27,82 @@ module epcont_assembly_strain_operator
 contains
 
   !> The operator of a scene.
-  pure function new_strain_operator(model) result(operator)
+  function new_strain_operator(model) result(operator)
     type(model_type), intent(in) :: model   !! the scene
     type(strain_operator) :: operator
-    type(integration_point) :: point(most_points)
-    real(wp) :: x(directions, most_nodes)
-    integer :: column, columns, e, k, points
+    integer :: columns, e, p
 
     allocate (operator%column(model%points), operator%volume(model%points))
-    allocate (operator%b(components, directions*sum(model%node_count(model%point_element))))
-    column = 0
-    do e = 1, model%elements
-      points = model%first_point(e + 1) - model%first_point(e)
-      do k = 1, model%node_count(e)
-        x(:, k) = model%x(:, model%connectivity(k, e))
-      end do
-      columns = directions*model%node_count(e)
-      call evaluate_points(model%kinds(model%kind(e)), x(:, :model%node_count(e)), &
-                           model%kinematics(model%section(e)), model%thickness(model%section(e)), &
-                           point(:points))
-      do k = 1, points
-        operator%b(:, column + 1:column + columns) = point(k)%b(:, :columns)
-        operator%volume(model%first_point(e) + k - 1) = point(k)%volume
-        operator%column(model%first_point(e) + k - 1) = column
-        column = column + columns
-      end do
+    columns = 0
+    do p = 1, model%points
+      operator%column(p) = columns
+      columns = columns + directions*model%node_count(model%point_element(p))
     end do
+    allocate (operator%b(components, columns))
+    !$omp parallel do num_threads(threads_over(model%elements))
+    do e = 1, model%elements
+      call put_element(operator, model, e)
+    end do
+    !$omp end parallel do
   end function new_strain_operator
 
+  !> What is of one element.
+  pure subroutine put_element(operator, model, e)
+    type(strain_operator), intent(inout) :: operator
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: e
+    type(integration_point) :: point(most_points)
+    real(wp) :: x(directions, most_nodes)
+    integer :: columns, first, k, points
+
+    first = model%first_point(e)
+    points = model%first_point(e + 1) - first
+    do k = 1, model%node_count(e)
+      x(:, k) = model%x(:, model%connectivity(k, e))
+    end do
+    columns = directions*model%node_count(e)
+    call evaluate_points(model%kinds(model%kind(e)), x(:, :model%node_count(e)), &
+                         model%kinematics(model%section(e)), model%thickness(model%section(e)), &
+                         point(:points))
+    operator%volume(first:first + points - 1) = point(:points)%volume
+    do k = 1, points
+      associate (column => operator%column(first + k - 1))
+        operator%b(:, column + 1:column + columns) = point(k)%b(:, :columns)
+      end associate
+    end do
+  end subroutine put_element
+
   !> Strains xx, yy, zz, xy (engineering) [components, points].
-  pure function strains(self, model, displacement) result(strain)
+  function strains(self, model, displacement) result(strain)
     class(strain_operator), intent(in) :: self
     type(model_type), intent(in) :: model        !! the scene
     real(wp), intent(in) :: displacement(:, :)   !! [length] [directions, nodes]
     real(wp), allocatable :: strain(:, :)
-    real(wp) :: now(components)
-    integer :: c, i, p
+    integer :: p
 
     allocate (strain(components, model%points))
+    !$omp parallel do num_threads(threads_over(model%points))
     do p = 1, model%points
-      now = 0.0_wp
+      strain(:, p) = strain_at(p)
+    end do
+    !$omp end parallel do
+
+  contains
+
+    pure function strain_at(p) result(strain)
+      integer, intent(in) :: p
+      real(wp) :: strain(components)
+      integer :: c, i
+
+      strain = 0.0_wp
       c = self%column(p)
       do i = 1, model%node_count(model%point_element(p))
         associate (u => displacement(:, model%connectivity(i, model%point_element(p))))
-          now = now + self%b(:, c + 1)*u(1) + self%b(:, c + 2)*u(2)
+          strain = strain + self%b(:, c + 1)*u(1) + self%b(:, c + 2)*u(2)
         end associate
         c = c + directions
       end do
-      strain(:, p) = now
-    end do
+    end function strain_at
   end function strains
 
   !> Strains of one element under several fields of displacements, put behind one that is there.

@@ -81,7 +81,7 @@ module epcont_linalg_assembled
     end subroutine first_half
 
     !> The second half, L'^-1 x. Rows before `first` are not wanted, and may be left unfinished.
-    pure subroutine second_half(self, x, first)
+    subroutine second_half(self, x, first)
       import :: assembled_matrix, wp
       class(assembled_matrix), intent(in) :: self
       real(wp), contiguous, intent(inout) :: x(:, :)  !! [order, any]
@@ -138,7 +138,7 @@ contains
   end subroutine factor
 
   !> Solve with the factor, in place.
-  pure subroutine solve(self, x)
+  subroutine solve(self, x)
     class(assembled_matrix), intent(in) :: self
     real(wp), contiguous, intent(inout) :: x(:, :)  !! right-hand sides, then solutions [order, any]
 
@@ -153,7 +153,7 @@ contains
   !! three quarters, but its figure depends on the order of the equations (0.6 to 1 of this one). (Begun with
   !! a solution already known it would take one, but where that has ties or zeros the figure would be a matter
   !! of rounding: 0.4 to 1 of this one.)
-  pure real(wp) function condition(self)
+  real(wp) function condition(self)
     class(assembled_matrix), intent(in) :: self
     real(wp), allocatable :: x(:, :)
     real(wp) :: inverse_norm

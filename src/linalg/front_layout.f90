@@ -8,7 +8,7 @@ module epcont_linalg_front_layout
   use epcont_base_sorting, only: sorted_order
   implicit none
   private
-  public :: front_layout, new_front_layout, update_size
+  public :: front_layout, new_front_layout, block_width, triangle_size, update_size
 
   !> Operations of a unit of work: 0.3 ms, hundreds of times what a task more takes, and little to be done
   !! anew where something in it has changed. (With 1E6 bodies that yield take a tenth more memory.)
@@ -204,8 +204,26 @@ contains
     integer, intent(in) :: own       !! equations of the front
     integer, intent(in) :: reached   !! later ones
 
-    update_size = int(reached, i8)**2 + int(columns_along, i8)*(own + reached)
+    update_size = triangle_size(reached) + int(columns_along, i8)*(own + reached)
   end function update_size
+
+  !> Entries of the update matrix alone: blocks of columns, each from the row of its first column down.
+  elemental integer(i8) function triangle_size(rows)
+    integer, intent(in) :: rows
+    integer :: full   ! columns of the blocks that are as wide as they may be
+
+    full = rows - modulo(rows, block_width(rows))
+    triangle_size = int(full, i8)*(rows + rows - full + block_width(rows))/2 + int(rows - full, i8)**2
+  end function triangle_size
+
+  !> Columns of a block of an update matrix: GEMM has kernels for small products, and large ones want to be
+  !! wide.
+  elemental integer function block_width(rows)
+    integer, intent(in) :: rows
+    integer, parameter :: small = 160, narrow = 32, wide = 192
+
+    block_width = merge(narrow, wide, rows <= small)
+  end function block_width
 
   !> Operations that the factorization takes.
   pure real(wp) function operations(self)

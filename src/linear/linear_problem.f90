@@ -314,7 +314,7 @@ contains
   end subroutine rounding_error
 
   !> One step of refinement: the deformation under the forces that are out of balance is added.
-  pure subroutine correct(self, scene, load_factor, state, change)
+  subroutine correct(self, scene, load_factor, state, change)
     type(linear_problem), intent(in) :: self
     type(planned_scene), intent(in) :: scene
     real(wp), intent(in) :: load_factor
@@ -326,7 +326,7 @@ contains
   end subroutine correct
 
   !> Add the deformation under some forces.
-  pure subroutine deform(self, scene, force, state, change)
+  subroutine deform(self, scene, force, state, change)
     type(linear_problem), intent(in) :: self
     type(planned_scene), intent(in) :: scene
     real(wp), intent(in) :: force(:, :)         !! [directions, nodes]
@@ -365,7 +365,7 @@ contains
     state%contact%force = rest + state%contact%force
   end subroutine correct_contact
   !> What follows from deformation, strains and contact: stresses, displacements and gaps.
-  pure subroutine complete(self, scene, load_factor, state)
+  subroutine complete(self, scene, load_factor, state)
     type(linear_problem), intent(in) :: self
     type(planned_scene), intent(in) :: scene
     real(wp), intent(in) :: load_factor

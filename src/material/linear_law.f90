@@ -4,6 +4,7 @@ module epcont_material_linear_law
   use epcont_element_kinematics, only: components
   use epcont_material_elasticity, only: isotropic_matrix
   use epcont_material_scene_materials, only: scene_materials
+  use epcont_system_threads, only: threads_over
   implicit none
   private
   public :: linear_law, elastic_law
@@ -60,7 +61,7 @@ contains
   end subroutine set_matrix
 
   !> Stress of each point [components, points].
-  pure function stress(self, strain)
+  function stress(self, strain)
     class(linear_law), intent(in) :: self
     real(wp), intent(in) :: strain(:, :)   !! [components, points]
     real(wp), allocatable :: stress(:, :)
@@ -70,18 +71,20 @@ contains
   end function stress
 
   !> What a strain adds to the stress of each point [components, points].
-  pure function increment(self, strain)
+  function increment(self, strain)
     class(linear_law), intent(in) :: self
     real(wp), intent(in) :: strain(:, :)   !! [components, points]
     real(wp), allocatable :: increment(:, :)
     integer :: p
 
     allocate (increment(components, size(strain, 2)))
+    !$omp parallel do num_threads(threads_over(size(strain, 2)))
     do p = 1, size(strain, 2)
       associate (d => self%matrix(:, :, self%matrix_of(p)))
         increment(:, p) = d(:, 1)*strain(1, p) + d(:, 2)*strain(2, p) + d(:, 3)*strain(3, p) + &
                           d(:, 4)*strain(4, p)
       end associate
     end do
+    !$omp end parallel do
   end function increment
 end module epcont_material_linear_law

@@ -7,6 +7,7 @@ module epcont_material_scene_materials
   use epcont_material_material_law, only: material_law, point_state
   use epcont_material_total_theory, only: total_theory
   use epcont_model_model, only: model_type
+  use epcont_system_threads, only: threads_over
   implicit none
   private
   public :: scene_materials, find_materials
@@ -51,15 +52,17 @@ contains
   end subroutine find_materials
 
   !> The states of all points at their strains [points].
-  pure function states(self, strain) result(state)
+  function states(self, strain) result(state)
     class(scene_materials), intent(in) :: self
     real(wp), intent(in) :: strain(:, :)   !! [components, points]
     type(point_state), allocatable :: state(:)
     integer :: p
 
     allocate (state(size(strain, 2)))
+    !$omp parallel do num_threads(threads_over(size(state)))
     do p = 1, size(state)
       call self%section(self%of_point(p))%law%update(strain(:, p), point_state(), state(p))
     end do
+    !$omp end parallel do
   end function states
 end module epcont_material_scene_materials

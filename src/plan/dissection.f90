@@ -11,6 +11,7 @@ module epcont_plan_dissection
   use epcont_model_model, only: model_type
   use epcont_plan_separator, only: between, edge, find_separator, left, new_parted_graph, outside, &
     parted_graph, right
+  use epcont_system_threads, only: threads_over
   implicit none
   private
   public :: dissection, dissect
@@ -28,6 +29,8 @@ module epcont_plan_dissection
   real(wp), parameter :: end_part = 0.35_wp
   !> Coordinates that halve a set less evenly are not used.
   real(wp), parameter :: largest_half = 2.0_wp/3.0_wp
+  !> Larger halves are tasks of their own, if there are threads: by themselves they take a millisecond.
+  integer, parameter :: many = 4000
   !> Coordinates along which sets are halved, and nodes of a set whose median serves for that of all.
   integer, parameter :: axes = 5, most_sampled = 128
 
@@ -52,11 +55,12 @@ contains
     real(wp), allocatable :: coordinate(:, :)  ! of these [axes, nodes]
     integer, allocatable :: noted(:)           ! of nodes of the set that is being halved; 0 of others
     integer, allocatable :: free(:), order(:)
-    integer :: fronts, i
+    logical, allocatable :: begins(:)          ! a front begins there in the order
+    integer :: i
 
     free = pack(nodes, .not. wanted_last(nodes))
     allocate (coordinate(axes, size(free)), noted(size(free)), order(size(free)))
-    allocate (found%first(size(nodes) + 1))
+    allocate (begins(size(nodes) + 1), source=.false.)
     do i = 1, size(free)
       associate (x => model%x(1, free(i)), y => model%x(2, free(i)))
         coordinate(:, i) = [x + y, x - y, x, y, further(free(i))]
@@ -65,44 +69,37 @@ contains
     end do
     graph = new_parted_graph(neighbours(model, free, pairs))
     noted = 0
-    fronts = 0
+    !$omp parallel num_threads(threads_over(size(order)))
+    !$omp single
     call dissect_set(1, size(order))
-    call add_front(size(order) + 1, size(nodes))
+    !$omp end single
+    !$omp end parallel
+    begins(size(order) + 1) = .true.
+    begins(size(nodes) + 1) = .true.
     found%node = [free(order), pack(nodes, wanted_last(nodes))]
-    found%first = [found%first(:fronts), size(nodes) + 1]
+    found%first = pack([(i, i=1, size(begins))], begins)
 
   contains
 
     !> Dissect what stands there in the order; or leave it as a front, where no node of it is without a
-    !! neighbour across.
+    !! neighbour across. One half has no neighbours in the other: threads may be at both.
     recursive subroutine dissect_set(first, last)
       integer, intent(in) :: first, last
       integer :: nodes_of(left:edge)
 
-      if (last - first < few) then
-        call add_front(first, last)
-        return
-      end if
+      begins(first) = .true.
+      if (last - first < few) return
       call lay_band(order(first:last))
       call find_separator(graph, order(first:last))
       call arrange(order(first:last), nodes_of)
-      if (any(nodes_of(:right) > last - first)) then
-        call add_front(first, last)
-      else
-        call dissect_set(first, first + nodes_of(left) - 1)
-        call dissect_set(first + nodes_of(left), last - nodes_of(edge))
-        call add_front(last - nodes_of(edge) + 1, last)
-      end if
+      if (any(nodes_of(:right) > last - first)) return
+      !$omp task if(nodes_of(left) > many)
+      call dissect_set(first, first + nodes_of(left) - 1)
+      !$omp end task
+      call dissect_set(first + nodes_of(left), last - nodes_of(edge))
+      if (nodes_of(edge) > 0) begins(last - nodes_of(edge) + 1) = .true.
+      !$omp taskwait
     end subroutine dissect_set
-
-    !> Nodes that are eliminated next, together.
-    subroutine add_front(first, last)
-      integer, intent(in) :: first, last
-
-      if (last < first) return
-      fronts = fronts + 1
-      found%first(fronts) = first
-    end subroutine add_front
 
     !> Put a set in order: left, right, edge. It is no longer looked at then.
     subroutine arrange(set, nodes_of)

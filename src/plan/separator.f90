@@ -24,7 +24,6 @@ module epcont_plan_separator
     integer, allocatable, private :: from(:)   !! from where a new way has come to a node
     integer, allocatable, private :: tried(:)  !! the neighbour to which it went on last
     integer, allocatable, private :: far(:)    !! how far a state is from the right [-nodes:nodes]
-    integer, allocatable, private :: list(:)   !! states to go on from
   end type parted_graph
 
   integer, parameter :: no_way = -1, the_end = 0
@@ -43,7 +42,7 @@ contains
     self%beside = beside
     allocate (self%side(nodes), source=outside)
     allocate (self%before(nodes), self%behind(nodes), self%from(nodes), self%tried(nodes))
-    allocate (self%far(-nodes:nodes), self%list(2*nodes))
+    allocate (self%far(-nodes:nodes))
   end function new_parted_graph
 
   !> Part the band of a set: the fewest nodes to the edge, the others to the halves, which become as even as
@@ -52,10 +51,12 @@ contains
     type(parted_graph), intent(inout) :: self
     integer, intent(in) :: set(:)   !! nodes that are left, right, or between; all others are outside
     integer, allocatable :: band(:), beside(:)
+    integer, allocatable :: list(:)             ! states to go on from
     integer, allocatable :: first(:), last(:)   ! of the band, with neighbours left, and right
     integer :: i, laid, ways
 
     band = pack(set, self%side(set) == between)
+    allocate (list(2*size(band)))
     beside = [(sides_beside(self, band(i)), i=1, size(band))]
     first = pack(band, btest(beside, left))
     last = pack(band, btest(beside, right))
@@ -64,12 +65,12 @@ contains
     laid = -1
     do while (ways > laid)
       laid = ways
-      call measure(self, band, last)
+      call measure(self, band, last, list)
       do i = 1, size(first)
-        if (self%far(-first(i)) /= never) call lay_way(self, first(i), ways)
+        if (self%far(-first(i)) /= never) call lay_way(self, first(i), list, ways)
       end do
     end do
-    call part_evenly(self, band, first, (size(set) - ways)/2 - count(self%side(set) == left))
+    call part_evenly(self, band, first, list, (size(set) - ways)/2 - count(self%side(set) == left))
   end subroutine find_separator
 
   !> The sides that the neighbours of a node are on, as bits.
@@ -85,9 +86,10 @@ contains
   end function sides_beside
 
   !> How far each state is from the right, in steps that a new way may go.
-  subroutine measure(self, band, last)
+  subroutine measure(self, band, last, list)
     type(parted_graph), intent(inout) :: self
     integer, intent(in) :: band(:), last(:)
+    integer, intent(out) :: list(:)
     integer :: done, found, i, j, node
 
     do i = 1, size(band)
@@ -101,9 +103,9 @@ contains
     done = 0
     do while (done < found)
       done = done + 1
-      node = abs(self%list(done))
-      associate (onward => self%far(self%list(done)) + 1)
-        if (self%list(done) > 0) then
+      node = abs(list(done))
+      associate (onward => self%far(list(done)) + 1)
+        if (list(done) > 0) then
           self%tried(node) = self%beside%start(node) - 1
           if (self%before(node) == no_way) then
             call reach(-node, onward)
@@ -127,21 +129,22 @@ contains
       if (self%far(state) /= never) return
       self%far(state) = far
       found = found + 1
-      self%list(found) = state
+      list(found) = state
     end subroutine reach
   end subroutine measure
 
   !> Lay a way from a node of the left to the right, if one leads there by steps that each come nearer.
-  subroutine lay_way(self, first, ways)
+  subroutine lay_way(self, first, list, ways)
     type(parted_graph), intent(inout) :: self
     integer, intent(in) :: first
+    integer, intent(out) :: list(:)
     integer, intent(inout) :: ways
     integer :: deep, next, node
 
     deep = 0
     call come_to(first, the_end)
     do while (deep > 0)
-      node = self%list(deep)
+      node = list(deep)
       if (self%far(node) == 0) then
         call join(self, node)
         ways = ways + 1
@@ -173,7 +176,7 @@ contains
       self%far(-node) = never
       self%from(node) = from
       deep = deep + 1
-      self%list(deep) = merge(node, self%before(node), self%before(node) == no_way)
+      list(deep) = merge(node, self%before(node), self%before(node) == no_way)
     end subroutine come_to
   end subroutine lay_way
 
@@ -207,9 +210,10 @@ contains
   !> Part the band where no further way leads to the right. All that new ways get on from is left; where
   !! they come to a node and no further, it is in the separator. It may be passed where that leads nowhere
   !! either: the separator behind is as short. So the left grows as long as it is not half of all.
-  subroutine part_evenly(self, band, first, wanted)
+  subroutine part_evenly(self, band, first, list, wanted)
     type(parted_graph), intent(inout) :: self
     integer, intent(in) :: band(:), first(:)
+    integer, intent(out) :: list(:)
     integer, intent(in) :: wanted   !! nodes of the band that are to be left
     integer :: stopped(size(band)), deep, found, i, stops
 
@@ -252,7 +256,7 @@ contains
       self%side(node) = left
       found = found + 1
       deep = deep + 1
-      self%list(deep) = node
+      list(deep) = node
     end subroutine go_on_from
 
     !> To the node before on its way.
@@ -267,7 +271,7 @@ contains
       integer :: j, node
 
       do while (deep > 0)
-        node = self%list(deep)
+        node = list(deep)
         deep = deep - 1
         call go_back_from(node)
         do j = self%beside%start(node), self%beside%start(node + 1) - 1

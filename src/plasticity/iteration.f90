@@ -18,6 +18,7 @@ module epcont_plasticity_iteration
   use epcont_plasticity_secant, only: secant_method
   use epcont_plasticity_unloading, only: find_unloaded
   use epcont_system_stopwatch, only: stage_accuracy, stage_stiffness, stage_yielding
+  use epcont_system_threads, only: threads_over
   implicit none
   private
   public :: followed_loads, follow_loads
@@ -202,9 +203,11 @@ contains
       failed_body = 0
       method%blend = 0.0_wp
       do
+        !$omp parallel do num_threads(threads_over(scene%model%points))
         do p = 1, scene%model%points
           if (linear%materials%can_yield(p)) call method%linearise(p, about, linear)
         end do
+        !$omp end parallel do
         call watch%lap(stage_yielding)
         if (failed_body == 0 .and. stiff .and. &
             (plan%method == method_inistr .or. elastic .and. yielded == 0)) return

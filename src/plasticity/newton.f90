@@ -93,7 +93,7 @@ contains
   contains
 
     !> The zero of the slope of the energy, from 0 to 1: regula falsi of Illinois.
-    pure subroutine find_length(length, point)
+    subroutine find_length(length, point)
       real(wp), intent(out) :: length
       type(point_state), allocatable, intent(out) :: point(:)   !! at that length; not allocated for 1
       real(wp) :: at(2), begin, slope, slopes(2)   ! before and behind the zero

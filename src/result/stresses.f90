@@ -2,6 +2,7 @@
 module epcont_result_stresses
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: least_difference
+  use epcont_element_element_kind, only: most_points
   use epcont_element_kinematics, only: components, directions
   use epcont_material_curve, only: deviatoric_curve, new_curve
   use epcont_material_elasticity, only: equivalent_stress
@@ -9,6 +10,7 @@ module epcont_result_stresses
   use epcont_model_model, only: model_type
   use epcont_linear_linear_problem, only: linear_problem
   use epcont_result_answer, only: answer_type
+  use epcont_system_threads, only: threads_over
   implicit none
   private
   public :: recover_stresses, place_of_point, first_largest
@@ -16,17 +18,15 @@ module epcont_result_stresses
 contains
 
   !> Fill in stresses, strains, moduli and reactions.
-  pure subroutine recover_stresses(model, linear, applied, answer)
+  subroutine recover_stresses(model, linear, applied, answer)
     type(model_type), intent(in) :: model        !! the scene
     type(linear_problem), intent(in) :: linear     !! of the last solve
     real(wp), intent(in) :: applied(:, :)        !! nodal forces of loads and pairs [force] [2, nodes]
     type(answer_type), intent(inout) :: answer   !! its state is given
-    type(point_state) :: point
-    type(deviatoric_curve) :: curve   ! without (2-4)
-    real(wp) :: mises(model%points), nothing(model%elements)
+    real(wp) :: nothing(model%elements)
     real(wp), allocatable :: force(:, :)   ! that the elements need at the nodes [force] [2, nodes]
-    real(wp) :: modulus, share, whole
-    integer :: c, e, leader, node, p
+    real(wp) :: shortfall
+    integer :: c, e, leader, node
 
     nothing = 0.0_wp
     answer%stress = spread(nothing, 1, components)
@@ -37,37 +37,13 @@ contains
     answer%largest_at = int(nothing)
     answer%plastic = nothing > 0.0_wp
     answer%beyond = answer%plastic
-    answer%shortfall = 0.0_wp
-    mises = [(equivalent_stress(answer%point_stress(:, p)), p=1, model%points)]
+    shortfall = 0.0_wp
+    !$omp parallel do num_threads(threads_over(model%elements)) reduction(max:shortfall)
     do e = 1, model%elements
-      associate (law => linear%materials%section(model%section(e))%law, first => model%first_point(e), &
-                 last => model%first_point(e + 1) - 1, volume => linear%operator%volume)
-        whole = sum(volume(first:last))
-        answer%largest_at(e) = first - 1 + first_largest(mises(first:last))
-        answer%largest_stress(e) = maxval(mises(first:last))
-        do p = first, last
-          if (allocated(answer%point)) then
-            point = answer%point(p)
-          else
-            call law%update(answer%strain(:, p), point_state(), point)
-          end if
-          modulus = law%young
-          if (point%yielded) modulus = 1.0_wp/(1.0_wp/point%modulus + law%shift)
-          share = volume(p)/whole
-          answer%stress(:, e) = answer%stress(:, e) + share*answer%point_stress(:, p)
-          answer%equivalent_stress(e) = answer%equivalent_stress(e) + share*mises(p)
-          answer%equivalent_strain(e) = answer%equivalent_strain(e) + share*point%total
-          answer%secant_modulus(e) = answer%secant_modulus(e) + share*modulus
-          answer%plastic(e) = answer%plastic(e) .or. point%yielded
-          answer%beyond(e) = answer%beyond(e) .or. point%beyond
-          if (.not. model%controls%paper_ratio) cycle
-          curve = new_curve(model%curve(model%section(e)), law%elasticity, .false.)
-          modulus = point%modulus
-          point%curve_value = curve%at_strain(point%deviatoric)
-          answer%shortfall = max(answer%shortfall, 1.0_wp - modulus/point%modulus)
-        end do
-      end associate
+      call recover_element(model, linear, e, answer, shortfall)
     end do
+    !$omp end parallel do
+    answer%shortfall = shortfall
     force = linear%operator%nodal_forces(model, answer%point_stress)
     answer%reaction = spread([0.0_wp, 0.0_wp], 2, model%nodes)
     do node = 1, model%nodes
@@ -78,6 +54,50 @@ contains
       end do
     end do
   end subroutine recover_stresses
+
+  !> Of one element: means over its points, and the largest stress.
+  pure subroutine recover_element(model, linear, e, answer, shortfall)
+    type(model_type), intent(in) :: model
+    type(linear_problem), intent(in) :: linear
+    integer, intent(in) :: e
+    type(answer_type), intent(inout) :: answer
+    real(wp), intent(inout) :: shortfall   !! the largest part by which (2-4) leaves a stress below the curve
+    type(point_state) :: point
+    type(deviatoric_curve) :: curve   ! without (2-4)
+    real(wp) :: mises(most_points), modulus, share, whole
+    integer :: p
+
+    associate (law => linear%materials%section(model%section(e))%law, first => model%first_point(e), &
+               last => model%first_point(e + 1) - 1, volume => linear%operator%volume)
+      whole = sum(volume(first:last))
+      do p = first, last
+        mises(p - first + 1) = equivalent_stress(answer%point_stress(:, p))
+      end do
+      answer%largest_at(e) = first - 1 + first_largest(mises(:last - first + 1))
+      answer%largest_stress(e) = maxval(mises(:last - first + 1))
+      do p = first, last
+        if (allocated(answer%point)) then
+          point = answer%point(p)
+        else
+          call law%update(answer%strain(:, p), point_state(), point)
+        end if
+        modulus = law%young
+        if (point%yielded) modulus = 1.0_wp/(1.0_wp/point%modulus + law%shift)
+        share = volume(p)/whole
+        answer%stress(:, e) = answer%stress(:, e) + share*answer%point_stress(:, p)
+        answer%equivalent_stress(e) = answer%equivalent_stress(e) + share*mises(p - first + 1)
+        answer%equivalent_strain(e) = answer%equivalent_strain(e) + share*point%total
+        answer%secant_modulus(e) = answer%secant_modulus(e) + share*modulus
+        answer%plastic(e) = answer%plastic(e) .or. point%yielded
+        answer%beyond(e) = answer%beyond(e) .or. point%beyond
+        if (.not. model%controls%paper_ratio) cycle
+        curve = new_curve(model%curve(model%section(e)), law%elasticity, .false.)
+        modulus = point%modulus
+        point%curve_value = curve%at_strain(point%deviatoric)
+        shortfall = max(shortfall, 1.0_wp - modulus/point%modulus)
+      end do
+    end associate
+  end subroutine recover_element
 
   !> Where the largest of some stresses is; of equal ones, but for rounding, the first.
   pure integer function first_largest(stress) result(k)

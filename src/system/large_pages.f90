@@ -5,11 +5,12 @@ module epcont_system_large_pages
   use epcont_base_kinds, only: wp
   implicit none
   private
-  public :: use_large_pages, prepare_heap
+  public :: use_large_pages, use_small_pages, prepare_heap
 
   integer(c_intptr_t), parameter :: page = 4096            !! where advice may begin [bytes]
   integer(c_intptr_t), parameter :: large_page = 2097152   !! [bytes]
-  integer(c_int), parameter :: advice_large_pages = 14 !! MADV_HUGEPAGE of Linux; others refuse it, to no harm
+  !> MADV_HUGEPAGE and MADV_NOHUGEPAGE of Linux; others refuse them, to no harm.
+  integer(c_int), parameter :: advice_large_pages = 14, advice_small_pages = 15
 
   !> Parameters of glibc's `mallopt`.
   integer(c_int), parameter :: trim_threshold = -1, top_pad = -2, mmap_threshold = -3, arena_max = -8
@@ -44,8 +45,17 @@ contains
     type(*), contiguous, target, intent(in) :: array(:)   !! of numbers
     integer, intent(in) :: bits                           !! that one of them takes
 
-    call advise(transfer(c_loc(array), page), size(array, kind=c_intptr_t)*bits/8)
+    call advise(transfer(c_loc(array), page), size(array, kind=c_intptr_t)*bits/8, advice_large_pages)
   end subroutine use_large_pages
+
+  !> Ask for small ones again, where large ones take long to come: those that are free in a virtual machine
+  !! may have been given back to its host, which then takes tens of times as long to find one.
+  subroutine use_small_pages(array, bits)
+    type(*), contiguous, target, intent(in) :: array(:)   !! of numbers
+    integer, intent(in) :: bits                           !! that one of them takes
+
+    call advise(transfer(c_loc(array), page), size(array, kind=c_intptr_t)*bits/8, advice_small_pages)
+  end subroutine use_small_pages
 
   !> Let the heap grow in large steps and keep what is freed, with large pages under the first of them.
   !! Threads have no heaps of their own: each would take 128 MB of addresses, and keep what it frees from the
@@ -63,20 +73,21 @@ contains
     first = sbrk(0_c_intptr_t)
     allocate (array(heap_step/32), stat=status)   ! too large for what the heap has: it grows
     if (status == 0) then
-      call advise(first, sbrk(0_c_intptr_t) - first)
+      call advise(first, sbrk(0_c_intptr_t) - first, advice_large_pages)
     else
       ignored = mallopt(top_pad, 0_c_int)   ! memory is short: ask for no more than is needed
     end if
   end subroutine prepare_heap
 
   !> Advise the system of memory that begins at an address.
-  subroutine advise(first, bytes)
+  subroutine advise(first, bytes, advice)
     integer(c_intptr_t), intent(in) :: first, bytes
+    integer(c_int), intent(in) :: advice
     integer(c_intptr_t) :: from, length
     integer(c_int) :: ignored
 
     from = (first + page - 1)/page*page
     length = bytes - (from - first)
-    if (length >= large_page) ignored = madvise(from, int(length, c_size_t), advice_large_pages)
+    if (length >= large_page) ignored = madvise(from, int(length, c_size_t), advice)
   end subroutine advise
 end module epcont_system_large_pages

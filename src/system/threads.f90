@@ -6,7 +6,7 @@ module epcont_system_threads
   !$ use omp_lib, only: omp_get_max_threads, omp_set_num_threads
   implicit none
   private
-  public :: granted_threads, stated_threads, threads_now, use_one_thread_each, use_threads
+  public :: granted_threads, stated_threads, threads_now, threads_over, use_one_thread_each, use_threads
 
   !> For the BLAS; as many as there are for OpenMP.
   integer, parameter, public :: one_thread(2) = [1, 0]
@@ -42,6 +42,16 @@ contains
     granted_threads = 1
     !$ if (blas_number('openblas_get_parallel') /= 0) granted_threads = max(1, stated_threads())
   end function granted_threads
+
+  !> Threads for a loop over so many nodes, elements or points that each take a tenth of a microsecond at
+  !! least: one where others would begin after most of it is done.
+  integer function threads_over(pieces) result(threads)
+    integer, intent(in) :: pieces
+    integer, parameter :: many = 20000
+
+    threads = 1
+    if (pieces >= many) threads = granted_threads()
+  end function threads_over
 
   !> The number in OMP_NUM_THREADS, of a list the first, without READ; 0 where there is none.
   integer function stated_threads() result(threads)

@@ -69,6 +69,10 @@ class Bytes(Extremes):
                     result = self.same(stack(3, parameters=[("SOLVER", solver), *parameters], stress=120.0))
                     self.assertGreater(result.summary["plastic_elements"], 100)
 
+    def test_large_body(self):
+        """Large enough that threads share its dissection, its solves and the loops over its points, too."""
+        self.same(stack(1, 150, stress=120.0))
+
     def test_many_bodies(self):
         self.same(stack(12, 24, parameters=[("SOLVER", "BAND")]))
 
