@@ -138,8 +138,6 @@ contains
       state%contact%escape = self%rigid%escape/unit_of(self%motion)
       return
     end if
-    call prescribe(scene, load_factor, state%deformation)
-    state%strain = bodies%operator%strains(scene%model, state%deformation)
     call self%find_set(scene, bodies, gap, load_factor, state, watch)
     if (state%contact%state == contact_solved) call self%settle(scene, gap, state)
     if (state%contact%state == contact_solved) then
@@ -169,6 +167,7 @@ contains
     state%contact%state = contact_stalled
     state%contact%pivots = 0
     state%contact%block_steps = 0
+    call hold()
     before = huge(1.0_wp)
     largest = 0.0_wp
     set_is_given = .not. allocated(self%last)
@@ -212,9 +211,14 @@ contains
       set_is_given = .true.
       state%deformation = 0.0_wp
       state%contact%approach = 0.0_wp
+      call hold()
+    end subroutine begin_anew
+
+    !> Supports where they are prescribed to be.
+    subroutine hold()
       call prescribe(scene, load_factor, state%deformation)
       state%strain = bodies%operator%strains(scene%model, state%deformation)
-    end subroutine begin_anew
+    end subroutine hold
 
     !> What is out of balance is solved for.
     subroutine find_step()
@@ -327,29 +331,38 @@ contains
     real(wp), intent(out) :: u(:, :, :)             !! [length] [directions, any, nodes]
     real(wp), allocatable :: nodal(:, :, :)         ! what acts on each loaded node [directions, any, loaded]
     integer, allocatable :: loaded(:), pair(:)
-    integer :: f, i, k, n
+    integer :: k
 
     pair = pack([(k, k=1, size(self%closed))], self%closed)
-    n = scene%motions%count
     loaded = [scene%motions%node, [(scene%model%row_node(scene%model%row_start(pair(k)): &
                                     scene%model%row_start(pair(k) + 1) - 1), k=1, size(pair))]]
     allocate (nodal(directions, size(load, 2), size(loaded)), source=0.0_wp)
-    do k = 1, n
-      nodal(scene%motions%component(k), :, k) = load(k, :)
+    call put_loads()
+    call bodies%body_displacements(scene, 1, loaded, nodal, [(k, k=1, scene%model%nodes)], u)
+    do k = 1, size(load, 2)
+      where (self%closed) force(:, k) = force(:, k) - self%gamma*gap_opening(scene%model, u(:, k, :))
     end do
-    do k = 1, size(pair)
-      force(pair(k), :) = force(pair(k), :) - self%gamma(pair(k))*opening(pair(k), :)
-      do i = scene%model%row_start(pair(k)), scene%model%row_start(pair(k) + 1) - 1
-        n = n + 1
-        do f = 1, directions
-          nodal(f, :, n) = scene%model%row_weight(i)*scene%model%normal(f, pair(k))*force(pair(k), :)
+
+  contains
+
+    !> The loads, and forces with those of the springs.
+    subroutine put_loads()
+      integer :: c, i, n
+
+      do n = 1, scene%motions%count
+        nodal(scene%motions%component(n), :, n) = load(n, :)
+      end do
+      n = scene%motions%count
+      do k = 1, size(pair)
+        force(pair(k), :) = force(pair(k), :) - self%gamma(pair(k))*opening(pair(k), :)
+        do i = scene%model%row_start(pair(k)), scene%model%row_start(pair(k) + 1) - 1
+          n = n + 1
+          do c = 1, directions
+            nodal(c, :, n) = scene%model%row_weight(i)*scene%model%normal(c, pair(k))*force(pair(k), :)
+          end do
         end do
       end do
-    end do
-    call bodies%body_displacements(scene, 1, loaded, nodal, [(i, i=1, scene%model%nodes)], u)
-    do f = 1, size(load, 2)
-      where (self%closed) force(:, f) = force(:, f) - self%gamma*gap_opening(scene%model, u(:, f, :))
-    end do
+    end subroutine put_loads
   end subroutine respond
 
   !> Are the contact forces the only ones? Forces that open no gaps are what a solve leaves of any; of two
