@@ -6,7 +6,7 @@ module epcont_report_plan_text
   use epcont_model_controls, only: method_inistr, method_name, method_newton, precision_double, &
       precision_name, precision_open, precision_single, solver_auto, &
       solver_band, solver_frontal, solver_name
-  use epcont_model_model, only: line_contact
+  use epcont_model_model, only: line_contact, model_type
   use epcont_plan_iteration_plan, only: iteration_plan, many_pairs
   use epcont_plan_joining, only: many_of_pairs
   use epcont_plan_numbering, only: many_of_flexibility, many_operations
@@ -95,7 +95,7 @@ contains
         return
       end if
       call say('total theory of plasticity; bodies that can yield: '// &
-               text_of(count(scene%numbering%body%can_yield)))
+               text_of(count(yielding_bodies(scene%model))))
       call say('iteration '//trim(method_name(iteration%method))//': '//method_text(iteration%method))
       if (iteration%chosen_here) call say('  chosen here (AUTO): '// &
         when(iteration%method == method_newton, 'it needs the fewest factorizations', &
@@ -169,7 +169,7 @@ contains
       integer :: fronts
 
       fronts = count(scene%numbering%body%solver == solver_frontal)
-      if (fronts > 0) then
+      if (fronts > 0 .and. .not. iteration%joined) then
         call say('bodies factored in nested fronts (FRONTAL): '//text_of(fronts))
         if (scene%model%controls%solver == solver_auto) &
           call say('  chosen here (AUTO): faster where a band (BAND) takes more than '// &
@@ -220,6 +220,18 @@ contains
       call say_further(size(scene%numbering%body), 'further one', '')
     end subroutine say_bodies
   end function plan_text
+
+  !> Has a body anything that can yield? [bodies]
+  pure function yielding_bodies(model) result(yields)
+    type(model_type), intent(in) :: model
+    logical :: yields(model%bodies)
+    integer :: e
+
+    yields = .false.
+    do e = 1, model%elements
+      if (model%can_yield(e)) yields(model%body(model%connectivity(1, e))) = .true.
+    end do
+  end function yielding_bodies
 
   !> Memory, rounded up.
   pure function megabytes(bytes) result(text)
