@@ -97,6 +97,11 @@ class Found(scene.Extremes):
             with self.subTest(blocks=blocks):
                 self.assertEqual(self.valid(text).message, "")
 
+    def test_estimates_of_a_mirrored_scene(self):
+        """Of two equal largest pressures the worse one's error is told, whichever comes first."""
+        one, other = (self.valid(deck(name)).summary["mesh_error_pressure_zone_2"] for name in ("perr26", "perr26_mirror"))
+        self.near(one, other, 1e-6)
+
 
 if __name__ == "__main__":
     unittest.main()
