@@ -74,7 +74,8 @@ contains
     if (count(largest) < 2 .or. error%pressure < 0.0_wp) return
     other = estimate_at(model, line, answer, yielded, energy, zone, &
                         findloc(largest, .true., dim=1, back=.true.))
-    if (other%pressure < 0.0_wp .or. other%pressure > (1.0_wp + least_difference)*error%pressure) error = other
+    if (other%pressure < 0.0_wp .or. &
+        other%pressure > (1.0_wp + least_difference)*error%pressure) error = other
   end function estimate_zone
 
   !> Of those of some values that count, the largest, but for rounding.
