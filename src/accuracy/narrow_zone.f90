@@ -110,6 +110,7 @@ contains
         do i = 1, 2   ! A is pushed against the normal, B along it
           body = model%body(model%pair_node(i, k))
           do m = motions%first(body), motions%first(body + 1) - 1
+            if (answer%contact%motion_free(m)) cycle   ! nothing resists it
             load(m, z) = load(m, z) + (2*i - 3)*sum(force(pairs))*aside/motions%parts%extent(body) &
                          *motions%turn(model%pair_node(i, k), m)
           end do

@@ -56,7 +56,8 @@ module epcont_accuracy_zone_error
 
 contains
 
-  !> What the figures of a zone are worth.
+  !> What the figures of a zone are worth. Of equal largest pressures, but for rounding, those on the largest
+  !! area count (a corner on the axis may have its neighbour's), the first and the last: whichever is worse.
   pure function estimate_zone(model, line, answer, yielded, energy, zone) result(error)
     type(model_type), intent(in) :: model        !! the scene
     type(surface_line), intent(in) :: line       !! of its pairs
@@ -64,6 +65,39 @@ contains
     logical, intent(in) :: yielded               !! something is beyond yield
     real(wp), intent(in) :: energy               !! error of the mesh over all of it
     type(contact_zone), intent(in) :: zone       !! of these pairs
+    type(zone_error) :: error, other
+    logical :: largest(size(zone%pairs))
+
+    largest = are_largest(answer%pressure(zone%pairs), spread(.true., 1, size(largest)))
+    largest = are_largest(line%tributary(zone%pairs), largest)
+    error = estimate_at(model, line, answer, yielded, energy, zone, findloc(largest, .true., dim=1))
+    if (count(largest) < 2 .or. error%pressure < 0.0_wp) return
+    other = estimate_at(model, line, answer, yielded, energy, zone, &
+                        findloc(largest, .true., dim=1, back=.true.))
+    if (other%pressure < 0.0_wp .or. &
+        other%pressure > (1.0_wp + least_difference)*error%pressure) error = other
+  end function estimate_zone
+
+  !> Of those of some values that count, the largest, but for rounding.
+  pure function are_largest(values, counts)
+    real(wp), intent(in) :: values(:)
+    logical, intent(in) :: counts(:)
+    logical :: are_largest(size(values))
+    real(wp) :: largest
+
+    largest = maxval(values, mask=counts)
+    are_largest = counts .and. values >= largest - no_effect*abs(largest)
+  end function are_largest
+
+  !> The same, where one of its pairs has the largest pressure.
+  pure function estimate_at(model, line, answer, yielded, energy, zone, peak) result(error)
+    type(model_type), intent(in) :: model        !! the scene
+    type(surface_line), intent(in) :: line       !! of its pairs
+    type(answer_type), intent(in) :: answer      !! with their pressures
+    logical, intent(in) :: yielded               !! something is beyond yield
+    real(wp), intent(in) :: energy               !! error of the mesh over all of it
+    type(contact_zone), intent(in) :: zone       !! of these pairs
+    integer, intent(in) :: peak                  !! which of these
     type(zone_error) :: error
     type(zone_end) :: ends(2)
     real(wp), allocatable :: p(:)     !! pressures of its pairs [stress]
@@ -71,13 +105,10 @@ contains
     real(wp) :: long, around
     real(wp) :: flattening, largest, spacing
     logical :: mirrored(2), waves
-    integer :: at(2), kind, n, peak
+    integer :: at(2), kind, n
 
     n = size(zone%pairs)
     p = answer%pressure(zone%pairs)
-    ! Of equal pressures, but for rounding, that on the largest area: a corner on the axis may have its
-    ! neighbour's.
-    peak = maxloc(line%tributary(zone%pairs), mask=p >= maxval(p) - no_effect*abs(maxval(p)), dim=1)
     error%peak = zone%pairs(peak)
     largest = p(peak)
     kind = first_element(model, line%node(error%peak))
@@ -216,7 +247,7 @@ contains
       if (square > dependent*m(0)*m(2)*m(4)) &
         off = abs(largest - sqrt(max(0.0_wp, determinant(m, right)/square)))
     end function off_parabola
-  end function estimate_zone
+  end function estimate_at
 
   !> Of the normal equations of a parabola, with this first column.
   pure real(wp) function determinant(m, column)

@@ -97,6 +97,17 @@ class Found(scene.Extremes):
             with self.subTest(blocks=blocks):
                 self.assertEqual(self.valid(text).message, "")
 
+    def test_estimates_of_a_mirrored_scene(self):
+        """Of two equal largest pressures the worse one's error is told, whichever comes first."""
+        one, other = (self.valid(deck(name)).summary["mesh_error_pressure_zone_2"] for name in ("perr26", "perr26_mirror"))
+        self.near(one, other, 1e-6)
+
+    def test_estimates_of_another_numbering(self):
+        """Nothing resists most motions: what a force does along these says nothing of the errors of forces."""
+        one, other = (self.valid(deck(name)) for name in ("toterr_a", "toterr_b"))
+        self.near(one.summary["mesh_error_total_contact_force"], other.summary["mesh_error_total_contact_force"], 1e-6)
+        self.near(sorted(node["uy"] for node in one.nodes.values()), sorted(node["uy"] for node in other.nodes.values()), 1e-9)
+
 
 if __name__ == "__main__":
     unittest.main()

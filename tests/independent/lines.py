@@ -84,7 +84,7 @@ class Line:
         order = sorted((hypot(*(a - b for a, b in zip(eye.x, one.centre))) - one.chord * (1 + 1e-9), k) for k, one in enumerate(self.segments))
         found, nearest = [], reach
         for least, k in order:
-            if least > min(reach, nearest + more):
+            if least > min(reach * (1 + EQUAL), nearest + more):
                 break
             place = self.candidate(self.segments[k], eye, reach)
             if place:
@@ -116,7 +116,7 @@ class Line:
         if eye.node in segment.nodes:
             return None
         place = segment.face(eye.x)
-        if place is None or abs(place.gap) > reach or dot(place.normal, eye.outward) >= AGAINST:
+        if place is None or abs(place.gap) > reach * (1 + EQUAL) or dot(place.normal, eye.outward) >= AGAINST:
             return None
         if place.at_corner and not eye.at_tip:   # along the normal of the smooth boundary
             place.gap, place.normal = -place.gap * dot(place.normal, eye.outward), [-v for v in eye.outward]
