@@ -4,9 +4,10 @@ module epcont_result_stresses
   use epcont_base_tolerances, only: least_difference
   use epcont_element_element_kind, only: most_points
   use epcont_element_kinematics, only: components, directions
-  use epcont_material_curve, only: deviatoric_curve, new_curve
-  use epcont_material_elasticity, only: equivalent_stress
+  use epcont_material_curve, only: curve_value, deviatoric_curve, new_curve
+  use epcont_material_elasticity, only: elasticity, equivalent_stress
   use epcont_material_material_law, only: point_state
+  use epcont_model_controls, only: uniaxial_curve
   use epcont_model_model, only: model_type
   use epcont_linear_linear_problem, only: linear_problem
   use epcont_result_answer, only: answer_type
@@ -63,7 +64,6 @@ contains
     type(answer_type), intent(inout) :: answer
     real(wp), intent(inout) :: shortfall   !! the largest part by which (2-4) leaves a stress below the curve
     type(point_state) :: point
-    type(deviatoric_curve) :: curve   ! without (2-4)
     real(wp) :: mises(most_points), modulus, share, whole
     integer :: p
 
@@ -90,14 +90,24 @@ contains
         answer%secant_modulus(e) = answer%secant_modulus(e) + share*modulus
         answer%plastic(e) = answer%plastic(e) .or. point%yielded
         answer%beyond(e) = answer%beyond(e) .or. point%beyond
-        if (.not. model%controls%paper_ratio) cycle
-        curve = new_curve(model%curve(model%section(e)), law%elasticity, .false.)
-        modulus = point%modulus
-        point%curve_value = curve%at_strain(point%deviatoric)
-        shortfall = max(shortfall, 1.0_wp - modulus/point%modulus)
+        if (model%controls%paper_ratio) &
+          shortfall = max(shortfall, below_curve(model%curve(model%section(e)), law%elasticity, point))
       end do
     end associate
   end subroutine recover_element
+
+  !> By what part (2-4) leaves a stress below the curve.
+  pure real(wp) function below_curve(uniaxial, elastic, point) result(part)
+    type(uniaxial_curve), intent(in) :: uniaxial
+    type(elasticity), intent(in) :: elastic
+    type(point_state), intent(in) :: point
+    type(deviatoric_curve) :: curve   ! without (2-4)
+    type(curve_value) :: on_curve
+
+    curve = new_curve(uniaxial, elastic, .false.)
+    on_curve = curve%at_strain(point%deviatoric)
+    part = 1.0_wp - point%modulus/on_curve%modulus
+  end function below_curve
 
   !> Where the largest of some stresses is; of equal ones, but for rounding, the first.
   pure integer function first_largest(stress) result(k)
