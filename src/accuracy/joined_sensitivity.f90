@@ -27,15 +27,10 @@ contains
     integer :: at(2), f, k
 
     pairs = pack([(k, k=1, scene%model%pairs)], answer%contact%force > 0.0_wp)
-    opening = 0.0_wp
-    opening(pairs) = 1.0_wp
-    opening = opening*terms_of_openings(scene%model, answer%deformation)
+    opening = merge(terms_of_openings(scene%model, answer%deformation), 0.0_wp, answer%contact%force > 0.0_wp)
     rounding = epsilon(1.0_wp)*(answer%condition*opening + abs(linear%problem%initial_gap) + &
                                 linear%problem%motion%times(answer%contact%approach, magnitudes=.true.))
-    x = 0.0_wp
-    x(pairs, 1) = 1.0_wp/size(pairs)
-    x(pairs, 2) = [((1 - 2*mod(k, 2))*(1.0_wp + (k - 1.0_wp)/size(pairs)), k=1, size(pairs))]
-    x(:, 2) = x(:, 2)/sum(abs(x(:, 2)))
+    call begin()
     call look(x, turned)
     call look(spread(opening, 2, 2)*sign(1.0_wp, turned), turned)
     at = maxloc(abs(turned), dim=1)
@@ -48,6 +43,14 @@ contains
     found%rounding = min(1.0_wp, found%rounding)
 
   contains
+
+    !> Equal parts, and the alternating column that finds what they cancel.
+    subroutine begin()
+      x = 0.0_wp
+      x(pairs, 1) = 1.0_wp/size(pairs)
+      x(pairs, 2) = [((1 - 2*mod(k, 2))*(1.0_wp + (k - 1.0_wp)/size(pairs)), k=1, size(pairs))]
+      x(:, 2) = x(:, 2)/sum(abs(x(:, 2)))
+    end subroutine begin
 
     !> M x, and what it tells of the norms where the columns of x are of size one.
     subroutine look(x, product)
