@@ -156,20 +156,24 @@ contains
     real(wp), intent(in) :: fixed_gap(:), load_factor
     type(scene_state), intent(inout) :: state
     class(stopwatch), intent(inout) :: watch
-    real(wp), dimension(scene%model%pairs) :: gap, opening, pull   ! lambda - gamma g
-    real(wp), allocatable :: step(:, :), strain(:, :), unbalanced(:, :), motion(:)
+    real(wp), dimension(scene%model%pairs) :: gap, opening
+    real(wp), dimension(scene%model%pairs) :: pull    ! lambda - gamma g
+    real(wp), dimension(scene%model%pairs) :: borne   ! forces that the deformation is in equilibrium with
+    real(wp), allocatable :: step(:, :), strain(:, :), motion(:)
     logical :: wanted(scene%model%pairs)
-    real(wp) :: before, change, curvature, descent, length
-    real(wp) :: largest       ! strain that a step has added
+    real(wp) :: before, change, descent, length
+    real(wp) :: largest       ! deformation that a step has added
     integer :: taken
+    logical :: afresh         ! what is out of balance is found from stresses, else from `borne`
     logical :: set_is_given, sound
 
     state%contact%state = contact_stalled
     state%contact%pivots = 0
     state%contact%block_steps = 0
-    call hold()
-    before = huge(1.0_wp)
+    call prescribe(scene, load_factor, state%deformation)
+    before = 1.0_wp
     largest = 0.0_wp
+    afresh = .true.
     set_is_given = .not. allocated(self%last)
     do taken = 1, step_limit
       gap = fixed_gap + gap_opening(scene%model, state%deformation) - &
@@ -183,13 +187,17 @@ contains
       length = 1.0_wp
       if (taken > full_steps) length = length_of_step()
       call take_step()
-      if (length < 1.0_wp .or. any(wanted .neqv. self%closed)) cycle
-      if (change <= negligible .or. (change <= no_effect .and. change > 0.5_wp*before)) then
-        state%contact%state = contact_solved
-        exit
+      if (afresh .and. length >= 1.0_wp .and. all(wanted .eqv. self%closed)) then
+        ! The next step would change as much less.
+        if (change*min(1.0_wp, change/before) <= negligible .or. &
+            change <= no_effect .and. change > 0.5_wp*before) then
+          state%contact%state = contact_solved
+          exit
+        end if
+        before = change
+        call begin_anew()
       end if
-      before = change
-      call begin_anew()
+      afresh = taken >= full_steps .or. all(wanted .eqv. self%closed)
     end do
     state%contact%gap = gap
 
@@ -203,36 +211,37 @@ contains
       self%closed = wanted
     end subroutine choose_set
 
-    !> Where strains have been far larger than they are, these have the rounding of those: with the forces
-    !! that are known by now, they are solved for from none.
+    !> Where the deformation has been far larger than it is, it has the rounding of that: with the forces that
+    !! are known by now, it is solved for from none.
     subroutine begin_anew()
-      if (largest <= far_larger*maxval(abs(state%strain))) return
+      if (largest <= far_larger*maxval(abs(state%deformation))) return
       largest = 0.0_wp
       set_is_given = .true.
       state%deformation = 0.0_wp
       state%contact%approach = 0.0_wp
-      call hold()
+      call prescribe(scene, load_factor, state%deformation)
     end subroutine begin_anew
 
-    !> Supports where they are prescribed to be.
-    subroutine hold()
-      call prescribe(scene, load_factor, state%deformation)
-      state%strain = bodies%operator%strains(scene%model, state%deformation)
-    end subroutine hold
-
-    !> What is out of balance is solved for.
+    !> What is out of balance is solved for. All but the pairs is linear: after a full step they alone have
+    !! forces that are not borne, but for rounding.
     subroutine find_step()
+      real(wp), allocatable :: unbalanced(:, :)
       integer :: k
 
-      unbalanced = load_factor*scene%model%load - &
-                   bodies%operator%nodal_forces(scene%model, bodies%law%stress(state%strain))
-      step = unbalanced + pair_forces(scene%model, merge(pull, 0.0_wp, self%closed))
-      step = bodies%displacements(scene, step, 0.0_wp)
+      if (afresh) then
+        state%strain = bodies%operator%strains(scene%model, state%deformation)
+        unbalanced = load_factor*scene%model%load - &
+                     bodies%operator%nodal_forces(scene%model, bodies%law%stress(state%strain))
+      else
+        unbalanced = pair_forces(scene%model, -borne)
+      end if
+      step = bodies%displacements(scene, unbalanced + &
+                                  pair_forces(scene%model, merge(pull, 0.0_wp, self%closed)), 0.0_wp)
       descent = sum(unbalanced*step)
       motion = [(step(scene%motions%component(k), scene%motions%node(k)), k=1, scene%motions%count)]
       call scene%motions%add(scene%model, -motion, step)
-      strain = bodies%operator%strains(scene%model, step)
-      largest = max(largest, maxval(abs(strain)))
+      if (afresh) strain = bodies%operator%strains(scene%model, step)
+      largest = max(largest, maxval(abs(step)))
       opening = gap_opening(scene%model, step) - self%motion%times(motion)
     end subroutine find_step
 
@@ -241,17 +250,18 @@ contains
       real(wp), allocatable :: next(:)
 
       state%deformation = state%deformation + length*step
-      state%strain = state%strain + length*strain
+      if (afresh) state%strain = state%strain + length*strain
       state%contact%approach = state%contact%approach + length*motion
       state%contact%block_steps = state%contact%block_steps + 1
       gap = gap + length*opening
       associate (force => state%contact%force)
         pull = force - self%gamma*gap
+        borne = merge(pull, 0.0_wp, self%closed)
         wanted = pull > 0.0_wp
         if (length < 1.0_wp .or. taken > full_steps .and. any(wanted .neqv. self%closed)) return
         next = merge(pull, 0.0_wp, self%closed .and. wanted)
-        change = max(maxval([abs(next - force), 0.0_wp])/maxval([next, tiny(1.0_wp)]), &
-                     maxval(abs(strain))/max(maxval(abs(state%strain)), tiny(1.0_wp)))
+        change = maxval([abs(next - force), 0.0_wp])/maxval([next, tiny(1.0_wp)])
+        if (afresh) change = max(change, maxval(abs(strain))/max(maxval(abs(state%strain)), tiny(1.0_wp)))
         force = next
       end associate
     end subroutine take_step
@@ -259,19 +269,20 @@ contains
     !> Up to where the function is least along the step, by regula falsi (Illinois) and halving.
     real(wp) function length_of_step() result(t)
       real(wp) :: at(2), slopes(2), begin, now   ! before and behind the zero of the slope
+      real(wp) :: curvature
       integer :: i, last, side
 
       curvature = sum(spread(bodies%operator%volume, 1, components)*strain*bodies%law%increment(strain))
       t = 1.0_wp
-      begin = slope(0.0_wp)
+      begin = slope(0.0_wp, curvature)
       at = [0.0_wp, 1.0_wp]
-      slopes = [begin, slope(1.0_wp)]
+      slopes = [begin, slope(1.0_wp, curvature)]
       if (slopes(2) <= flat_enough*abs(begin)) return
       last = 0
       do i = 1, step_limit
         t = (at(1)*slopes(2) - at(2)*slopes(1))/(slopes(2) - slopes(1))
         if (mod(i, 3) == 0) t = sqrt(max(at(1), tiny(1.0_wp)))*sqrt(at(2))
-        now = slope(t)
+        now = slope(t, curvature)
         if (abs(now) <= flat_enough*abs(begin)) return
         side = merge(2, 1, now > 0.0_wp)
         at(side) = t
@@ -281,8 +292,9 @@ contains
       end do
     end function length_of_step
 
-    pure real(wp) function slope(t)
-      real(wp), intent(in) :: t
+    !> Of that function there.
+    pure real(wp) function slope(t, curvature)
+      real(wp), intent(in) :: t, curvature   !! of all but the pairs' part
 
       slope = t*curvature - descent - &
               sum(max(0.0_wp, state%contact%force - self%gamma*(gap + t*opening))*opening)
