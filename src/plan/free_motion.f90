@@ -142,11 +142,9 @@ contains
       end associate
     end do
     motions%first(model%bodies + 1) = motions%count + 1
-    associate (n => motions%count)   ! fewer where some do not fit
-      motions%body = motions%body(:n)
-      motions%node = motions%node(:n)
-      motions%component = motions%component(:n)
-    end associate
+    motions%body = motions%body(:motions%count)   ! fewer where some do not fit
+    motions%node = motions%node(:motions%count)
+    motions%component = motions%component(:motions%count)
   end subroutine find_free_motions
 
   !> Free motions of one body.
