@@ -96,7 +96,7 @@ contains
     end subroutine look_for_set
 
     !> Exchange until no pair is wrong, or that leads nowhere. Not `ended` if there were sets without an own
-    !! solution.
+    !! solution: more pairs may hold the motions, but do not mend forces that depend on each other.
     subroutine exchange_blocks(ended)
       logical, intent(out) :: ended
       type(contact_state) :: trial
@@ -120,7 +120,6 @@ contains
           firmness = part_of_largest(trial%force) + part_of_largest(-trial%gap)
           closed = closed .neqv. wrong
         else
-          ! More pairs may hold the motions; forces that depend on each other they do not mend.
           if (repairs == repair_limit .or. all(closed .or. .not. scaled%first_touching)) return
           repairs = repairs + 1
           closed = closed .or. scaled%first_touching

@@ -38,8 +38,9 @@ module epcont_plan_forecast
   !! a few that follow each other: F, factors of those that touch, here half of them to all, and F of the
   !! bodies that cannot yield where others can.
   real(wp), parameter :: pair_matrices = 2.6_wp
-  !> And over pairs and free motions: forces under unit loads, and which of them are none.
-  real(wp), parameter :: motion_matrices = 1.6_wp
+  !> And over pairs and free motions; of many bodies over pairs and those of the largest level, beyond which
+  !! few unit loads are told apart (measured: stacks, walls), if not over motions twice, for the rigid start.
+  integer(i8), parameter :: motion_matrices = 8, level_matrices = 12
   !> Sets of many bodies that are factored while the first contact is solved, to be doubled and more by what
   !! `contact_more` of `plan/run_time.f90` adds: an interior path has 10 to 30.
   integer, parameter :: path_sets = 8
@@ -171,7 +172,8 @@ contains
       end associate
     end do
     entries = entries + max(int(pair_matrices*coupled, i8), flexibility + coupled, passing) + &
-              int(motion_matrices*pairs*motions%count, i8)
+              max(int(motions%count, i8)**2, &
+                  pairs*min(motion_matrices*motions%count, level_matrices*maxval(level)))
     expected%double_bytes = real_bytes*entries + beside_matrices() + unit_loads
     expected%bytes = expected%double_bytes - saved
     expected%motions = motions%count
