@@ -138,12 +138,9 @@ contains
     real(wp), dimension(directions, model%bodies) :: lean, resultant
     logical :: is_narrow
     integer :: b, body(2), i, k, z
-    integer :: of_contact(model%pairs)   ! of lines; 0: none
+    real(wp) :: smooth_normal(directions, model%pairs)
 
-    of_contact = 0
-    do i = 1, size(model%line_contact)
-      of_contact(model%line_contact(i)%first:model%line_contact(i)%last) = i
-    end do
+    smooth_normal = smooth_normals(model)
     total = 0.0_wp
     of_body = 0.0_wp
     lean = 0.0_wp
@@ -156,7 +153,7 @@ contains
         do i = 1, size(pairs)
           k = pairs(i)
           body = model%body(model%pair_node(:, k))
-          own = -smooth_normal(k)
+          own = -smooth_normal(:, k)
           on = kept(resultant(:, body), given(:, body) .and. abs(resultant(:, body)) > least)
           ! Of a ring that is free along its axis contacts may balance each other: each bears its part.
           if (model%has_rings() .and. any(given(2, body)) .and. force(k)*abs(model%normal(2, k)) > least) &
@@ -212,20 +209,6 @@ contains
         end do
       end associate
     end subroutine turn_shared_places
-
-    !> The normal of a line in contact at the node of a pair that stands on the other line; none at a corner,
-    !! or without lines.
-    pure function smooth_normal(pair) result(normal)
-      integer, intent(in) :: pair
-      real(wp) :: normal(directions)
-
-      normal = 0.0_wp
-      if (of_contact(pair) == 0) return
-      associate (contact => model%line_contact(of_contact(pair)), node => model%pair_node(2, pair))
-        if (pair < contact%first_of_master) normal = normal_at(contact%slave, node)
-        if (pair >= contact%first_of_master) normal = normal_at(contact%master, node)
-      end associate
-    end function smooth_normal
   end subroutine find_turned
 
   !> What stays the same of the resultants on two bodies where their contact turns: what loads make, else the
@@ -249,19 +232,49 @@ contains
     if (abs(b) > least) excess = max(-1.0_wp, min(1.0_wp, (a - b)/b))
   end function excess
 
-  !> The normal of a line at one of its nodes; none at a corner, or elsewhere.
-  pure function normal_at(line, node) result(normal)
-    class(boundary_line), intent(in) :: line
-    integer, intent(in) :: node
-    real(wp) :: normal(directions)
-    integer :: at(2)
+  !> Normals of lines in contact at the nodes of pairs that stand on the other line; none at a corner, or
+  !! without lines [directions, pairs].
+  function smooth_normals(model) result(normal)
+    type(model_type), intent(in) :: model
+    real(wp) :: normal(directions, model%pairs)
+    integer :: place(2, model%nodes)   ! of a node in the line that is looked at: which of which side; 0: none
+    integer :: c
 
     normal = 0.0_wp
-    at = findloc(line%segment, node)
-    if (any(at == 0)) return
-    if (at(1) < 3) then
-      if (line%corner(at(1), at(2))) return
-    end if
-    normal = line%normal(:, at(1), at(2))
-  end function normal_at
+    place = 0
+    do c = 1, size(model%line_contact)
+      associate (contact => model%line_contact(c))
+        call take_normals(contact%slave, contact%first, min(contact%first_of_master - 1, contact%last))
+        call take_normals(contact%master, max(contact%first_of_master, contact%first), contact%last)
+      end associate
+    end do
+
+  contains
+
+    !> Those of one line, at some pairs.
+    subroutine take_normals(line, first, last)
+      class(boundary_line), intent(in) :: line
+      integer, intent(in) :: first, last
+      integer :: k, pair, side
+
+      if (last < first) return
+      do side = size(line%segment, 2), 1, -1
+        do k = 3, 1, -1
+          if (line%segment(k, side) > 0) place(:, line%segment(k, side)) = [k, side]
+        end do
+      end do
+      do pair = first, last
+        associate (at => place(:, model%pair_node(2, pair)))
+          if (at(1) == 0) cycle
+          if (at(1) < 3) then
+            if (line%corner(at(1), at(2))) cycle
+          end if
+          normal(:, pair) = line%normal(:, at(1), at(2))
+        end associate
+      end do
+      do side = 1, size(line%segment, 2)
+        place(:, pack(line%segment(:, side), line%segment(:, side) > 0)) = 0
+      end do
+    end subroutine take_normals
+  end function smooth_normals
 end module epcont_accuracy_narrow_zone

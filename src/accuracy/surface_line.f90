@@ -184,11 +184,13 @@ contains
     logical, intent(out) :: are_waves         !! where the gap bends by turns at enough pairs
     real(wp), intent(out) :: height           !! 0 where there are none [length]
     real(wp) :: angle, spacing
+    real(wp) :: least   !! curvature that rounding makes of straight sides beside a tip [1/length]
     logical :: alternates(size(pairs))
     integer :: k
 
     pressure = 0.0_wp
     height = 0.0_wp
+    least = no_effect*maxval(abs(line%curvature(pairs)))
     do k = 1, size(pairs)
       call uneven_bend(pairs(k), angle, spacing, alternates(k))
       if (line%compliance(pairs(k)) > 0.0_wp) &
@@ -250,12 +252,11 @@ contains
       if (pair > 0) goes_on = all(line%neighbour(:, pair) > 0) .or. line%mirrored(pair)
     end function goes_on
 
-    !> Are the first and the third of four curvatures above the others, or below? By more than rounding makes
-    !! of straight sides beside a tip.
+    !> Are the first and the third of four curvatures above the others, or below?
     pure logical function by_turns(x)
       real(wp), intent(in) :: x(4)
 
-      associate (odd => x([1, 3]), even => x([2, 4]), least => no_effect*maxval(abs(line%curvature(pairs))))
+      associate (odd => x([1, 3]), even => x([2, 4]))
         by_turns = minval(odd) - maxval(even) > least .or. minval(even) - maxval(odd) > least
       end associate
     end function by_turns

@@ -21,6 +21,8 @@ module epcont_geometry_boundary_line
   real(wp), parameter, public :: beyond = 1.0e-5_wp
   !> Steps of Newton's method, which needs five, and the change that ends it.
   integer, parameter :: most_steps = 30
+  !> So many sides away along a side nothing is faced.
+  real(wp), parameter :: farthest = 10.0_wp
   real(wp), parameter :: converged = 1.0e-14_wp
 
   type :: boundary_line
@@ -141,6 +143,7 @@ contains
     integer :: end
 
     place%segment = segment
+    if (is_far_aside()) return
     side = side_of(self, segment)
     from = point - self%x(:, 1, segment)
     call find_foot(place%s, place%found)
@@ -164,6 +167,13 @@ contains
 
   contains
 
+    !> Is the point farther along the chord than is looked for? Of fine lines most sides are so.
+    pure logical function is_far_aside()
+      associate (start => self%x(:, 1, segment), chord => self%x(:, 2, segment) - self%x(:, 1, segment))
+        is_far_aside = abs(dot_product(point - start, chord)) > 1.1_wp*farthest*dot_product(chord, chord)
+      end associate
+    end function is_far_aside
+
     !> The place whose normal leads to the point, by Newton's method.
     pure subroutine find_foot(s, found)
       real(wp), intent(out) :: s      !! from 0 to 1, or beyond
@@ -176,7 +186,7 @@ contains
       end associate
       found = .false.
       do k = 1, most_steps
-        if (abs(s) > 10.0_wp) return
+        if (abs(s) > farthest) return
         away = from - matmul(side%x, values(side, s))
         normal = matmul(side%normal, values(side, s))
         rate = cross_product(matmul(side%normal, slopes(side, s)), away) - &

@@ -171,7 +171,7 @@ contains
     state%contact%pivots = 0
     state%contact%block_steps = 0
     call prescribe(scene, load_factor, state%deformation)
-    before = 1.0_wp
+    before = huge(1.0_wp)
     largest = 0.0_wp
     afresh = .true.
     set_is_given = .not. allocated(self%last)
@@ -189,7 +189,7 @@ contains
       call take_step()
       if (afresh .and. length >= 1.0_wp .and. all(wanted .eqv. self%closed)) then
         ! The next step would change as much less.
-        if (change*min(1.0_wp, change/before) <= negligible .or. &
+        if (change*merge(min(1.0_wp, change/before), 1.0_wp, before <= 1.0_wp) <= negligible .or. &
             change <= no_effect .and. change > 0.5_wp*before) then
           state%contact%state = contact_solved
           exit
