@@ -102,6 +102,8 @@ contains
     if (failed) return
     line = find_contact_line(scene%model)
     call evaluate_refined()
+    failed = scene%numbering%joined .and. answer%converged .and. .not. certificate%valid
+    if (failed) return
     if (answer%precision /= precision_double .and. answer%converged .and. &
         .not. (certificate%valid .and. certificate%scene%sound())) then
       call solve_in_double()

@@ -11,8 +11,8 @@
 !> the flexibility, thousands, with each step: of gamma nothing is left in the answer. SUPORT freedoms have
 !> springs, too, so weak that they matter where no pair holds a body yet; each step has them where it begins.
 !>
-!> Where full steps run in circles they are cut where the function is least along them, and lambda waits until
-!> the set stays: then each step makes it less.
+!> Lambda waits until the set stays, so that each step is one of that function. Where full ones run in circles
+!> they are cut where it is least along them: then each makes it less.
 module epcont_linear_joined_contact
   use epcont_assembly_bodies, only: factored_bodies, prescribe
   use epcont_base_kinds, only: wp
@@ -23,7 +23,7 @@ module epcont_linear_joined_contact
   use epcont_element_kinematics, only: components, directions
   use epcont_flexibility_flexibility, only: gap_opening, pair_forces, terms_of_openings
   use epcont_flexibility_motion_matrix, only: motion_matrix
-  use epcont_linear_joined_springs, only: find_springs, of_pairs
+  use epcont_linear_joined_springs, only: find_springs, of_pairs, spring_of_motion
   use epcont_linear_scene_state, only: scene_state
   use epcont_plan_planned_scene, only: planned_scene
   use epcont_system_stopwatch, only: stage_contact, stage_factor, stopwatch
@@ -222,8 +222,8 @@ contains
       call prescribe(scene, load_factor, state%deformation)
     end subroutine begin_anew
 
-    !> What is out of balance is solved for. All but the pairs is linear: after a full step they alone have
-    !! forces that are not borne, but for rounding.
+    !> What is out of balance is solved for. All but the pairs is linear: after a full step they, and springs
+    !! of SUPORT freedoms that have moved, alone have forces that are not borne, but for rounding.
     subroutine find_step()
       real(wp), allocatable :: unbalanced(:, :)
       integer :: k
@@ -234,6 +234,11 @@ contains
                      bodies%operator%nodal_forces(scene%model, bodies%law%stress(state%strain))
       else
         unbalanced = pair_forces(scene%model, -borne)
+        do k = 1, scene%motions%count
+          associate (load => unbalanced(scene%motions%component(k), scene%motions%node(k)))
+            load = load + bodies%spring%stiffness(spring_of_motion(scene, k))*motion(k)
+          end associate
+        end do
       end if
       step = bodies%displacements(scene, unbalanced + &
                                   pair_forces(scene%model, merge(pull, 0.0_wp, self%closed)), 0.0_wp)
@@ -258,7 +263,7 @@ contains
         pull = force - self%gamma*gap
         borne = merge(pull, 0.0_wp, self%closed)
         wanted = pull > 0.0_wp
-        if (length < 1.0_wp .or. taken > full_steps .and. any(wanted .neqv. self%closed)) return
+        if (length < 1.0_wp .or. any(wanted .neqv. self%closed)) return
         next = merge(pull, 0.0_wp, self%closed .and. wanted)
         change = maxval([abs(next - force), 0.0_wp])/maxval([next, tiny(1.0_wp)])
         if (afresh) change = max(change, maxval(abs(strain))/max(maxval(abs(state%strain)), tiny(1.0_wp)))

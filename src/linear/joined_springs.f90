@@ -7,14 +7,16 @@ module epcont_linear_joined_springs
   use epcont_plan_planned_scene, only: planned_scene
   implicit none
   private
-  public :: find_springs
+  public :: find_springs, spring_of_motion
 
   !> Stiffness of a spring over that of the softer body at its pair. A step leaves 1E-3 of the gaps, mostly
   !! 1E-4; more would cost digits of the factor, of which steps bring back as many each.
   real(wp), parameter, public :: of_pairs = 1.0e3_wp
-  !> And of a SUPORT freedom, over that of its node: so weak that steps hardly feel it where pairs hold the
-  !! body, so strong that a pivot is left where nothing does.
+  !> And of a SUPORT freedom, over the largest of a node of the softest body, which may be all that holds its
+  !! own: so weak that steps hardly feel it, and unit loads not at all.
   real(wp), parameter :: of_suport = 1.0e-9_wp
+  !> But over that of its node so strong that a pivot is left where no pair holds the body.
+  real(wp), parameter :: least_pivot = 1.0e-13_wp
 
 contains
 
@@ -25,23 +27,37 @@ contains
     class(factored_bodies), intent(inout) :: bodies   !! with a law
     logical, intent(in) :: redundant(:)               !! nothing resists the motion [motions]
     real(wp), allocatable, intent(out) :: gamma(:)    !! [force/length] [pairs]
-    real(wp) :: stiffness(scene%model%nodes)
+    real(wp) :: softest, stiffness(scene%model%nodes)
     integer :: k, springs
 
     call measure(scene, bodies, stiffness, bodies%spring%norm)
     gamma = [(of_pairs*softer_side(k), k=1, scene%model%pairs)]
+    softest = stiffness_of_softest()
     springs = size(scene%numbering%body(1)%spring%start) - 1
     allocate (bodies%spring%stiffness(springs), source=0.0_wp)
     allocate (bodies%spring%changed(springs), source=.true.)
     do k = 1, scene%motions%count
-      associate (c => scene%motions%component(k), node => scene%motions%node(k))
-        bodies%spring%stiffness(scene%model%pairs + count(scene%model%reference(:, :node - 1)) + &
-                                count(scene%model%reference(:c, node))) = &
-          stiffness(node)*merge(1.0_wp, of_suport, redundant(k))
+      associate (node => scene%motions%node(k))
+        bodies%spring%stiffness(spring_of_motion(scene, k)) = &
+          merge(stiffness(node), max(of_suport*softest, least_pivot*stiffness(node)), redundant(k))
       end associate
     end do
 
   contains
+
+    !> The least that bodies have at their stiffest nodes.
+    pure real(wp) function stiffness_of_softest() result(softest)
+      real(wp) :: largest(scene%model%bodies)
+      integer :: i
+
+      largest = 0.0_wp
+      do i = 1, scene%model%nodes
+        associate (body => scene%model%body(i))
+          if (body > 0) largest(body) = max(largest(body), stiffness(i))
+        end associate
+      end do
+      softest = minval(largest, mask=largest > 0.0_wp)
+    end function stiffness_of_softest
 
     !> Stiffness of the softer body at a pair, of those that give way at all; 0: none does.
     pure real(wp) function softer_side(pair) result(softer)
@@ -62,6 +78,17 @@ contains
       if (softer >= huge(1.0_wp)) softer = 0.0_wp
     end function softer_side
   end subroutine find_springs
+
+  !> The spring of the SUPORT freedom that measures a motion.
+  pure integer function spring_of_motion(scene, motion)
+    type(planned_scene), intent(in) :: scene   !! numbered as one system
+    integer, intent(in) :: motion              !! which
+
+    associate (reference => scene%model%reference, c => scene%motions%component(motion), &
+               node => scene%motions%node(motion))
+      spring_of_motion = scene%model%pairs + count(reference(:, :node - 1)) + count(reference(:c, node))
+    end associate
+  end function spring_of_motion
 
   !> What elements give to the diagonal of the stiffness at each node; a leader has as much as the stiffest of
   !! its followers. And the largest sum of magnitudes of a row.
