@@ -18,7 +18,7 @@ module epcont_linear_joined_contact
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: lost_digits, negligible, no_effect
   use epcont_contact_equilibrium, only: find_rigid_start, rigid_start
-    use epcont_contact_problem, only: contact_no_equilibrium, contact_solved, contact_stalled, new_solution
+  use epcont_contact_problem, only: contact_no_equilibrium, contact_solved, contact_stalled, new_solution
   use epcont_contact_uniqueness, only: find_free_motions
   use epcont_element_kinematics, only: components, directions
   use epcont_flexibility_flexibility, only: gap_opening, pair_forces, terms_of_openings
@@ -156,9 +156,8 @@ contains
     real(wp), intent(in) :: fixed_gap(:), load_factor
     type(scene_state), intent(inout) :: state
     class(stopwatch), intent(inout) :: watch
-    real(wp), dimension(scene%model%pairs) :: gap, opening
-    real(wp), dimension(scene%model%pairs) :: pull    ! lambda - gamma g
-    real(wp), dimension(scene%model%pairs) :: borne   ! forces that the deformation is in equilibrium with
+    !> What the deformation is in equilibrium with; lambda - gamma g
+    real(wp), dimension(scene%model%pairs) :: borne, gap, opening, pull
     real(wp), allocatable :: step(:, :), strain(:, :), motion(:)
     logical :: wanted(scene%model%pairs)
     real(wp) :: before, change, descent, length
