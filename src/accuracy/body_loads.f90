@@ -17,8 +17,8 @@ module epcont_accuracy_body_loads
   public :: body_loads, choose_fields, find_displacements, load_batch, new_body_loads, take_fields
 
   !> A load that others make up for, but for this part of its largest force on any body, is a sum of these:
-  !! with ten times as much the error of an approach could be twice what all loads tell (blocks that tilt), and
-  !! a stack of 30 bodies took a twentieth less.
+  !! with ten times as much the error of an approach could be twice what all loads tell (blocks that tilt),
+  !! and a stack of 30 bodies took a twentieth less.
   real(wp), parameter :: made_up_for = 1.0e-3_wp
 
   !> Of unit loads those that a body feels, and that no batch of fields has told of yet.

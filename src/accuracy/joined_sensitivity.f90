@@ -60,6 +60,7 @@ contains
       integer :: f
 
       product = 0.0_wp
+      u = 0.0_wp
       call linear%joined%respond(scene, linear%factored_bodies, &
                                  spread(spread(0.0_wp, 1, 2), 1, scene%motions%count), x, product, u)
       do f = 1, 2

@@ -111,6 +111,7 @@ contains
       load = 0.0_wp
       opening = 0.0_wp
       force = 0.0_wp
+      u = 0.0_wp
       do j = 1, scene%motions%count
         load(j, j) = 1.0_wp
       end do

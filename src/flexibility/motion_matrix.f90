@@ -16,6 +16,7 @@ module epcont_flexibility_motion_matrix
   contains
     procedure :: motions
     procedure :: sizes
+    procedure :: units
     procedure :: over
     procedure :: times
     procedure :: of_each
@@ -68,6 +69,15 @@ contains
 
     sizes = [(maxval([abs(self%closing(self%start(j):self%start(j + 1) - 1)), 0.0_wp]), j=1, size(sizes))]
   end function sizes
+
+  !> The same, and one for a motion that closes no gap [motions].
+  pure function units(self)
+    class(motion_matrix), intent(in) :: self
+    real(wp) :: units(size(self%start) - 1)
+
+    units = self%sizes()
+    where (units <= 0.0_wp) units = 1.0_wp
+  end function units
 
   !> The same in units of each motion.
   pure type(motion_matrix) function over(self, unit) result(new)

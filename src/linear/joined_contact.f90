@@ -75,22 +75,13 @@ contains
 
     joined%threads = threads
     joined%motion = motion
-    scaled = motion%over(unit_of(motion))
-    call find_rigid_start(scaled, resultant/unit_of(motion), spread(0.0_wp, 1, motion%pairs), &
+    scaled = motion%over(motion%units())
+    call find_rigid_start(scaled, resultant/motion%units(), spread(0.0_wp, 1, motion%pairs), &
                           joined%rigid)
     if (.not. joined%rigid%balanced) return
     call find_springs(scene, bodies, joined%rigid%redundant, joined%gamma)
     allocate (joined%closed(scene%model%pairs), source=.true.)
   end subroutine new_joined
-
-  !> Largest entries of the columns of A; one of a motion that closes no gap [motions].
-  pure function unit_of(motion) result(unit)
-    type(motion_matrix), intent(in) :: motion
-    real(wp), allocatable :: unit(:)
-
-    unit = motion%sizes()
-    where (unit <= 0.0_wp) unit = 1.0_wp
-  end function unit_of
 
   !> Factor the bodies with the springs of the set of contacts, as far as law or springs have changed.
   subroutine factor(self, scene, bodies, sound, watch)
@@ -135,7 +126,7 @@ contains
     end if
     if (.not. self%rigid%balanced) then
       state%contact%state = contact_no_equilibrium
-      state%contact%escape = self%rigid%escape/unit_of(self%motion)
+      state%contact%escape = self%rigid%escape/self%motion%units()
       return
     end if
     call self%find_set(scene, bodies, gap, load_factor, state, watch)
@@ -320,7 +311,7 @@ contains
               self%motion%times(contact%approach, magnitudes=.true.)
       contact%touching = contact%force > 0.0_wp .or. contact%gap <= negligible*terms
       where (contact%touching) contact%gap = 0.0_wp
-      contact%motion_free = find_free_motions(self%motion%over(unit_of(self%motion)), contact%touching, &
+      contact%motion_free = find_free_motions(self%motion%over(self%motion%units()), contact%touching, &
           contact%force > lost_digits*maxval([contact%force, 0.0_wp]))
       contact%joined = .true.
       if (any(contact%motion_free .neqv. self%rigid%redundant)) contact%state = contact_stalled
@@ -344,7 +335,8 @@ contains
     real(wp), intent(in) :: load(:, :)              !! [force] [motions, any]
     real(wp), intent(in) :: opening(:, :)           !! [length] [pairs, any]
     real(wp), intent(inout) :: force(:, :)          !! as far as known; then better [force] [pairs, any]
-    real(wp), intent(out) :: u(:, :, :)             !! [length] [directions, any, nodes]
+    !> As far as known, for what springs at SUPORT freedoms bear; then better [length] [directions, any, nodes]
+    real(wp), intent(inout) :: u(:, :, :)
     real(wp), allocatable :: nodal(:, :, :)         ! what acts on each loaded node [directions, any, loaded]
     integer, allocatable :: loaded(:), pair(:)
     integer :: k
@@ -366,7 +358,9 @@ contains
       integer :: c, i, n
 
       do n = 1, scene%motions%count
-        nodal(scene%motions%component(n), :, n) = load(n, :)
+        associate (c => scene%motions%component(n), node => scene%motions%node(n))
+          nodal(c, :, n) = load(n, :) + bodies%spring%stiffness(spring_of_motion(scene, n))*u(c, :, node)
+        end associate
       end do
       n = scene%motions%count
       do k = 1, size(pair)
@@ -394,6 +388,7 @@ contains
       force(k, :) = cos(k*[1.0_wp, sqrt(2.0_wp)])
     end do
     where (.not. spread(self%closed, 2, 2)) force = 0.0_wp
+    u = 0.0_wp
     call self%respond(scene, bodies, spread(spread(0.0_wp, 1, 2), 1, scene%motions%count), 0*force, force, u)
     are_unique = maxval(abs(force)) <= most_left
   end function are_unique
