@@ -335,7 +335,7 @@ contains
     real(wp), intent(in) :: load(:, :)              !! [force] [motions, any]
     real(wp), intent(in) :: opening(:, :)           !! [length] [pairs, any]
     real(wp), intent(inout) :: force(:, :)          !! as far as known; then better [force] [pairs, any]
-    !> As far as known, for what springs at SUPORT freedoms bear; then better [length] [directions, any, nodes]
+    !> As far as known, for what springs at SUPORT freedoms bear [length] [directions, any, nodes]
     real(wp), intent(inout) :: u(:, :, :)
     real(wp), allocatable :: nodal(:, :, :)         ! what acts on each loaded node [directions, any, loaded]
     integer, allocatable :: loaded(:), pair(:)
