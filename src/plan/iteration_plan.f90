@@ -3,7 +3,8 @@
 module epcont_plan_iteration_plan
   use epcont_base_kinds, only: wp
   use epcont_model_controls, only: controls_type, method_auto, method_newton, method_secant, &
-    precision_double, precision_mixed, precision_open, precision_single, rule_auto, rule_block
+    precision_double, precision_mixed, precision_open, precision_single, rule_auto, rule_block, &
+    rule_conry
   use epcont_model_model, only: model_type
   implicit none
   private
@@ -67,7 +68,8 @@ contains
 
     associate (asked => model%controls)
       plan%rule_chosen_here = asked%rule == rule_auto
-      plan%by_blocks = asked%rule == rule_block .or. (plan%rule_chosen_here .and. model%pairs >= many_pairs)
+      plan%by_blocks = asked%rule == rule_block .or. &   ! joined bodies that are taken apart, as AUTO has it
+                       (asked%rule /= rule_conry .and. model%pairs >= many_pairs)
       plan%joined = joined
       plan%from_first_pivot = asked%original
       plan%yields = any([(model%can_yield(e), e=1, model%elements)])
