@@ -36,6 +36,7 @@ contains
     type(scaled_problem) :: scaled
     type(rigid_start) :: rigid
     type(motion_matrix) :: motion   ! A of all motions, scaled [n, m]
+    logical :: blocks_first
 
     scaled = scale_problem(problem)
     motion = scaled%motion
@@ -50,10 +51,12 @@ contains
     end if
     scaled%first_touching = rigid%touching
     call drop_motions(scaled, rigid%redundant)
-    if (present(by_blocks)) then
-      if (by_blocks) call solve_by_blocks()
-    end if
+    blocks_first = .false.
+    if (present(by_blocks)) blocks_first = by_blocks
+    if (blocks_first) call solve_by_blocks()
     if (.not. solution%by_blocks) call solve_by_simplex()
+    ! Rounding of a long path may hide a set that another way finds.
+    if (solution%state == contact_stalled .and. .not. blocks_first) call solve_by_blocks()
 
   contains
 
