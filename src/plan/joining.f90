@@ -7,12 +7,15 @@ module epcont_plan_joining
   use epcont_model_model, only: model_type
   implicit none
   private
-  public :: can_join, joins, many_of_pairs
+  public :: can_join, joins, many_of
 
   !> Operations that the flexibility takes, for each node, from which on the bodies are joined. Measured on
   !! two blocks, 43 000 nodes, level at 1 500 pairs (2E5), .8 of the time at 1 900, and on strips, a third at
   !! 2 800.
   real(wp), parameter :: many_of_pairs = 2.0e5_wp
+  !> The same where something yields: F is made in each iteration, and the set of contacts hardly changes then
+  !! (a dovetail, 7E4: two thirds of the time).
+  real(wp), parameter :: many_where_yielding = 5.0e4_wp
   !> Free motions up to which AUTO joins bodies: what a load along each does is looked at on all of them.
   integer, parameter :: most_motions = 40
 
@@ -33,8 +36,16 @@ contains
     pairs = new_incidence(model%bodies_of_pairs(), model%bodies)
     own = pairs%start(2:) - pairs%start(:model%bodies)
     ! Of each body the inverse, and of F two thirds of its cube.
-    joins = sum(own**3) + 2.0_wp/3.0_wp*(0.5_wp*sum(own**2))**1.5_wp > many_of_pairs*model%nodes
+    joins = sum(own**3) + 2.0_wp/3.0_wp*(0.5_wp*sum(own**2))**1.5_wp > many_of(model)*model%nodes
   end function joins
+
+  !> Operations of the flexibility, for each node, from which on AUTO joins the bodies.
+  pure real(wp) function many_of(model)
+    type(model_type), intent(in) :: model   !! the scene
+    integer :: e
+
+    many_of = merge(many_where_yielding, many_of_pairs, any([(model%can_yield(e), e=1, model%elements)]))
+  end function many_of
 
   !> Can it have? At each pair something gives way.
   logical function can_join(model)

@@ -8,7 +8,7 @@ module epcont_report_plan_text
       solver_band, solver_frontal, solver_name
   use epcont_model_model, only: line_contact, model_type
   use epcont_plan_iteration_plan, only: iteration_plan, many_pairs
-  use epcont_plan_joining, only: many_of_pairs
+  use epcont_plan_joining, only: many_of
   use epcont_plan_numbering, only: many_of_flexibility, many_operations
   use epcont_plan_planned_scene, only: planned_scene
   use epcont_report_columns, only: column, state, table_type, whole, word
@@ -117,7 +117,7 @@ contains
       else if (iteration%joined) then
         call say('contact by joined bodies, one system below, without their flexibility (JOINED)')
         if (iteration%rule_chosen_here) call say('  chosen here (AUTO): faster where the '// &
-          'flexibility takes more than '//short_real(many_of_pairs)//' operations a node')
+          'flexibility takes more than '//short_real(many_of(scene%model))//' operations a node')
       else if (.not. iteration%by_blocks) then
         call say('contact by the simplex with contact entry rule (CONRY)')
       else
