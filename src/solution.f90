@@ -96,7 +96,8 @@ contains
     type(contact_line) :: line
 
     call solve_as_planned()
-    failed = linear%joined%failed
+    failed = linear%joined%failed .or. &
+             scene%numbering%joined .and. answer%failed_body > 0 .and. .not. answer%lacks_memory
     if (failed .or. is_without_displacements()) return
     if (scene%numbering%joined) failed = .not. linear%joined%are_unique(scene, linear%factored_bodies)
     if (failed) return
