@@ -15,6 +15,7 @@
 !> they are cut where it is least along them: then each makes it less.
 module epcont_linear_joined_contact
   use epcont_assembly_bodies, only: factored_bodies, prescribe
+  use epcont_base_bracket, only: bracket
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: lost_digits, negligible, no_effect
   use epcont_contact_equilibrium, only: find_rigid_start, rigid_start
@@ -261,29 +262,23 @@ contains
       end associate
     end subroutine take_step
 
-    !> Up to where the function is least along the step, by regula falsi (Illinois) and halving.
+    !> Up to where the function is least along the step, by regula falsi and geometric means.
     real(wp) function length_of_step() result(t)
-      real(wp) :: at(2), slopes(2), begin, now   ! before and behind the zero of the slope
-      real(wp) :: curvature
-      integer :: i, last, side
+      type(bracket) :: zero   ! of the slope
+      real(wp) :: begin, curvature, now
+      integer :: i
 
       curvature = sum(spread(bodies%operator%volume, 1, components)*strain*bodies%law%increment(strain))
       t = 1.0_wp
       begin = slope(0.0_wp, curvature)
-      at = [0.0_wp, 1.0_wp]
-      slopes = [begin, slope(1.0_wp, curvature)]
-      if (slopes(2) <= flat_enough*abs(begin)) return
-      last = 0
+      zero = bracket([0.0_wp, 1.0_wp], [begin, slope(1.0_wp, curvature)])
+      if (zero%values(2) <= flat_enough*abs(begin)) return
       do i = 1, step_limit
-        t = (at(1)*slopes(2) - at(2)*slopes(1))/(slopes(2) - slopes(1))
-        if (mod(i, 3) == 0) t = sqrt(max(at(1), tiny(1.0_wp)))*sqrt(at(2))
+        t = zero%likely()
+        if (mod(i, 3) == 0) t = sqrt(max(zero%at(1), tiny(1.0_wp)))*sqrt(zero%at(2))
         now = slope(t, curvature)
         if (abs(now) <= flat_enough*abs(begin)) return
-        side = merge(2, 1, now > 0.0_wp)
-        at(side) = t
-        slopes(side) = now
-        if (side == last) slopes(3 - side) = 0.5_wp*slopes(3 - side)
-        last = side
+        call zero%take(t, now)
       end do
     end function length_of_step
 

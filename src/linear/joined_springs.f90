@@ -63,17 +63,17 @@ contains
     pure real(wp) function softer_side(pair) result(softer)
       integer, intent(in) :: pair
       real(wp) :: side
-      integer :: i
+      integer :: first, i, last
 
       softer = huge(1.0_wp)
-      associate (first => scene%model%row_start(pair), last => scene%model%row_start(pair + 1) - 1)
+      first = scene%model%row_start(pair)
+      last = scene%model%row_start(pair + 1) - 1
       associate (node => scene%model%row_node(first:last), weight => scene%model%row_weight(first:last))
         do i = 1, size(node)
           side = sum(abs(weight)*stiffness(node), mask=scene%model%body(node) == scene%model%body(node(i)) &
                      .and. .not. all(scene%model%held(:, node), dim=1))
           if (side > 0.0_wp) softer = min(softer, side)
         end do
-      end associate
       end associate
       if (softer >= huge(1.0_wp)) softer = 0.0_wp
     end function softer_side

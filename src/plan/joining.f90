@@ -7,7 +7,7 @@ module epcont_plan_joining
   use epcont_model_model, only: model_type
   implicit none
   private
-  public :: can_join, joins, many_of
+  public :: joins, many_of
 
   !> Operations that the flexibility takes, for each node, from which on the bodies are joined. Measured on
   !! two blocks, 43 000 nodes, level at 1 500 pairs (2E5), .8 of the time at 1 900, and on strips, a third at
@@ -25,19 +25,24 @@ contains
   logical function joins(model, motions)
     type(model_type), intent(in) :: model   !! the scene
     integer, intent(in) :: motions          !! that are free
-    real(wp) :: own(model%bodies)           ! pairs of each body
+
+    joins = model%controls%rule == rule_joined
+    if (model%controls%rule == rule_auto .and. motions <= most_motions .and. &
+        any(model%controls%precision == [precision_open, precision_double])) &
+      joins = operations_of_flexibility(model) > many_of(model)*model%nodes
+    if (joins) joins = can_join(model)
+  end function joins
+
+  !> Of each body the inverse of its part, and of F two thirds of its cube.
+  pure real(wp) function operations_of_flexibility(model) result(operations)
+    type(model_type), intent(in) :: model
+    real(wp) :: own(model%bodies)   ! pairs of each body
     type(incidence) :: pairs
 
-    joins = .false.
-    if (.not. can_join(model)) return
-    joins = model%controls%rule == rule_joined
-    if (joins .or. model%controls%rule /= rule_auto .or. motions > most_motions .or. &
-        all(model%controls%precision /= [precision_open, precision_double])) return
     pairs = new_incidence(model%bodies_of_pairs(), model%bodies)
     own = pairs%start(2:) - pairs%start(:model%bodies)
-    ! Of each body the inverse, and of F two thirds of its cube.
-    joins = sum(own**3) + 2.0_wp/3.0_wp*(0.5_wp*sum(own**2))**1.5_wp > many_of(model)*model%nodes
-  end function joins
+    operations = sum(own**3) + 2.0_wp/3.0_wp*(0.5_wp*sum(own**2))**1.5_wp
+  end function operations_of_flexibility
 
   !> Operations of the flexibility, for each node, from which on AUTO joins the bodies.
   pure real(wp) function many_of(model)

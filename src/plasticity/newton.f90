@@ -4,6 +4,7 @@
 !> all points along it satisfy supports and contact, since both its ends do. The search looks for the zero of
 !> the slope (f_int - f).d, since differences of the energy itself drown in rounding.
 module epcont_plasticity_newton
+  use epcont_base_bracket, only: bracket
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: components
   use epcont_linear_linear_problem, only: linear_problem
@@ -92,30 +93,24 @@ contains
 
   contains
 
-    !> The zero of the slope of the energy, from 0 to 1: regula falsi of Illinois.
+    !> The zero of the slope of the energy, from 0 to 1.
     subroutine find_length(length, point)
       real(wp), intent(out) :: length
       type(point_state), allocatable, intent(out) :: point(:)   !! at that length; not allocated for 1
-      real(wp) :: at(2), begin, slope, slopes(2)   ! before and behind the zero
-      integer :: k, last, side
+      type(bracket) :: zero
+      real(wp) :: begin, slope
+      integer :: k
 
       length = 1.0_wp
-      at = [0.0_wp, 1.0_wp]
-      slopes(1) = slope_of(about%point)
-      slopes(2) = slope_of(found%point)
-      begin = slopes(1)
-      if (begin >= 0.0_wp .or. slopes(2) <= -flat_enough*begin) return
-      last = 0
+      zero = bracket([0.0_wp, 1.0_wp], [slope_of(about%point), slope_of(found%point)])
+      begin = zero%values(1)
+      if (begin >= 0.0_wp .or. zero%values(2) <= -flat_enough*begin) return
       do k = 1, most_slopes
-        length = (at(1)*slopes(2) - at(2)*slopes(1))/(slopes(2) - slopes(1))
+        length = zero%likely()
         point = linear%materials%states(about%strain + length*along)
         slope = slope_of(point)
         if (abs(slope) <= -found_enough*begin) return
-        side = merge(2, 1, slope > 0.0_wp)
-        at(side) = length
-        slopes(side) = slope
-        if (side == last) slopes(3 - side) = 0.5_wp*slopes(3 - side)
-        last = side
+        call zero%take(length, slope)
       end do
     end subroutine find_length
 
