@@ -4,11 +4,12 @@
 !> is a fault is for the caller to say, in the words of the problem.
 module epcont_linalg_dense
   use epcont_base_kinds, only: wp
-  use epcont_linalg_lapack, only: dgemm, dgesv, dgesvd, dpotrf, dpotri, dpotrs, dpstrf, dsyrk, dtrsm
+  use epcont_linalg_lapack, only: dgemm, dgesv, dgesvd, dpbcon, dpbtrf, dpotrf, dpotri, dpotrs, dpstrf, &
+    dsyrk, dtrsm
   implicit none
   private
   public :: cholesky_factor, cholesky_inverse, cholesky_solve, extend_cholesky
-  public :: lu_solve, pivoted_cholesky, add_inner_products, add_product, null_space
+  public :: least_eigenvalue, lu_solve, pivoted_cholesky, add_inner_products, add_product, null_space
 
 contains
 
@@ -117,6 +118,23 @@ contains
     call dgemm('T', 'N', size(c, 1), size(c, 2), rows, 1.0_wp, a, size(a, 1), b, size(b, 1), &
                1.0_wp, c, size(c, 1))
   end subroutine add_inner_products
+
+  !> Smallest eigenvalue of a band matrix, but for its estimate; 0 where it is not positive definite.
+  pure real(wp) function least_eigenvalue(band) result(least)
+    real(wp), intent(in) :: band(:, :)   !! symmetric: the diagonal, then what is below it [rows, n]
+    real(wp), allocatable :: factor(:, :)
+    real(wp) :: work(3*size(band, 2))
+    integer :: info, iwork(size(band, 2))
+
+    factor = band
+    least = 0.0_wp
+    associate (rows => size(band, 1), n => size(band, 2))
+      call dpbtrf('L', n, rows - 1, factor, rows, info)
+      if (info /= 0) return
+      call dpbcon('L', n, rows - 1, factor, rows, 1.0_wp, least, work, iwork, info)
+      least = min(least, minval(factor(1, :))**2)
+    end associate
+  end function least_eigenvalue
 
   !> Orthonormal basis of the x with a x = 0.
   pure function null_space(a, tolerance) result(basis)
