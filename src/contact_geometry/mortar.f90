@@ -147,7 +147,7 @@ contains
           reach = min(reach, 2.0_wp*max(slave%chord_length(s), maxval(abs(faces%row(row(:2))%gap))))
         middle = 0.5_wp*(slave%x(:, 1, s) + slave%x(:, 2, s))
         within = reach + slave%chord_length(s)
-        near = master%in_box(middle - within, middle + within)
+        near = master%in_box(middle - within, middle + within, slave%box_of(s), slave%normals_of(s))
         cut = [0.0_wp, 1.0_wp]
         do i = 1, size(near)
           do k = 1, 2

@@ -37,10 +37,12 @@ module epcont_geometry_boundary_line
     !! corner.
     logical, allocatable :: mirrored(:, :)     !! [2, sides]
     real(wp), allocatable :: end_normal(:, :, :)   !! [2, 2, sides]
-    type(box_tree), private :: tree            !! of boxes round the sides
+    type(box_tree), private :: tree            !! of boxes round the sides, with their normals
   contains
     procedure :: set_boxes
     procedure :: in_box
+    procedure :: box_of
+    procedure :: normals_of
     procedure :: pick
     procedure :: chord_length
     procedure :: own_normal
@@ -71,25 +73,54 @@ module epcont_geometry_boundary_line
 
 contains
 
-  !> Put boxes round the sides, each beyond its side by half of the side's length, as the curve over it may
-  !! be.
+  !> Put boxes round the sides.
   pure subroutine set_boxes(self)
     class(boundary_line), intent(inout) :: self
-    real(wp), dimension(2, size(self%element)) :: middle, reach
+    real(wp), dimension(2, 2, size(self%element)) :: box, normals
     integer :: i
 
-    middle = 0.5_wp*(self%x(:, 1, :) + self%x(:, 2, :))
-    reach = spread([(self%chord_length(i), i=1, size(self%element))], 1, 2)
-    self%tree = new_box_tree(middle - reach, middle + reach)
+    do i = 1, size(self%element)
+      box(:, :, i) = self%box_of(i)
+      normals(:, :, i) = self%normals_of(i)
+    end do
+    self%tree = new_box_tree(box(:, 1, :), box(:, 2, :), normals)
   end subroutine set_boxes
 
-  !> The sides whose boxes meet a box, in their order.
-  pure function in_box(self, low, high) result(sides)
+  !> Low and high corner of a side's box, beyond it by half of its length, as the curve over it may be.
+  pure function box_of(self, side) result(box)
     class(boundary_line), intent(in) :: self
-    real(wp), intent(in) :: low(2), high(2)   !! its opposite corners
+    integer, intent(in) :: side   !! which side
+    real(wp) :: box(2, 2)   !! [length]
+
+    box(:, 1) = 0.5_wp*(self%x(:, 1, side) + self%x(:, 2, side)) - self%chord_length(side)
+    box(:, 2) = 0.5_wp*(self%x(:, 1, side) + self%x(:, 2, side)) + self%chord_length(side)
+  end function box_of
+
+  !> Least and largest components of the normals along a side, and somewhat beyond its ends: of a parabola
+  !! they lie between those of the ends and its control point.
+  pure function normals_of(self, side) result(normals)
+    class(boundary_line), intent(in) :: self
+    integer, intent(in) :: side   !! which side
+    real(wp) :: normals(2, 2), control(2)
+
+    associate (normal => self%normal(:, :, side))
+      control = normal(:, 1)
+      if (self%segment(3, side) > 0) control = 2.0_wp*normal(:, 3) - 0.5_wp*(normal(:, 1) + normal(:, 2))
+      normals(:, 1) = min(normal(:, 1), normal(:, 2), control) - 10.0_wp*beyond
+      normals(:, 2) = max(normal(:, 1), normal(:, 2), control) + 10.0_wp*beyond
+    end associate
+  end function normals_of
+
+  !> The sides, in their order, whose boxes meet a box, and that are met from a place of another one, along
+  !! their own normals or, where it is given, along a direction.
+  pure function in_box(self, low, high, from, along) result(sides)
+    class(boundary_line), intent(in) :: self
+    real(wp), intent(in) :: low(2), high(2)   !! opposite corners of the box [length]
+    real(wp), intent(in) :: from(2, 2)        !! low and high corner of the other [length]
+    real(wp), intent(in), optional :: along(2, 2)   !! least and largest components of the direction
     integer, allocatable :: sides(:)
 
-    sides = self%tree%meeting(low, high)
+    sides = self%tree%meeting(low, high, from, along)
     sides = sides(sorted_order(sides))   ! not by the tree's: of equal ones the first counts
   end function in_box
 
@@ -143,7 +174,6 @@ contains
     integer :: end
 
     place%segment = segment
-    if (is_far_aside()) return
     side = side_of(self, segment)
     from = point - self%x(:, 1, segment)
     call find_foot(place%s, place%found)
@@ -166,13 +196,6 @@ contains
     end associate
 
   contains
-
-    !> Is the point farther along the chord than is looked for? Of fine lines most sides are so.
-    pure logical function is_far_aside()
-      associate (start => self%x(:, 1, segment), chord => self%x(:, 2, segment) - self%x(:, 1, segment))
-        is_far_aside = abs(dot_product(point - start, chord)) > 1.1_wp*farthest*dot_product(chord, chord)
-      end associate
-    end function is_far_aside
 
     !> The place whose normal leads to the point, by Newton's method.
     pure subroutine find_foot(s, found)

@@ -18,9 +18,9 @@ module epcont_geometry_facing
   real(wp), parameter :: against = -0.05_wp
   !> Normals that differ by less (cosine) are those of one face: 10 degrees.
   real(wp), parameter, public :: same_face = 0.985_wp
-  !> Most points have the line before their eyes: it is looked for within search/widening**rounds first.
-  real(wp), parameter :: widening = 8.0_wp
-  integer, parameter :: rounds = 3
+  !> Most points have the line before their eyes: it is looked for within so many lengths of their own side
+  !! first, and so many times farther in each round.
+  real(wp), parameter :: nearby = 3.0_wp, widening = 8.0_wp
   real(wp), parameter :: &
     !> Bodies are not thinner than this part of their sides: where the gap is smaller nothing stands between.
     thin = 1.0e-3_wp, &
@@ -69,18 +69,21 @@ contains
     type(facing_type), allocatable :: met(:)
     integer, allocatable :: sides(:)
     real(wp) :: ahead(2), more, rounding, within
-    integer :: k, round
+    integer :: k
 
     rounding = cancelled*maxval(abs(from%x))
     ahead = from%x + aside*from%along
     more = min(search, 2.0_wp*norm2(from%along))
-    do round = rounds, 0, -1
-      within = search/widening**round
-      sides = line%in_box(from%x - within, from%x + within)
+    within = max(nearby*more, least_difference*search)
+    do
+      within = min(within, search)
+      sides = line%in_box(from%x - within, from%x + within, spread(from%x, 2, 2))
       met = [(look_at(sides(k)), k=1, size(sides))]
       face = best_two(pack(met, met%found))
       ! Sides that were left out are farther than `within`.
       if (face(1)%found .and. abs(face(1)%gap) + more < within - 2.0_wp*least_difference*search) exit
+      if (within >= search) exit
+      within = widening*within
     end do
     if (abs(face(2)%gap) > abs(face(1)%gap) + more) face(2) = facing_type()
     where (abs(face%gap) <= rounding) face%gap = 0.0_wp
@@ -140,7 +143,8 @@ contains
       near = max([from%rise, rise_of(line, face%segment) + aside*norm2(from%along)]/abs(face%gap), at_end)
       if (sum(near) >= 1.0_wp) return
       place = ahead - face%gap*face%normal
-      between = obstacles%in_box(min(ahead, place), max(ahead, place))
+      between = obstacles%in_box(min(ahead, place), max(ahead, place), spread(ahead, 2, 2), &
+                                 spread(place - ahead, 2, 2))
       do i = 1, size(between)
         associate (side => obstacles%x(:, :2, between(i)))
           part = crossing(ahead, place - ahead, side(:, 1), side(:, 2) - side(:, 1))
