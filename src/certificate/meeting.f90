@@ -7,7 +7,9 @@ module epcont_certificate_meeting
   use epcont_certificate_findings, only: is_deeper, is_worse, overlap_place, rated
   use epcont_contact_geometry_mates, only: find_mates, is_mate
   use epcont_element_kinematics, only: directions
+  use epcont_geometry_box_tree, only: box_query
   use epcont_geometry_outline_shape, only: near_place, new_outline_shape, outline_shape
+  use epcont_geometry_plane, only: span_along
   use epcont_model_model, only: model_type
   implicit none
   private
@@ -56,13 +58,20 @@ contains
     type(model_type), intent(in) :: model        !! the scene
     real(wp), intent(in) :: displacement(:, :)   !! [length] [directions, nodes]
     type(search_type) :: search
-    integer :: k
+    integer :: k, side
 
     associate (outline => model%body_outline, x => model%x)
       search%drawn = new_outline_shape(outline, x)
       search%now = new_outline_shape(outline, x + displacement)
       ! A middle that is not there has that of the first node, for which nobody asks.
       search%motion = reshape(displacement(:, [max(outline%node, 1)]), [directions, 3, outline%sides])
+      do k = 1, outline%parts
+        associate (first => outline%first(k), last => outline%first(k + 1) - 1)
+          call search%now%side_tree(k)%set_spans(reshape( &
+              [(span_along(search%motion(:, :, side), outline%node(3, side) > 0), side=first, last)], &
+              [directions, 2, last - first + 1]))
+        end associate
+      end do
       search%allowance = new_allowance(model, search%drawn, search%now)
       search%mate = find_mates(model)
       search%moved = maxval(norm2(displacement, dim=1))
@@ -104,14 +113,14 @@ contains
                        search%now%at(side, s))
   end function point_on
 
-  !> The sides of a part whose boxes meet the one from `low` to `high`.
-  pure function sides_meeting(shape, part, low, high) result(side)
+  !> The sides of a part whose boxes are looked for.
+  pure function sides_meeting(shape, part, query) result(side)
     type(outline_shape), intent(in) :: shape   !! the outlines, drawn or displaced
     integer, intent(in) :: part                !! of the outlines
-    real(wp), intent(in) :: low(directions), high(directions)    !! [length]
+    class(box_query), intent(in) :: query      !! which boxes
     integer, allocatable :: side(:)
 
-    side = shape%side_tree(part)%meeting(low, high)
+    side = shape%side_tree(part)%meeting(query)
     side = side + (shape%outline%first(part) - 1)
   end function sides_meeting
 
@@ -257,7 +266,8 @@ contains
 
       allowed = search%allowance%of(side, found%meeting)
       within = about*found%distance
-      others = sides_meeting(search%now, search%now%outline%part(side), found%x - within, found%x + within)
+      others = sides_meeting(search%now, search%now%outline%part(side), &
+                             box_query(found%x - within, found%x + within))
       do k = 1, size(others)
         near = search%now%near_side(others(k), found%x)
         if (near%distance <= within) allowed = max(allowed, search%allowance%of(others(k), found%meeting))

@@ -16,6 +16,7 @@ module epcont_certificate_scene
       part_along, point_on, point_type, search_type, sides_meeting
   use epcont_certificate_way, only: look_at_ways
   use epcont_element_kinematics, only: directions
+  use epcont_geometry_box_tree, only: box_query
   use epcont_geometry_outline_shape, only: near_place, outline_shape
   use epcont_geometry_plane, only: cross_product, crossing
   use epcont_model_model, only: model_type
@@ -76,7 +77,7 @@ contains
 
       low = search%now%low(:, side)
       high = search%now%high(:, side)
-      parts = search%now%part_tree%meeting(low, high)
+      parts = search%now%part_tree%meeting(box_query(low, high))
       do b = 1, size(parts)
         if (parts(b) == search%now%outline%part(side)) cycle
         crossing = crossings(search%now, side, parts(b))
@@ -86,7 +87,7 @@ contains
         end do
       end do
       h = 0.5_wp*norm2(search%now%chord(side))
-      others = sides_meeting(search%now, search%now%outline%part(side), low - h, high + h)
+      others = sides_meeting(search%now, search%now%outline%part(side), box_query(low - h, high + h))
       do b = 1, size(others)
         call look_at_itself(side, others(b))
       end do
@@ -99,7 +100,7 @@ contains
       integer, allocatable :: parts(:)
       integer :: b
 
-      parts = search%now%part_tree%meeting(search%middle(part)%x, search%middle(part)%x)
+      parts = search%now%part_tree%meeting(box_query(search%middle(part)%x, search%middle(part)%x))
       do b = 1, size(parts)
         if (parts(b) /= part) call look_at_point(search%middle(part), parts(b))
       end do
@@ -251,7 +252,7 @@ contains
     integer :: k
 
     allocate (place(0))
-    near = sides_meeting(now, other, now%low(:, side), now%high(:, side))
+    near = sides_meeting(now, other, box_query(now%low(:, side), now%high(:, side)))
     do k = 1, size(near)
       part = crossing(now%x(:, 1, side), now%chord(side), now%x(:, 1, near(k)), now%chord(near(k)))
       if (all(part >= 0.0_wp .and. part <= 1.0_wp)) call insert(part(1), place)

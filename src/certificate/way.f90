@@ -2,16 +2,14 @@
 !> straight from where they were drawn to where they are, as those of the other outline do, and may enter it
 !> and come out again.
 !>
-!> A path is looked at in a frame that moves with the other body as a whole. There that body's sides are about
-!> where they are displaced, so its tree of boxes tells which of them the path meets, and nothing is built
-!> anew.
+!> The tree of the displaced sides knows how far each has moved, and so which of them a point meets on its way.
 module epcont_certificate_way
   use epcont_base_kinds, only: wp
   use epcont_certificate_findings, only: is_worse, overlap_place, rated, scene_type
   use epcont_certificate_meeting, only: insert, meet, point_on, point_type, search_type, &
       sides_meeting
   use epcont_element_kinematics, only: directions
-  use epcont_geometry_box_tree, only: box_tree, new_box_tree
+  use epcont_geometry_box_tree, only: box_query, box_tree, motion_query, new_box_tree
   use epcont_geometry_outline_shape, only: near_place, outline_shape
   use epcont_geometry_plane, only: cross_product
   implicit none
@@ -85,7 +83,7 @@ contains
       integer, allocatable :: parts(:)
       integer :: b
 
-      parts = part_tree%meeting(min(point%drawn, point%x), max(point%drawn, point%x))
+      parts = part_tree%meeting(box_query(min(point%drawn, point%x), max(point%drawn, point%x)))
       do b = 1, size(parts)
         if (parts(b) /= search%now%outline%part(point%side) .and. straight(parts(b))) &
           call look_at_way(point, parts(b))
@@ -104,8 +102,9 @@ contains
       associate (start => point%drawn + mean(:, part), stop => point%x, wide => spread_of(part))
         length = norm2(stop - start) + wide
         if (length <= search%least) return
-        sides = sides_meeting(search%now, part, min(start, stop) - wide, max(start, stop) + wide)
       end associate
+      sides = sides_meeting(search%now, part, motion_query(point%x - search%least, point%x + search%least, &
+                                                           point%motion))
       allocate (time(0))
       do k = 1, size(sides)
         call cross_side(point, sides(k), time)
@@ -181,13 +180,12 @@ contains
       real(wp), intent(in) :: time, reach     !! from 0 to 1; [length]
       type(near_place) :: place
       integer, allocatable :: near(:), sides(:)
-      real(wp) :: wide, x(directions), x_now(directions)
+      real(wp) :: x(directions)
       integer :: k
 
       x = point%drawn + time*point%motion
-      x_now = x + (1.0_wp - time)*mean(:, part)
-      wide = reach + (1.0_wp - time)*spread_of(part)
-      near = sides_meeting(search%now, part, x_now - wide, x_now + wide)
+      near = sides_meeting(search%now, part, motion_query(point%x - reach, point%x + reach, point%motion, &
+                                                          [time, time]))
       ! At a node both sides say what is inside.
       sides = [near, search%now%outline%before(near), search%now%outline%after(near)]
       between%x(:, :, sides) = search%drawn%x(:, :, sides) + time*search%motion(:, :, sides)

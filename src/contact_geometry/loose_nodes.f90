@@ -8,6 +8,7 @@ module epcont_contact_geometry_loose_nodes
   use epcont_base_text, only: short_real, text_of
   use epcont_base_tolerances, only: coincident
   use epcont_contact_geometry_mates, only: find_mates, is_mate
+  use epcont_geometry_box_tree, only: box_query
   use epcont_geometry_outline_shape, only: near_place, outline_shape
   use epcont_model_finding, only: and_more, findings, of_element, of_node
   use epcont_model_model, only: model_type
@@ -143,7 +144,7 @@ contains
       met = [integer ::]
       do side = model%body_outline%first(part), model%body_outline%first(part + 1) - 1
         associate (within => coincident*norm2(drawn%chord(side)))
-          near = drawn%part_tree%meeting(drawn%low(:, side) - within, drawn%high(:, side) + within)
+          near = drawn%part_tree%meeting(box_query(drawn%low(:, side) - within, drawn%high(:, side) + within))
         end associate
         do i = 1, size(near)
           if (near(i) == part) cycle

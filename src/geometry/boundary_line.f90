@@ -10,8 +10,8 @@
 module epcont_geometry_boundary_line
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: sorted_order
-  use epcont_geometry_box_tree, only: box_tree, new_box_tree
-  use epcont_geometry_plane, only: cross_product, right_of, unit
+  use epcont_geometry_box_tree, only: box_query, box_tree, new_box_tree
+  use epcont_geometry_plane, only: cross_product, right_of, span_along, unit
   implicit none
   private
   public :: boundary_line, facing_type
@@ -83,7 +83,8 @@ contains
       box(:, :, i) = self%box_of(i)
       normals(:, :, i) = self%normals_of(i)
     end do
-    self%tree = new_box_tree(box(:, 1, :), box(:, 2, :), normals)
+    self%tree = new_box_tree(box(:, 1, :), box(:, 2, :))
+    call self%tree%set_spans(normals)
   end subroutine set_boxes
 
   !> Low and high corner of a side's box, beyond it by half of its length, as the curve over it may be.
@@ -96,31 +97,23 @@ contains
     box(:, 2) = 0.5_wp*(self%x(:, 1, side) + self%x(:, 2, side)) + self%chord_length(side)
   end function box_of
 
-  !> Least and largest components of the normals along a side, and somewhat beyond its ends: of a parabola
-  !! they lie between those of the ends and its control point.
+  !> Least and largest components of the normals along a side, and somewhat beyond its ends.
   pure function normals_of(self, side) result(normals)
     class(boundary_line), intent(in) :: self
     integer, intent(in) :: side   !! which side
-    real(wp) :: normals(2, 2), control(2)
+    real(wp) :: normals(2, 2)
 
-    associate (normal => self%normal(:, :, side))
-      control = normal(:, 1)
-      if (self%segment(3, side) > 0) control = 2.0_wp*normal(:, 3) - 0.5_wp*(normal(:, 1) + normal(:, 2))
-      normals(:, 1) = min(normal(:, 1), normal(:, 2), control) - 10.0_wp*beyond
-      normals(:, 2) = max(normal(:, 1), normal(:, 2), control) + 10.0_wp*beyond
-    end associate
+    normals = span_along(self%normal(:, :, side), self%segment(3, side) > 0)
+    normals = normals + 10.0_wp*beyond*spread([-1.0_wp, 1.0_wp], 1, 2)
   end function normals_of
 
-  !> The sides, in their order, whose boxes meet a box, and that are met from a place of another one, along
-  !! their own normals or, where it is given, along a direction.
-  pure function in_box(self, low, high, from, along) result(sides)
+  !> The sides whose boxes are looked for, in their order. Their vectors are their normals.
+  pure function in_box(self, query) result(sides)
     class(boundary_line), intent(in) :: self
-    real(wp), intent(in) :: low(2), high(2)   !! opposite corners of the box [length]
-    real(wp), intent(in) :: from(2, 2)        !! low and high corner of the other [length]
-    real(wp), intent(in), optional :: along(2, 2)   !! least and largest components of the direction
+    class(box_query), intent(in) :: query   !! which boxes
     integer, allocatable :: sides(:)
 
-    sides = self%tree%meeting(low, high, from, along)
+    sides = self%tree%meeting(query)
     sides = sides(sorted_order(sides))   ! not by the tree's: of equal ones the first counts
   end function in_box
 

@@ -1,26 +1,53 @@
-!> Which of many boxes meet a given one, without looking at all of them.
+!> Which of many boxes meet a given one, without looking at all of them; of these, which a line meets, or a
+!> box that moves.
 !>
 !> The boxes are halved by their middles, across the longer way of their extent, again and again; node i of
 !> the tree has the children 2i and 2i + 1, and each node has the box round all that lies below it. A leaf is
-!> one box. Boxes may have directions, too: normals of what is in them.
+!> one box. Boxes may have vectors, too: normals of what is in them, or how it moves.
 module epcont_geometry_box_tree
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: halve
   implicit none
   private
-  public :: box_tree, new_box_tree
+  public :: box_tree, box_query, line_query, motion_query, new_box_tree
 
   type :: box_tree
     integer, allocatable :: item(:)      !! which box a leaf is; 0: no leaf [nodes]
     real(wp), allocatable :: low(:, :)   !! corner of each node's box [length] [2, nodes]
     real(wp), allocatable :: high(:, :)  !! the opposite one [length] [2, nodes]
-    !> Least and largest components of the directions of what is in each node's box; or none are known
+    !> Least and largest components of the vectors of what is in each node's box; not allocated: it has none
     !! [2, 2, nodes]
-    real(wp), allocatable :: way(:, :, :)
+    real(wp), allocatable :: span(:, :, :)
   contains
+    procedure :: set_spans
     procedure :: meeting
     procedure :: away
   end type box_tree
+
+  !> What is looked for: boxes that meet this one.
+  type :: box_query
+    real(wp) :: low(2) = 0.0_wp, high(2) = 0.0_wp   !! [length]
+  contains
+    procedure :: may_meet
+  end type box_query
+
+  !> Those that a line may pass through, too: one from a place of another box, between some directions.
+  type, extends(box_query) :: line_query
+    real(wp) :: from(2, 2) = 0.0_wp      !! low and high corner of that box [length]
+    logical :: by_vectors = .false.      !! the directions are the vectors of each box that is looked for
+    real(wp) :: along(2, 2) = 0.0_wp     !! else their least and largest components
+  contains
+    procedure :: may_meet => may_pass
+  end type line_query
+
+  !> Those that a moving box meets on its way, while each moves by its vectors: both are where they are told to
+  !! be at time 1, and went there straight from time 0 on.
+  type, extends(box_query) :: motion_query
+    real(wp) :: motion(2) = 0.0_wp                 !! of the box that is given [length]
+    real(wp) :: time(2) = [0.0_wp, 1.0_wp]         !! from when until when
+  contains
+    procedure :: may_meet => may_be_met
+  end type motion_query
 
   !> Nodes that wait while a tree is walked, at most: one a level and one more.
   integer, parameter, public :: most_waiting = bit_size(1) + 1
@@ -28,10 +55,8 @@ module epcont_geometry_box_tree
 contains
 
   !> The tree of boxes from `low` to `high`.
-  pure function new_box_tree(low, high, way) result(tree)
+  pure function new_box_tree(low, high) result(tree)
     real(wp), intent(in) :: low(:, :), high(:, :)   !! [length] [2, boxes]
-    !> Least and largest components of the directions of each [2, 2, boxes]
-    real(wp), intent(in), optional :: way(:, :, :)
     type(box_tree) :: tree
     integer, allocatable :: first(:), last(:), order(:)
     integer :: axis, i, middle, nodes
@@ -40,7 +65,6 @@ contains
     allocate (tree%item(nodes), first(nodes), last(nodes), source=0)
     allocate (tree%low(2, nodes), source=huge(1.0_wp))
     tree%high = -tree%low
-    if (present(way)) allocate (tree%way(2, 2, nodes), source=0.0_wp)
     order = [(i, i=1, size(low, 2))]
     if (size(order) == 0) return   ! a root that nothing meets
     first(1) = 1
@@ -50,8 +74,6 @@ contains
       associate (own => order(first(i):last(i)))
         tree%low(:, i) = minval(low(:, own), dim=2)
         tree%high(:, i) = maxval(high(:, own), dim=2)
-        if (present(way)) tree%way(:, 1, i) = minval(way(:, 1, own), dim=2)
-        if (present(way)) tree%way(:, 2, i) = maxval(way(:, 2, own), dim=2)
         if (size(own) == 1) tree%item(i) = own(1)   ! a leaf
         if (size(own) == 1) cycle
         axis = maxloc(tree%high(:, i) - tree%low(:, i), dim=1)
@@ -63,14 +85,29 @@ contains
     end do
   end function new_box_tree
 
-  !> The boxes that meet the one from `low` to `high`, ascending by their place in the tree. With `from`, only
-  !! those that a line may pass through which begins there: along `along`, or, where that is not given, along a
-  !! direction of the box.
-  pure function meeting(self, low, high, from, along) result(found)
+  !> Give the boxes their vectors.
+  pure subroutine set_spans(self, span)
+    class(box_tree), intent(inout) :: self
+    real(wp), intent(in) :: span(:, :, :)   !! least and largest components of those of each [2, 2, boxes]
+    integer :: i
+
+    allocate (self%span(2, 2, size(self%item)))
+    self%span(:, 1, :) = huge(1.0_wp)
+    self%span(:, 2, :) = -huge(1.0_wp)
+    do i = size(self%item), 1, -1
+      if (self%item(i) > 0) then
+        self%span(:, :, i) = span(:, :, self%item(i))
+      else if (2*i < size(self%item)) then
+        self%span(:, 1, i) = min(self%span(:, 1, 2*i), self%span(:, 1, 2*i + 1))
+        self%span(:, 2, i) = max(self%span(:, 2, 2*i), self%span(:, 2, 2*i + 1))
+      end if
+    end do
+  end subroutine set_spans
+
+  !> The boxes that are looked for, in their order in the tree.
+  pure function meeting(self, query) result(found)
     class(box_tree), intent(in) :: self
-    real(wp), intent(in) :: low(2), high(2)   !! [length]
-    real(wp), intent(in), optional :: from(2, 2)    !! low and high corner of a box, too [length]
-    real(wp), intent(in), optional :: along(2, 2)   !! least and largest components of directions
+    class(box_query), intent(in) :: query   !! which boxes
     integer, allocatable :: found(:)
     integer :: count, i, waiting(most_waiting), waits
 
@@ -81,12 +118,7 @@ contains
     do while (waits > 0)
       i = waiting(waits)
       waits = waits - 1
-      if (any(high < self%low(:, i)) .or. any(low > self%high(:, i))) cycle
-      if (present(along)) then
-        if (.not. may_pass(from, along, self%low(:, i), self%high(:, i))) cycle
-      else if (present(from)) then
-        if (.not. may_pass(from, self%way(:, :, i), self%low(:, i), self%high(:, i))) cycle
-      end if
+      if (.not. query%may_meet(self, i)) cycle
       if (self%item(i) == 0) then
         waiting(waits + 1:waits + 2) = [2*i + 1, 2*i]
         waits = waits + 2
@@ -99,21 +131,56 @@ contains
     found = found(:count)
   end function meeting
 
-  !> May a line from a place in one box, along a direction between two, pass through another box? There the
-  !! vector product of direction and way may be zero.
-  pure logical function may_pass(from, along, low, high)
-    real(wp), intent(in) :: from(2, 2), along(2, 2), low(2), high(2)
-    real(wp) :: least(2), most(2), product(4), way(2)
+  !> Does a box meet that of a node?
+  pure logical function may_meet(self, tree, node)
+    class(box_query), intent(in) :: self
+    type(box_tree), intent(in) :: tree   !! of which
+    integer, intent(in) :: node          !! its node
+
+    may_meet = all(self%low <= tree%high(:, node)) .and. all(self%high >= tree%low(:, node))
+  end function may_meet
+
+  !> May a line pass through a node's box? There the vector product of its direction and the way may vanish.
+  pure logical function may_pass(self, tree, node)
+    class(line_query), intent(in) :: self
+    type(box_tree), intent(in) :: tree   !! of which
+    integer, intent(in) :: node          !! its node
+    real(wp) :: along(2, 2), least(2), most(2), product(4), way(2)
     integer :: k
 
+    may_pass = self%box_query%may_meet(tree, node)
+    if (.not. may_pass) return
+    along = self%along
+    if (self%by_vectors) along = tree%span(:, :, node)
     do k = 1, 2
-      way = [low(3 - k) - from(3 - k, 2), high(3 - k) - from(3 - k, 1)]
+      way = [tree%low(3 - k, node) - self%from(3 - k, 2), tree%high(3 - k, node) - self%from(3 - k, 1)]
       product = [along(k, 1)*way, along(k, 2)*way]
       least(k) = minval(product)
       most(k) = maxval(product)
     end do
     may_pass = least(1) <= most(2) .and. least(2) <= most(1)
   end function may_pass
+
+  !> Does a moving box meet that of a node? Their distances along an axis are linear in time: each leaves a part
+  !! of it.
+  pure logical function may_be_met(self, tree, node)
+    class(motion_query), intent(in) :: self
+    type(box_tree), intent(in) :: tree   !! of which
+    integer, intent(in) :: node          !! its node
+    real(wp) :: ends(2), now(4), rate(4), time(2)
+    integer :: k
+
+    now = [self%high - tree%low(:, node), tree%high(:, node) - self%low]
+    rate = [self%motion - tree%span(:, 2, node), tree%span(:, 1, node) - self%motion]
+    time = self%time
+    may_be_met = .false.
+    do k = 1, 4
+      ends = now(k) - (1.0_wp - time)*rate(k)
+      if (all(ends < 0.0_wp)) return
+      if (any(ends < 0.0_wp)) time(minloc(ends, dim=1)) = time(1) - (time(2) - time(1))*ends(1)/(ends(2) - ends(1))
+    end do
+    may_be_met = .true.
+  end function may_be_met
 
   !> Square of the distance of a point from the box of a node; 0 in it [length**2].
   pure real(wp) function away(self, node, point)

@@ -6,6 +6,7 @@
 module epcont_geometry_facing
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: cancelled, least_difference
+  use epcont_geometry_box_tree, only: line_query
   use epcont_geometry_boundary_line, only: boundary_line, facing_type
   use epcont_geometry_plane, only: crossing
   implicit none
@@ -77,7 +78,7 @@ contains
     within = max(nearby*more, least_difference*search)
     do
       within = min(within, search)
-      sides = line%in_box(from%x - within, from%x + within, spread(from%x, 2, 2))
+      sides = line%in_box(line_query(from%x - within, from%x + within, spread(from%x, 2, 2), .true.))
       met = [(look_at(sides(k)), k=1, size(sides))]
       face = best_two(pack(met, met%found))
       ! Sides that were left out are farther than `within`.
@@ -143,8 +144,8 @@ contains
       near = max([from%rise, rise_of(line, face%segment) + aside*norm2(from%along)]/abs(face%gap), at_end)
       if (sum(near) >= 1.0_wp) return
       place = ahead - face%gap*face%normal
-      between = obstacles%in_box(min(ahead, place), max(ahead, place), spread(ahead, 2, 2), &
-                                 spread(place - ahead, 2, 2))
+      between = obstacles%in_box(line_query(min(ahead, place), max(ahead, place), spread(ahead, 2, 2), &
+                                            .false., spread(place - ahead, 2, 2)))
       do i = 1, size(between)
         associate (side => obstacles%x(:, :2, between(i)))
           part = crossing(ahead, place - ahead, side(:, 1), side(:, 2) - side(:, 1))

@@ -4,7 +4,7 @@ module epcont_geometry_outline_shape
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: least_difference
   use epcont_geometry_box_tree, only: box_tree, most_waiting, new_box_tree
-  use epcont_geometry_plane, only: right_of, unit
+  use epcont_geometry_plane, only: right_of, span_along, unit
   implicit none
   private
   public :: outline_type, outline_shape, near_place, new_outline_shape
@@ -64,6 +64,7 @@ contains
     type(outline_type), intent(in) :: outline   !! of all bodies
     real(wp), intent(in) :: x(:, :)   !! [length] [2, nodes]
     type(outline_shape) :: shape
+    real(wp) :: box(2, 2)
     integer :: p, s
 
     shape%outline = outline
@@ -73,10 +74,9 @@ contains
         own(:, :2) = x(:, node(:2))
         own(:, 3) = 0.5_wp*(own(:, 1) + own(:, 2))
         if (node(3) > 0) own(:, 3) = x(:, node(3))
-        associate (control => own(:, 3) + shape%arch(s))
-          shape%low(:, s) = min(own(:, 1), own(:, 2), control)
-          shape%high(:, s) = max(own(:, 1), own(:, 2), control)
-        end associate
+        box = span_along(own, node(3) > 0)
+        shape%low(:, s) = box(:, 1)
+        shape%high(:, s) = box(:, 2)
       end associate
     end do
     allocate (shape%side_tree(outline%parts))

@@ -3,7 +3,7 @@ module epcont_geometry_plane
   use epcont_base_kinds, only: wp
   implicit none
   private
-  public :: angle_between, cross_product, crossing, right_of, turned, unit
+  public :: angle_between, cross_product, crossing, right_of, span_along, turned, unit
 
 contains
 
@@ -32,6 +32,19 @@ contains
     part = huge(area)
     if (area /= 0.0_wp) part = [cross_product(b - a, other), cross_product(b - a, along)]/area
   end function crossing
+
+  !> Least and largest components along a side: of a parabola they lie between those of its ends and of its
+  !! control point.
+  pure function span_along(vector, curved) result(span)
+    real(wp), intent(in) :: vector(2, 3)   !! at its start, end and middle
+    logical, intent(in) :: curved          !! it has a middle
+    real(wp) :: control(2), span(2, 2)
+
+    control = vector(:, 1)
+    if (curved) control = 2.0_wp*vector(:, 3) - 0.5_wp*(vector(:, 1) + vector(:, 2))
+    span(:, 1) = min(vector(:, 1), vector(:, 2), control)
+    span(:, 2) = max(vector(:, 1), vector(:, 2), control)
+  end function span_along
 
   !> A vector turned by a right angle, clockwise.
   pure function right_of(vector)
