@@ -2,7 +2,8 @@
 !> straight from where they were drawn to where they are, as those of the other outline do, and may enter it
 !> and come out again.
 !>
-!> The tree of the displaced sides knows how far each has moved, and so which of them a point meets on its way.
+!> The tree of the displaced sides knows how far each has moved, and so which of them a point meets on its
+!> way.
 module epcont_certificate_way
   use epcont_base_kinds, only: wp
   use epcont_certificate_findings, only: is_worse, overlap_place, rated, scene_type
@@ -24,6 +25,9 @@ module epcont_certificate_way
   !> A body of which a side turns [rad] or is stretched by more than this has no way that is straight, and no
   !! shape on it.
   real(wp), parameter :: shapeless = 1.0_wp
+
+  !> So many times farther the nearest place is looked for in each round.
+  real(wp), parameter :: widening = 8.0_wp
 
 contains
 
@@ -173,25 +177,32 @@ contains
       if (is_worse(found, scene%passed)) scene%passed = rated(found)
     end subroutine look_between
 
-    !> The place of a part that is nearest to a point at a time, of those within reach; side 0: none.
+    !> The place of a part that is nearest to a point at a time, of those within reach; side 0: none. About as
+    !! near as its own side is long it mostly is.
     type(near_place) function nearest_place(point, part, time, reach) result(best)
       type(point_type), intent(in) :: point
       integer, intent(in) :: part
       real(wp), intent(in) :: time, reach     !! from 0 to 1; [length]
       type(near_place) :: place
       integer, allocatable :: near(:), sides(:)
-      real(wp) :: x(directions)
+      real(wp) :: within, x(directions)
       integer :: k
 
       x = point%drawn + time*point%motion
-      near = sides_meeting(search%now, part, motion_query(point%x - reach, point%x + reach, point%motion, &
-                                                          [time, time]))
-      ! At a node both sides say what is inside.
-      sides = [near, search%now%outline%before(near), search%now%outline%after(near)]
-      between%x(:, :, sides) = search%drawn%x(:, :, sides) + time*search%motion(:, :, sides)
-      do k = 1, size(near)
-        place = between%near_side(near(k), x)
-        if (place%distance < best%distance) best = place
+      within = search%allowance%length(point%side)
+      do
+        within = min(within, reach)
+        near = sides_meeting(search%now, part, motion_query(point%x - within, point%x + within, &
+                                                            point%motion, [time, time]))
+        ! At a node both sides say what is inside.
+        sides = [near, search%now%outline%before(near), search%now%outline%after(near)]
+        between%x(:, :, sides) = search%drawn%x(:, :, sides) + time*search%motion(:, :, sides)
+        do k = 1, size(near)
+          place = between%near_side(near(k), x)
+          if (place%distance < best%distance) best = place
+        end do
+        if (best%distance <= within .or. within >= reach) exit
+        within = widening*within
       end do
       if (best%side > 0) best%inside = between%is_inside(best, x)
     end function nearest_place

@@ -40,8 +40,8 @@ module epcont_geometry_box_tree
     procedure :: may_meet => may_pass
   end type line_query
 
-  !> Those that a moving box meets on its way, while each moves by its vectors: both are where they are told to
-  !! be at time 1, and went there straight from time 0 on.
+  !> Those that a moving box meets on its way, while each moves by its vectors: both are where they are said
+  !! to be at time 1, and went there straight from time 0 on.
   type, extends(box_query) :: motion_query
     real(wp) :: motion(2) = 0.0_wp                 !! of the box that is given [length]
     real(wp) :: time(2) = [0.0_wp, 1.0_wp]         !! from when until when
@@ -140,12 +140,12 @@ contains
     may_meet = all(self%low <= tree%high(:, node)) .and. all(self%high >= tree%low(:, node))
   end function may_meet
 
-  !> May a line pass through a node's box? There the vector product of its direction and the way may vanish.
+  !> May a line pass through a node's box? The vector product of its direction and the way there vanishes.
   pure logical function may_pass(self, tree, node)
     class(line_query), intent(in) :: self
     type(box_tree), intent(in) :: tree   !! of which
     integer, intent(in) :: node          !! its node
-    real(wp) :: along(2, 2), least(2), most(2), product(4), way(2)
+    real(wp) :: along(2, 2), least(2), most(2), way(2)
     integer :: k
 
     may_pass = self%box_query%may_meet(tree, node)
@@ -154,15 +154,14 @@ contains
     if (self%by_vectors) along = tree%span(:, :, node)
     do k = 1, 2
       way = [tree%low(3 - k, node) - self%from(3 - k, 2), tree%high(3 - k, node) - self%from(3 - k, 1)]
-      product = [along(k, 1)*way, along(k, 2)*way]
-      least(k) = minval(product)
-      most(k) = maxval(product)
+      least(k) = min(along(k, 1)*way(1), along(k, 1)*way(2), along(k, 2)*way(1), along(k, 2)*way(2))
+      most(k) = max(along(k, 1)*way(1), along(k, 1)*way(2), along(k, 2)*way(1), along(k, 2)*way(2))
     end do
     may_pass = least(1) <= most(2) .and. least(2) <= most(1)
   end function may_pass
 
-  !> Does a moving box meet that of a node? Their distances along an axis are linear in time: each leaves a part
-  !! of it.
+  !> Does a moving box meet that of a node? Their distances along an axis are linear in time: each leaves a
+  !! part of it.
   pure logical function may_be_met(self, tree, node)
     class(motion_query), intent(in) :: self
     type(box_tree), intent(in) :: tree   !! of which
@@ -177,7 +176,8 @@ contains
     do k = 1, 4
       ends = now(k) - (1.0_wp - time)*rate(k)
       if (all(ends < 0.0_wp)) return
-      if (any(ends < 0.0_wp)) time(minloc(ends, dim=1)) = time(1) - (time(2) - time(1))*ends(1)/(ends(2) - ends(1))
+      if (all(ends >= 0.0_wp)) cycle
+      time(minloc(ends, dim=1)) = time(1) - (time(2) - time(1))*ends(1)/(ends(2) - ends(1))
     end do
     may_be_met = .true.
   end function may_be_met

@@ -68,7 +68,7 @@ def blocks(pairs=1500, nodes=43000, crown=0.12, load=20000.0, yields=False):
     top = upper.line["far"]
     deck.hold(12, lower.line["far"], two)
     deck.hold(1, [nearest(upper, (0.0, deep), top)])
-    deck.platen(10 * two, 2, top)
+    deck.platen(2 * two, 2, top)   # eight digits, however many elements
     deck.push(one + top[0], load)
     deck.contacts((upper.line["fine"], one), (list(reversed(lower.line["fine"])), two))
     return deck
@@ -89,7 +89,7 @@ def strip(pairs=2800, rows=14):
     top = upper.line["top"]
     deck.hold(12, lower.line["bottom"], two)
     deck.hold(1, [top[pairs // 2]])
-    deck.platen(10 * two, 2, top)
+    deck.platen(2 * two, 2, top)   # eight digits, however many elements
     deck.push(one + top[0], 100.0 * width)
     deck.contacts((upper.line["bottom"], one), (list(reversed(lower.line["top"])), two))
     return deck
