@@ -24,12 +24,11 @@ contains
     integer, intent(in) :: pairs(:)       !! each once
     real(wp), intent(in) :: tolerance     !! a singular value up to this is zero
     real(wp), allocatable :: loose(:, :)  !! [m, any]
-    real(wp), allocatable :: own(:, :), wider(:, :)
+    real(wp), allocatable :: more(:, :), own(:, :)
     integer, allocatable :: motions(:), together(:)
     type(motion_matrix) :: by_pair        ! A'
     logical :: counts(motion%pairs), met(motion%motions())
-    integer :: band   ! of A'A, the diagonal included
-    integer :: j, k
+    integer :: band, j, k   ! rows of the band of A'A
 
     by_pair = motion%turned()
     counts = .false.
@@ -42,10 +41,10 @@ contains
       if (are_held()) cycle
       motions = pack([(k, k=1, size(met))], [(any(together == k), k=1, size(met))])
       own = null_space(motion%rows(pairs, motions), tolerance)
-      allocate (wider(size(met), size(loose, 2) + size(own, 2)), source=0.0_wp)
-      wider(:, :size(loose, 2)) = loose
-      wider(motions, size(loose, 2) + 1:) = own
-      call move_alloc(wider, loose)
+      allocate (more(size(met), size(own, 2)), source=0.0_wp)
+      more(motions, :) = own
+      loose = reshape([loose, more], [size(met), size(loose, 2) + size(own, 2)])
+      deallocate (more)
     end do
 
   contains
