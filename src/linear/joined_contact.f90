@@ -14,14 +14,14 @@
 !> Lambda waits until the set stays, so that each step is one of that function. Where full ones run in circles
 !> they are cut where it is least along them: then each makes it less.
 module epcont_linear_joined_contact
-  use epcont_assembly_bodies, only: factored_bodies, prescribe
+  use epcont_assembly_bodies, only: factored_bodies, half_solved_body, prescribe
   use epcont_base_bracket, only: bracket
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: lost_digits, negligible, no_effect
   use epcont_contact_equilibrium, only: find_rigid_start, rigid_start
   use epcont_contact_problem, only: contact_no_equilibrium, contact_solved, contact_stalled, new_solution
   use epcont_contact_uniqueness, only: find_free_motions
-  use epcont_element_kinematics, only: components, directions
+  use epcont_element_kinematics, only: directions
   use epcont_flexibility_flexibility, only: gap_opening, pair_forces, terms_of_openings
   use epcont_flexibility_motion_matrix, only: motion_matrix
   use epcont_linear_joined_springs, only: find_springs, of_pairs, spring_of_motion
@@ -36,8 +36,6 @@ module epcont_linear_joined_contact
   integer, parameter :: full_steps = 25, step_limit = 200
   !> A step is cut where the slope at its end is more than this part of that where it begins.
   real(wp), parameter :: flat_enough = 0.1_wp
-  !> Strains so many times as large leave rounding that counts.
-  real(wp), parameter :: far_larger = 10.0_wp
   !> What a solve leaves of forces of size one, at most, where they open gaps.
   real(wp), parameter :: most_left = 0.1_wp
   !> What a half-plane gives way by at a force on a node of its boundary, against what is a hundred sides
@@ -140,7 +138,9 @@ contains
     call watch%lap(stage_contact)
   end subroutine solve
 
-  !> Newton steps to the set of contacts and its forces.
+  !> Newton steps to the set of contacts and its forces. While the set changes, only what pairs and SUPORT
+  !> freedoms do is solved for; where it stays, all displacements, from those of `state`, whose rounding is
+  !! all that the answer has.
   subroutine find_set(self, scene, bodies, fixed_gap, load_factor, state, watch)
     class(joined_contact), intent(inout) :: self
     type(planned_scene), intent(in) :: scene
@@ -148,51 +148,61 @@ contains
     real(wp), intent(in) :: fixed_gap(:), load_factor
     type(scene_state), intent(inout) :: state
     class(stopwatch), intent(inout) :: watch
-    !> What the deformation is in equilibrium with; lambda - gamma g
+    !> What the deformation is in equilibrium with; lambda - gamma g; what a step adds to the gaps
     real(wp), dimension(scene%model%pairs) :: borne, gap, opening, pull
-    real(wp), allocatable :: step(:, :), strain(:, :), motion(:)
+    !> What a step adds to the approach, and forces that springs of SUPORT freedoms bore
+    real(wp), dimension(scene%motions%count) :: held, motion
+    real(wp), allocatable :: unbalanced(:, :)   ! forces on the nodes, with the displacements of `state`
+    real(wp), allocatable :: step(:, :)
     logical :: wanted(scene%model%pairs)
-    real(wp) :: before, change, descent, length
-    real(wp) :: largest       ! deformation that a step has added
+    real(wp) :: before, change, length, strained
     integer :: taken
-    logical :: afresh         ! what is out of balance is found from stresses, else from `borne`
-    logical :: set_is_given, sound
+    logical :: all_of_it      ! the step is one of all displacements
+    logical :: sound, stays
 
     state%contact%state = contact_stalled
     state%contact%pivots = 0
     state%contact%block_steps = 0
     call prescribe(scene, load_factor, state%deformation)
+    state%strain = bodies%operator%strains(scene%model, state%deformation)
     before = huge(1.0_wp)
-    largest = 0.0_wp
-    afresh = .true.
-    set_is_given = .not. allocated(self%last)
+    all_of_it = .true.
+    call begin_at_state()
+    if (allocated(self%last)) call choose_set()
     do taken = 1, step_limit
-      gap = fixed_gap + gap_opening(scene%model, state%deformation) - &
-            self%motion%times(state%contact%approach)
-      pull = state%contact%force - self%gamma*gap
-      if (.not. set_is_given) call choose_set()
-      set_is_given = .false.
       call self%factor(scene, bodies, sound, watch)
       if (.not. sound) exit
       call find_step()
       length = 1.0_wp
-      if (taken > full_steps) length = length_of_step()
+      if (taken > full_steps .and. .not. all_of_it) length = length_of_step()
       call take_step()
-      if (afresh .and. length >= 1.0_wp .and. all(wanted .eqv. self%closed)) then
+      if (all_of_it .and. stays) then
+        call take_displacements()
         ! The next step would change as much less.
-        if (change*merge(min(1.0_wp, change/before), 1.0_wp, before <= 1.0_wp) <= negligible .or. &
-            change <= no_effect .and. change > 0.5_wp*before) then
+        strained = max(change, strained)
+        if (strained*merge(min(1.0_wp, strained/before), 1.0_wp, before <= 1.0_wp) <= negligible .or. &
+            strained <= no_effect .and. strained > 0.5_wp*before) then
           state%contact%state = contact_solved
           exit
         end if
         before = change
-        call begin_anew()
       end if
-      afresh = taken >= full_steps .or. all(wanted .eqv. self%closed)
+      all_of_it = stays
+      if (stays) call begin_at_state()
+      if (.not. stays) call choose_set()
     end do
     state%contact%gap = gap
 
   contains
+
+    !> Gaps, and what is out of balance, where `state` is.
+    subroutine begin_at_state()
+      gap = fixed_gap + gap_opening(scene%model, state%deformation) - &
+            self%motion%times(state%contact%approach)
+      pull = state%contact%force - self%gamma*gap
+      unbalanced = load_factor*scene%model%load - &
+                   bodies%operator%nodal_forces(scene%model, bodies%law%stress(state%strain))
+    end subroutine begin_at_state
 
     !> The pairs that press; of those that do so by rounding alone, as they are.
     subroutine choose_set()
@@ -202,89 +212,96 @@ contains
       self%closed = wanted
     end subroutine choose_set
 
-    !> Where the deformation has been far larger than it is, it has the rounding of that: with the forces that
-    !! are known by now, it is solved for from none.
-    subroutine begin_anew()
-      if (largest <= far_larger*maxval(abs(state%deformation))) return
-      largest = 0.0_wp
-      set_is_given = .true.
-      state%deformation = 0.0_wp
-      state%contact%approach = 0.0_wp
-      call prescribe(scene, load_factor, state%deformation)
-    end subroutine begin_anew
-
-    !> What is out of balance is solved for. All but the pairs is linear: after a full step they, and springs
-    !! of SUPORT freedoms that have moved, alone have forces that are not borne, but for rounding.
+    !> What is out of balance is solved for. All but the pairs is linear: after a step they, and springs of
+    !! SUPORT freedoms that have moved, alone have forces that are not borne, but for rounding.
     subroutine find_step()
-      real(wp), allocatable :: unbalanced(:, :)
+      type(half_solved_body), allocatable :: half(:)
+      real(wp) :: force(directions, scene%model%nodes)
       integer :: k
 
-      if (afresh) then
-        state%strain = bodies%operator%strains(scene%model, state%deformation)
-        unbalanced = load_factor*scene%model%load - &
-                     bodies%operator%nodal_forces(scene%model, bodies%law%stress(state%strain))
+      if (all_of_it) then
+        force = unbalanced + pair_forces(scene%model, merge(pull, 0.0_wp, self%closed))
       else
-        unbalanced = pair_forces(scene%model, -borne)
+        force = pair_forces(scene%model, merge(pull, 0.0_wp, self%closed) - borne)
         do k = 1, scene%motions%count
-          associate (load => unbalanced(scene%motions%component(k), scene%motions%node(k)))
-            load = load + bodies%spring%stiffness(spring_of_motion(scene, k))*motion(k)
+          associate (load => force(scene%motions%component(k), scene%motions%node(k)))
+            load = load + held(k)
           end associate
         end do
       end if
-      step = bodies%displacements(scene, unbalanced + &
-                                  pair_forces(scene%model, merge(pull, 0.0_wp, self%closed)), 0.0_wp)
-      descent = sum(unbalanced*step)
+      call bodies%add_forces(scene, force, 0.0_wp, half)
+      step = bodies%finish(scene, half, 0.0_wp, at_contact=.not. all_of_it)
+      opening = gap_opening(scene%model, step)
       motion = [(step(scene%motions%component(k), scene%motions%node(k)), k=1, scene%motions%count)]
-      call scene%motions%add(scene%model, -motion, step)
-      if (afresh) strain = bodies%operator%strains(scene%model, step)
-      largest = max(largest, maxval(abs(step)))
-      opening = gap_opening(scene%model, step) - self%motion%times(motion)
     end subroutine find_step
 
-    !> Go along it; lambda follows after a full one.
+    !> Go along it; lambda follows after a full one that does not change the set.
     subroutine take_step()
       real(wp), allocatable :: next(:)
+      integer :: k
 
-      state%deformation = state%deformation + length*step
-      if (afresh) state%strain = state%strain + length*strain
-      state%contact%approach = state%contact%approach + length*motion
       state%contact%block_steps = state%contact%block_steps + 1
-      gap = gap + length*opening
       associate (force => state%contact%force)
+        if (all_of_it) then
+          borne = 0.0_wp
+          held = 0.0_wp
+        end if
+        borne = (1.0_wp - length)*borne + &
+                length*merge(force - self%gamma*(gap + opening), 0.0_wp, self%closed)
+        held = (1.0_wp - length)*held + length*motion* &
+               [(bodies%spring%stiffness(spring_of_motion(scene, k)), k=1, size(motion))]
+        gap = gap + length*opening
         pull = force - self%gamma*gap
-        borne = merge(pull, 0.0_wp, self%closed)
         wanted = pull > 0.0_wp
-        if (length < 1.0_wp .or. any(wanted .neqv. self%closed)) return
-        next = merge(pull, 0.0_wp, self%closed .and. wanted)
+        stays = length >= 1.0_wp .and. all(wanted .eqv. self%closed)
+        if (.not. stays) return
+        next = merge(pull, 0.0_wp, self%closed)
         change = maxval([abs(next - force), 0.0_wp])/maxval([next, tiny(1.0_wp)])
-        if (afresh) change = max(change, maxval(abs(strain))/max(maxval(abs(state%strain)), tiny(1.0_wp)))
         force = next
       end associate
     end subroutine take_step
 
+    !> The displacements follow.
+    subroutine take_displacements()
+      real(wp), allocatable :: strain(:, :)
+
+      call scene%motions%add(scene%model, -motion, step)
+      strain = bodies%operator%strains(scene%model, step)
+      state%deformation = state%deformation + step
+      state%strain = state%strain + strain
+      state%contact%approach = state%contact%approach + motion
+      strained = maxval(abs(strain))/max(maxval(abs(state%strain)), tiny(1.0_wp))
+    end subroutine take_displacements
+
     !> Up to where the function is least along the step, by regula falsi and geometric means.
     real(wp) function length_of_step() result(t)
       type(bracket) :: zero   ! of the slope
-      real(wp) :: begin, curvature, now
+      real(wp) :: begin, curvature, descent, now
       integer :: i
 
-      curvature = sum(spread(bodies%operator%volume, 1, components)*strain*bodies%law%increment(strain))
+      descent = sum(held*motion) - sum(borne*opening)
+      curvature = descent + sum((pull - self%gamma*opening)*opening, mask=self%closed)
+      do i = 1, size(motion)
+        curvature = curvature - bodies%spring%stiffness(spring_of_motion(scene, i))*motion(i)**2
+      end do
+      curvature = max(0.0_wp, curvature)
       t = 1.0_wp
-      begin = slope(0.0_wp, curvature)
-      zero = bracket([0.0_wp, 1.0_wp], [begin, slope(1.0_wp, curvature)])
+      begin = slope(0.0_wp, curvature, descent)
+      zero = bracket([0.0_wp, 1.0_wp], [begin, slope(1.0_wp, curvature, descent)])
       if (zero%values(2) <= flat_enough*abs(begin)) return
       do i = 1, step_limit
         t = zero%likely()
         if (mod(i, 3) == 0) t = sqrt(max(zero%at(1), tiny(1.0_wp)))*sqrt(zero%at(2))
-        now = slope(t, curvature)
+        now = slope(t, curvature, descent)
         if (abs(now) <= flat_enough*abs(begin)) return
         call zero%take(t, now)
       end do
     end function length_of_step
 
     !> Of that function there.
-    pure real(wp) function slope(t, curvature)
-      real(wp), intent(in) :: t, curvature   !! of all but the pairs' part
+    pure real(wp) function slope(t, curvature, descent)
+      real(wp), intent(in) :: t
+      real(wp), intent(in) :: curvature, descent   !! of all but the pairs' part, and where the step begins
 
       slope = t*curvature - descent - &
               sum(max(0.0_wp, state%contact%force - self%gamma*(gap + t*opening))*opening)

@@ -19,6 +19,7 @@ module epcont_plan_dissection
   type :: dissection
     integer, allocatable :: node(:)    !! in the order of elimination
     integer, allocatable :: first(:)   !! the first of each front in it, and one behind the last [fronts + 1]
+    integer, allocatable :: below(:)   !! the first of all that is eliminated into each front [fronts]
   end type dissection
 
   !> Sets of so few nodes are not halved. From 12 to 24 it matters little: fewer operations against more and
@@ -55,12 +56,13 @@ contains
     real(wp), allocatable :: coordinate(:, :)  ! of these [axes, nodes]
     integer, allocatable :: noted(:)           ! of nodes of the set that is being halved; 0 of others
     integer, allocatable :: free(:), order(:)
-    logical, allocatable :: begins(:)          ! a front begins there in the order
+    !> Where a front begins in the order the first that is eliminated into it; else 0
+    integer, allocatable :: below(:)
     integer :: i
 
     free = pack(nodes, .not. wanted_last(nodes))
     allocate (coordinate(axes, size(free)), noted(size(free)), order(size(free)))
-    allocate (begins(size(nodes) + 1), source=.false.)
+    allocate (below(size(nodes) + 1), source=0)
     do i = 1, size(free)
       associate (x => model%x(1, free(i)), y => model%x(2, free(i)))
         coordinate(:, i) = [x + y, x - y, x, y, further(free(i))]
@@ -74,10 +76,10 @@ contains
     call dissect_set(1, size(order))
     !$omp end single
     !$omp end parallel
-    begins(size(order) + 1) = .true.
-    begins(size(nodes) + 1) = .true.
+    below([size(order), size(nodes)] + 1) = 1
     found%node = [free(order), pack(nodes, wanted_last(nodes))]
-    found%first = pack([(i, i=1, size(begins))], begins)
+    found%first = pack([(i, i=1, size(below))], below > 0)
+    found%below = below(found%first(:size(found%first) - 1))
 
   contains
 
@@ -87,7 +89,7 @@ contains
       integer, intent(in) :: first, last
       integer :: nodes_of(left:edge)
 
-      begins(first) = .true.
+      below(first) = first
       if (last - first < few) return
       call lay_band(order(first:last))
       call find_separator(graph, order(first:last))
@@ -97,7 +99,7 @@ contains
       call dissect_set(first, first + nodes_of(left) - 1)
       !$omp end task
       call dissect_set(first + nodes_of(left), last - nodes_of(edge))
-      if (nodes_of(edge) > 0) begins(last - nodes_of(edge) + 1) = .true.
+      if (nodes_of(edge) > 0) below(last - nodes_of(edge) + 1) = first
       !$omp taskwait
     end subroutine dissect_set
 

@@ -16,29 +16,46 @@ module epcont_plan_joined_numbering
 
 contains
 
-  !> Number all free freedoms in nested fronts. Those that others follow, which are coupled with whole lines
-  !! of nodes, come last.
-  subroutine number_joined(model, equation, node, first)
+  !> Number all free freedoms in nested fronts: first those into which nothing is eliminated that pairs and
+  !! SUPORT freedoms act on. Freedoms that others follow, which are coupled with whole lines of nodes, come
+  !! last.
+  subroutine number_joined(model, equation, node, first, first_contact)
     type(model_type), intent(in) :: model   !! the scene
     !> Of each freedom; of a tied one that of its leader; 0: held [directions, nodes]
     integer, allocatable, intent(out) :: equation(:, :)
     integer, allocatable, intent(out) :: node(:)     !! in the order of elimination [nodes]
     integer, allocatable, intent(out) :: first(:)    !! equation of each front, and one behind [fronts + 1]
+    integer, intent(out) :: first_contact            !! first equation of the others
     type(dissection) :: found
-    integer :: i, last, p
+    integer :: springs(0:model%nodes)   ! nodes that they act on so far in the order
+    logical, allocatable :: acted(:)    ! springs act on what is eliminated into the front
+    integer, allocatable :: order(:)    ! of the fronts
+    integer :: begun, i, last, p
 
     found = dissect(model, 2.0_wp*model%x(1, :) + model%x(2, :), [(i, i=1, model%nodes)], &
                     followed_nodes(model), new_incidence(model%nodes_of_pairs(), model%nodes))
-    node = found%node
-    allocate (equation(directions, model%nodes), source=0)
-    allocate (first(size(found%first)), source=1)
-    last = 0
-    do p = 1, size(found%first) - 1
-      do i = found%first(p), found%first(p + 1) - 1
-        call number_node(node(i))
-      end do
-      first(p + 1) = last + 1
+    acted = acted_on(model)
+    springs(0) = 0
+    do i = 1, model%nodes
+      springs(i) = springs(i - 1) + merge(1, 0, acted(found%node(i)))
     end do
+    acted = springs(found%first(2:) - 1) > springs(found%below - 1)
+    order = [pack([(p, p=1, size(acted))], .not. acted), pack([(p, p=1, size(acted))], acted)]
+    allocate (equation(directions, model%nodes), source=0)
+    allocate (node(model%nodes), first(size(order) + 1))
+    begun = 0
+    last = 0
+    first_contact = 0
+    do p = 1, size(order)
+      if (p == size(order) - count(acted) + 1) first_contact = last + 1
+      first(p) = last + 1
+      do i = found%first(order(p)), found%first(order(p) + 1) - 1
+        begun = begun + 1
+        node(begun) = found%node(i)
+        call number_node(node(begun))
+      end do
+    end do
+    first(p) = last + 1
     first = pack(first, [first(2:) > first(:size(first) - 1), .true.])
     do i = 1, model%nodes
       equation(:, i) = [equation(1, model%leader(1, i)), equation(2, model%leader(2, i))]
@@ -58,6 +75,15 @@ contains
       end do
     end subroutine number_node
   end subroutine number_joined
+
+  !> Do pairs or SUPORT freedoms act on each node? [nodes]
+  pure function acted_on(model) result(acts)
+    type(model_type), intent(in) :: model
+    logical :: acts(model%nodes)
+
+    acts = any(model%reference, dim=1)
+    acts(model%row_node) = .true.
+  end function acted_on
 
   !> Do others follow each node? [nodes]
   pure function followed_nodes(model) result(leads)

@@ -119,11 +119,10 @@ contains
       integer, allocatable :: first(:)
 
       call numbering%axes%ask_nothing()
-      call number_joined(model, numbering%equation, all%node, first)
+      call number_joined(model, numbering%equation, all%node, first, all%first_contact)
       all%spring = spring_rows(model, numbering%equation)
       all%element = [(i, i=1, model%elements)]
       all%equations = first(size(first)) - 1
-      all%first_contact = all%equations + 1
       all%can_yield = any(model%can_yield(all%element))
       all%solver = solver_frontal
       all%fronts = new_front_layout(first, numbers_of(all%element), &
