@@ -15,7 +15,6 @@
 !> they are cut where it is least along them: then each makes it less.
 module epcont_linear_joined_contact
   use epcont_assembly_bodies, only: factored_bodies, half_solved_body, prescribe
-  use epcont_base_bracket, only: bracket
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: lost_digits, negligible, no_effect
   use epcont_contact_equilibrium, only: find_rigid_start, rigid_start
@@ -24,7 +23,9 @@ module epcont_linear_joined_contact
   use epcont_element_kinematics, only: directions
   use epcont_flexibility_flexibility, only: gap_opening, pair_forces, terms_of_openings
   use epcont_flexibility_motion_matrix, only: motion_matrix
-  use epcont_linear_joined_springs, only: find_springs, of_pairs, spring_of_motion
+  use epcont_linear_contact_ends, only: reach_ends
+  use epcont_linear_joined_springs, only: find_springs, of_pairs
+  use epcont_linear_line_search, only: least_at
   use epcont_linear_scene_state, only: scene_state
   use epcont_plan_planned_scene, only: planned_scene
   use epcont_system_stopwatch, only: stage_contact, stage_factor, stopwatch
@@ -34,8 +35,8 @@ module epcont_linear_joined_contact
 
   !> Full steps, then cut ones: scenes take 1 to 20.
   integer, parameter :: full_steps = 25, step_limit = 200
-  !> A step is cut where the slope at its end is more than this part of that where it begins.
-  real(wp), parameter :: flat_enough = 0.1_wp
+  !> Forces that change by no more are good enough for displacements to follow: two steps are to come.
+  real(wp), parameter :: nearly = 1.0e-3_wp
   !> What a solve leaves of forces of size one, at most, where they open gaps.
   real(wp), parameter :: most_left = 0.1_wp
   !> What a half-plane gives way by at a force on a node of its boundary, against what is a hundred sides
@@ -46,6 +47,7 @@ module epcont_linear_joined_contact
     integer :: threads = 1                         !! that share the fronts
     logical :: failed = .false.     !! to find a contact, or all that is to be told of it
     real(wp), allocatable, private :: gamma(:)     !! springs of the pairs [force/length] [pairs]
+    real(wp), allocatable, private :: hold(:)      !! springs of SUPORT freedoms [force/length] [motions]
     logical, allocatable, private :: closed(:)     !! whose springs are to be in the factor [pairs]
     type(scene_state), allocatable, private :: last   !! from which the next contact is sought
     type(motion_matrix), private :: motion         !! A, closing of the gaps by the motions [length]
@@ -78,7 +80,7 @@ contains
     call find_rigid_start(scaled, resultant/motion%units(), spread(0.0_wp, 1, motion%pairs), &
                           joined%rigid)
     if (.not. joined%rigid%balanced) return
-    call find_springs(scene, bodies, joined%rigid%redundant, joined%gamma)
+    call find_springs(scene, bodies, joined%rigid%redundant, joined%gamma, joined%hold)
     allocate (joined%closed(scene%model%pairs), source=.true.)
   end subroutine new_joined
 
@@ -155,58 +157,66 @@ contains
     real(wp), allocatable :: unbalanced(:, :)   ! forces on the nodes, with the displacements of `state`
     real(wp), allocatable :: step(:, :)
     logical :: wanted(scene%model%pairs)
-    real(wp) :: before, change, length, strained
+    real(wp) :: change(2), before(2)   ! of forces and strains, in this step and the one before
+    real(wp) :: length
     integer :: taken
-    logical :: all_of_it      ! the step is one of all displacements
-    logical :: sound, stays
+    logical :: stays          ! the set, and lambda follows
+    logical :: whole          ! the step is one of all displacements
+    logical :: sound
 
     state%contact%state = contact_stalled
     state%contact%pivots = 0
     state%contact%block_steps = 0
     call prescribe(scene, load_factor, state%deformation)
     state%strain = bodies%operator%strains(scene%model, state%deformation)
-    before = huge(1.0_wp)
-    all_of_it = .true.
+    change = huge(1.0_wp)
+    whole = .false.
+    call balance()
     call begin_at_state()
+    wanted = pull > 0.0_wp
     if (allocated(self%last)) call choose_set()
     do taken = 1, step_limit
       call self%factor(scene, bodies, sound, watch)
       if (.not. sound) exit
       call find_step()
+      before = change
       length = 1.0_wp
-      if (taken > full_steps .and. .not. all_of_it) length = length_of_step()
+      if (taken > full_steps .and. .not. whole) length = length_of_step()
       call take_step()
-      if (all_of_it .and. stays) then
+      if (stays .and. whole) then
         call take_displacements()
-        ! The next step would change as much less.
-        strained = max(change, strained)
-        if (strained*merge(min(1.0_wp, strained/before), 1.0_wp, before <= 1.0_wp) <= negligible .or. &
-            strained <= no_effect .and. strained > 0.5_wp*before) then
+        if (all(has_settled(change, before))) then
           state%contact%state = contact_solved
           exit
         end if
-        before = change
+        call balance()
       end if
-      all_of_it = stays
-      if (stays) call begin_at_state()
-      if (.not. stays) call choose_set()
+      whole = stays .and. (whole .or. change(1) <= nearly .or. change(1) > 0.5_wp*before(1))
+      if (whole) call begin_at_state()
+      if (stays) cycle
+      change = huge(1.0_wp)
+      if (taken < full_steps) call reach_ends(self%closed, wanted)
+      call choose_set()
     end do
     state%contact%gap = gap
 
   contains
 
-    !> Gaps, and what is out of balance, where `state` is.
+    !> What is out of balance where `state` is.
+    subroutine balance()
+      unbalanced = load_factor*scene%model%load - &
+                   bodies%operator%nodal_forces(scene%model, bodies%law%stress(state%strain))
+    end subroutine balance
+
+    !> The next step is one from there.
     subroutine begin_at_state()
       gap = fixed_gap + gap_opening(scene%model, state%deformation) - &
             self%motion%times(state%contact%approach)
       pull = state%contact%force - self%gamma*gap
-      unbalanced = load_factor*scene%model%load - &
-                   bodies%operator%nodal_forces(scene%model, bodies%law%stress(state%strain))
     end subroutine begin_at_state
 
     !> The pairs that press; of those that do so by rounding alone, as they are.
     subroutine choose_set()
-      wanted = pull > 0.0_wp
       where (abs(pull) <= negligible*maxval([abs(state%contact%force), tiny(1.0_wp)])) wanted = self%closed
       state%contact%pivots = state%contact%pivots + count(wanted .neqv. self%closed)
       self%closed = wanted
@@ -219,45 +229,41 @@ contains
       real(wp) :: force(directions, scene%model%nodes)
       integer :: k
 
-      if (all_of_it) then
+      if (whole .or. taken == 1) then
         force = unbalanced + pair_forces(scene%model, merge(pull, 0.0_wp, self%closed))
       else
         force = pair_forces(scene%model, merge(pull, 0.0_wp, self%closed) - borne)
-        do k = 1, scene%motions%count
-          associate (load => force(scene%motions%component(k), scene%motions%node(k)))
-            load = load + held(k)
-          end associate
-        end do
+        associate (c => scene%motions%component, node => scene%motions%node)
+          do k = 1, size(held)
+            force(c(k), node(k)) = force(c(k), node(k)) + held(k)
+          end do
+        end associate
       end if
       call bodies%add_forces(scene, force, 0.0_wp, half)
-      step = bodies%finish(scene, half, 0.0_wp, at_contact=.not. all_of_it)
+      step = bodies%finish(scene, half, 0.0_wp, at_contact=.not. whole)
       opening = gap_opening(scene%model, step)
       motion = [(step(scene%motions%component(k), scene%motions%node(k)), k=1, scene%motions%count)]
     end subroutine find_step
 
-    !> Go along it; lambda follows after a full one that does not change the set.
+    !> Go along it; lambda follows after a full one that does not change the set, but not the first of all
+    !! displacements: these have the rounding of what they are in all.
     subroutine take_step()
       real(wp), allocatable :: next(:)
-      integer :: k
 
       state%contact%block_steps = state%contact%block_steps + 1
       associate (force => state%contact%force)
-        if (all_of_it) then
-          borne = 0.0_wp
-          held = 0.0_wp
-        end if
         borne = (1.0_wp - length)*borne + &
                 length*merge(force - self%gamma*(gap + opening), 0.0_wp, self%closed)
-        held = (1.0_wp - length)*held + length*motion* &
-               [(bodies%spring%stiffness(spring_of_motion(scene, k)), k=1, size(motion))]
+        held = (1.0_wp - length)*held + length*self%hold*motion
         gap = gap + length*opening
         pull = force - self%gamma*gap
         wanted = pull > 0.0_wp
         stays = length >= 1.0_wp .and. all(wanted .eqv. self%closed)
-        if (.not. stays) return
+        if (.not. stays .or. whole .and. change(2) > 1.0_wp) return
         next = merge(pull, 0.0_wp, self%closed)
-        change = maxval([abs(next - force), 0.0_wp])/maxval([next, tiny(1.0_wp)])
+        change(1) = maxval([abs(next - force), 0.0_wp])/maxval([next, tiny(1.0_wp)])
         force = next
+        pull = force - self%gamma*gap
       end associate
     end subroutine take_step
 
@@ -270,43 +276,27 @@ contains
       state%deformation = state%deformation + step
       state%strain = state%strain + strain
       state%contact%approach = state%contact%approach + motion
-      strained = maxval(abs(strain))/max(maxval(abs(state%strain)), tiny(1.0_wp))
+      change(2) = maxval(abs(strain))/max(maxval(abs(state%strain)), tiny(1.0_wp))
     end subroutine take_displacements
 
-    !> Up to where the function is least along the step, by regula falsi and geometric means.
-    real(wp) function length_of_step() result(t)
-      type(bracket) :: zero   ! of the slope
-      real(wp) :: begin, curvature, descent, now
-      integer :: i
+    !> How much of it makes the function least.
+    real(wp) function length_of_step() result(length)
+      real(wp) :: curvature, descent
 
       descent = sum(held*motion) - sum(borne*opening)
-      curvature = descent + sum((pull - self%gamma*opening)*opening, mask=self%closed)
-      do i = 1, size(motion)
-        curvature = curvature - bodies%spring%stiffness(spring_of_motion(scene, i))*motion(i)**2
-      end do
-      curvature = max(0.0_wp, curvature)
-      t = 1.0_wp
-      begin = slope(0.0_wp, curvature, descent)
-      zero = bracket([0.0_wp, 1.0_wp], [begin, slope(1.0_wp, curvature, descent)])
-      if (zero%values(2) <= flat_enough*abs(begin)) return
-      do i = 1, step_limit
-        t = zero%likely()
-        if (mod(i, 3) == 0) t = sqrt(max(zero%at(1), tiny(1.0_wp)))*sqrt(zero%at(2))
-        now = slope(t, curvature, descent)
-        if (abs(now) <= flat_enough*abs(begin)) return
-        call zero%take(t, now)
-      end do
+      curvature = descent + sum((pull - self%gamma*opening)*opening, mask=self%closed) - &
+                  sum(self%hold*motion**2)
+      length = least_at(max(0.0_wp, curvature), descent, pull, self%gamma*opening, opening)
     end function length_of_step
-
-    !> Of that function there.
-    pure real(wp) function slope(t, curvature, descent)
-      real(wp), intent(in) :: t
-      real(wp), intent(in) :: curvature, descent   !! of all but the pairs' part, and where the step begins
-
-      slope = t*curvature - descent - &
-              sum(max(0.0_wp, state%contact%force - self%gamma*(gap + t*opening))*opening)
-    end function slope
   end subroutine find_set
+
+  !> Has what steps change come to an end? The next step would change as much less, or it is rounding.
+  elemental logical function has_settled(change, before)
+    real(wp), intent(in) :: change, before   !! by the last step and the one before, of the largest
+
+    has_settled = change*merge(min(1.0_wp, change/max(before, tiny(1.0_wp))), 1.0_wp, before <= 1.0_wp) &
+                  <= negligible .or. change <= no_effect .and. change > 0.5_wp*before
+  end function has_settled
 
   !> What follows from the forces and gaps that were found: which pairs touch, and which motions are free.
   subroutine settle(self, scene, fixed_gap, state)
@@ -371,7 +361,7 @@ contains
 
       do n = 1, scene%motions%count
         associate (c => scene%motions%component(n), node => scene%motions%node(n))
-          nodal(c, :, n) = load(n, :) + bodies%spring%stiffness(spring_of_motion(scene, n))*u(c, :, node)
+          nodal(c, :, n) = load(n, :) + self%hold(n)*u(c, :, node)
         end associate
       end do
       n = scene%motions%count

@@ -7,7 +7,7 @@ module epcont_linear_joined_springs
   use epcont_plan_planned_scene, only: planned_scene
   implicit none
   private
-  public :: find_springs, spring_of_motion
+  public :: find_springs
 
   !> Stiffness of a spring over that of the softer body at its pair. A step leaves 1E-3 of the gaps, mostly
   !! 1E-4; more would cost digits of the factor, of which steps bring back as many each.
@@ -22,11 +22,12 @@ contains
 
   !> Springs of SUPORT freedoms, in the factor from now on, and of pairs, in it where these press. What
   !! nothing resists is held as firmly as its node.
-  subroutine find_springs(scene, bodies, redundant, gamma)
+  subroutine find_springs(scene, bodies, redundant, gamma, hold)
     type(planned_scene), intent(in) :: scene          !! numbered as one system
     class(factored_bodies), intent(inout) :: bodies   !! with a law
     logical, intent(in) :: redundant(:)               !! nothing resists the motion [motions]
     real(wp), allocatable, intent(out) :: gamma(:)    !! [force/length] [pairs]
+    real(wp), allocatable, intent(out) :: hold(:)     !! of SUPORT freedoms [force/length] [motions]
     real(wp) :: softest, stiffness(scene%model%nodes)
     integer :: k, springs
 
@@ -36,11 +37,11 @@ contains
     springs = size(scene%numbering%body(1)%spring%start) - 1
     allocate (bodies%spring%stiffness(springs), source=0.0_wp)
     allocate (bodies%spring%changed(springs), source=.true.)
-    do k = 1, scene%motions%count
-      associate (node => scene%motions%node(k))
-        bodies%spring%stiffness(spring_of_motion(scene, k)) = &
-          merge(stiffness(node), max(of_suport*softest, least_pivot*stiffness(node)), redundant(k))
-      end associate
+    associate (own => stiffness(scene%motions%node))
+      hold = merge(own, max(of_suport*softest, least_pivot*own), redundant)
+    end associate
+    do k = 1, size(hold)
+      bodies%spring%stiffness(spring_of_motion(scene, k)) = hold(k)
     end do
 
   contains

@@ -1,0 +1,49 @@
+!> How far to go along a step of joined bodies (`linear/joined_contact.f90`).
+module epcont_linear_line_search
+  use epcont_base_bracket, only: bracket
+  use epcont_base_kinds, only: wp
+  implicit none
+  private
+  public :: least_at
+
+  !> A step is cut where the slope at its end is more than this part of that where it begins.
+  real(wp), parameter :: flat_enough = 0.1_wp
+  !> Places that are tried.
+  integer, parameter :: most_tried = 200
+
+contains
+
+  !> Part of a step, up to all of it, at which a function of it is about least, by regula falsi and geometric
+  !! means: the energy of bodies, their loads, and springs that press alone.
+  real(wp) function least_at(curvature, descent, pull, loss, opening) result(t)
+    real(wp), intent(in) :: curvature    !! of the energy of all but the springs [energy]
+    real(wp), intent(in) :: descent      !! what that and the loads lose where the step begins [energy]
+    real(wp), intent(in) :: pull(:)      !! of each spring there [force]
+    real(wp), intent(in) :: loss(:)      !! of pull, by the whole step [force]
+    real(wp), intent(in) :: opening(:)   !! of the gaps by it [length]
+    type(bracket) :: zero                ! of the slope
+    real(wp) :: begin, now
+    integer :: i
+
+    t = 1.0_wp
+    begin = slope(0.0_wp)
+    zero = bracket([0.0_wp, 1.0_wp], [begin, slope(1.0_wp)])
+    if (zero%values(2) <= flat_enough*abs(begin)) return
+    do i = 1, most_tried
+      t = zero%likely()
+      if (mod(i, 3) == 0) t = sqrt(max(zero%at(1), tiny(1.0_wp)))*sqrt(zero%at(2))
+      now = slope(t)
+      if (abs(now) <= flat_enough*abs(begin)) return
+      call zero%take(t, now)
+    end do
+
+  contains
+
+    !> Of the function there.
+    real(wp) function slope(t)
+      real(wp), intent(in) :: t
+
+      slope = t*curvature - descent - sum(max(0.0_wp, pull - t*loss)*opening)
+    end function slope
+  end function least_at
+end module epcont_linear_line_search
