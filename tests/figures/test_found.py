@@ -70,7 +70,7 @@ class Found(scene.Extremes):
         text = turned(deck("slide_rot0p001"), -1e-3)
         upright = self.valid(text)
         self.assertLess(max(abs(row["ux"]) for row in upright.nodes.values()), 1e-3)
-        for degrees in (1e-4, 1e-3, 1.0, 30.0, -60.0):
+        for degrees in (5.9e-9, -1e-8, -3e-7, 1e-6, -1e-5, 1e-4, 1e-3, 1.0, 30.0, -60.0):
             c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
             with self.subTest(degrees=degrees):
                 for name, node in self.valid(turned(text, degrees)).nodes.items():
