@@ -7,8 +7,8 @@ module epcont_flexibility_motion_matrix
   private
   public :: motion_matrix, dense_motions, new_motion_matrix
 
-  !> A motion closes gaps by this part of how far it takes the body, or it is measured as if it did: of two that
-  !! close the same gaps that along the flat is the one which is none.
+  !> A motion closes gaps by this part of how far it takes the body, or it is measured as if it did: of two
+  !! that close the same gaps that along the flat is the one which is none.
   real(wp), parameter :: least_lever = 1.0e-4_wp
 
   !> Motion j closes the gaps of the pairs pair(start(j):start(j+1)-1).
@@ -68,7 +68,8 @@ contains
     motions = size(self%start) - 1
   end function motions
 
-  !> Largest entry of each motion, without its sign, or its least lever, where that is more; 0 of none [motions].
+  !> Largest entry of each motion, without its sign, or its least lever, where that is more; 0 of none
+  !! [motions].
   pure function sizes(self)
     class(motion_matrix), intent(in) :: self
     real(wp) :: sizes(size(self%start) - 1)

@@ -336,10 +336,11 @@ contains
     logical, allocatable :: guess(:)
 
     call move_alloc(state%contact%touching, guess)
-    associate (problem => self%problem, opening => gap_opening(scene%model, state%deformation))
-      problem%known_force = state%contact%force
-      problem%known_gap = problem%initial_gap + (opening + load_factor*self%travel_gap)
-      problem%load_gap = opening + load_factor*self%travel_gap - problem%flexibility%times(problem%known_force)
+    associate (problem => self%problem, force => state%contact%force, &
+               opening => gap_opening(scene%model, state%deformation) + load_factor*self%travel_gap)
+      problem%known_force = force
+      problem%known_gap = problem%initial_gap + opening
+      problem%load_gap = opening - problem%flexibility%times(force)
       problem%resultant = load_factor*self%resultant
     end associate
     call solve_contact(self%problem, state%contact, guess, self%plan%by_blocks, self%basis)
