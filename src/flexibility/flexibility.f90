@@ -179,9 +179,9 @@ contains
 
   contains
 
-    !> A motion of a body that closes no gap is seldom along one axis: on a flat that leans by 1E-8 it is along
-    !! x but for 1E-8 of y. What these two close, and what drives them, is alike but for rounding; in units of
-    !! the motion along x that would be a hold, and a load. So it is taken off all of the body's motions.
+    !> A motion of a body that closes no gap is seldom along one axis: on a flat that leans by 1E-8 it is that
+    !! along x but for 1E-8 of y. What these two close, and what drives them, is alike but for rounding; in
+    !! units of the motion along x that would be a hold, and a load. So it is taken off all of the body's.
     subroutine clear_slides(first, last)
       integer, intent(in) :: first, last             !! motions of one body
       real(wp), allocatable :: noise(:), own(:, :), slide(:, :)
