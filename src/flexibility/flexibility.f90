@@ -2,7 +2,7 @@
 module epcont_flexibility_flexibility
   use epcont_assembly_stiffness, only: body_stiffness
   use epcont_base_kinds, only: wp
-  use epcont_base_tolerances, only: cancelled, dependent, solved_to
+  use epcont_base_tolerances, only: cancelled, solved_to
   use epcont_element_kinematics, only: directions
   use epcont_flexibility_motion_matrix, only: motion_matrix, new_motion_matrix
   use epcont_linalg_assembled, only: sparse_rows
@@ -194,7 +194,7 @@ contains
       do j = 1, size(slide, 2)
         noise = matmul(own, slide(:, j))
         drive = dot_product(resultant(first:last)/closing%travel(first:last), slide(:, j))
-        if (abs(drive) > dependent*norm2(all_loads(first:last)/closing%travel(first:last))) drive = 0.0_wp
+        if (abs(drive) > solved_to*norm2(all_loads(first:last)/closing%travel(first:last))) drive = 0.0_wp
         do m = first, last
           do e = closing%start(m), closing%start(m + 1) - 1
             closing%closing(e) = closing%closing(e) - &
