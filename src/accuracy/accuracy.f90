@@ -32,7 +32,10 @@ module epcont_accuracy_accuracy
     real(wp), allocatable :: element(:)            !! square of each element's error [energy] [elements]
     integer, allocatable :: worst(:)               !! elements with the largest errors
     type(zone_error), allocatable :: zone(:)
-    !> Error of the largest pressure of all; negative: unknown [stress]
+    !> The zone with the largest pressure of all; of those equal but for rounding the one of which least is
+    !! known, or the first. 0: there is no zone
+    integer :: leading = 0
+    !> Error of that pressure; negative: unknown [stress]
     real(wp) :: max_pressure = -1.0_wp
     real(wp), allocatable :: approach(:)           !! negative: unknown [motions]
     logical, allocatable :: approach_unbounded(:)  !! it grows with every finer mesh [motions]
@@ -78,10 +81,25 @@ contains
     call assess_mesh()
     if (pressed) call assess_zones()
     if (carried) call assess_sums()
-    if (size(accuracy%zone) > 0) &
-      accuracy%max_pressure = accuracy%zone(maxloc(answer%zones%max_pressure, dim=1))%pressure
+    accuracy%leading = leading_zone()
+    if (accuracy%leading > 0) accuracy%max_pressure = accuracy%zone(accuracy%leading)%pressure
 
   contains
+
+    !> As `leading` has it: unbounded comes before not resolved, and that before the largest error.
+    pure integer function leading_zone() result(leading)
+      logical :: worst(size(accuracy%zone))
+
+      leading = 0
+      if (size(worst) == 0) return
+      associate (pressure => answer%zones%max_pressure, zone => accuracy%zone, off => accuracy%zone%pressure)
+        worst = pressure >= maxval(pressure) - no_effect*abs(maxval(pressure))
+        if (any(worst .and. zone%unbounded)) worst = worst .and. zone%unbounded
+        if (any(worst .and. .not. zone%resolved)) worst = worst .and. .not. zone%resolved
+        leading = findloc(worst .and. off >= maxval(off, mask=worst)*(1.0_wp - no_effect), .true., dim=1)
+        if (leading == 0) leading = findloc(worst, .true., dim=1)   ! of none the error is known
+      end associate
+    end function leading_zone
 
     !> The error of the mesh in the energy norm, and the elements that have the most of it.
     subroutine assess_mesh()

@@ -72,8 +72,8 @@ contains
       barrier%own_flexibility = scaled%own_flexibility + maxval(scaled%softness)
       call factor_all(basis, barrier)
       if (.not. basis%sound) return
-      call answer(scaled%gap, load, at)
-      at%gap = gaps_under(scaled, scaled%gap, at%force, at%approach)
+      call answer(gaps_under(scaled, scaled%gap, at%force - scaled%known_force, at%approach), load, at)
+      at%gap = gaps_under(scaled, scaled%gap, at%force - scaled%known_force, at%approach)
       at%force = at%force + above_zero(at%force)
       at%gap = at%gap + above_zero(at%gap)
     end subroutine begin
@@ -82,7 +82,7 @@ contains
     subroutine advance()
       real(wp) :: ahead, length
 
-      open = gaps_under(scaled, scaled%gap, at%force, at%approach) - at%gap
+      open = gaps_under(scaled, scaled%gap, at%force - scaled%known_force, at%approach) - at%gap
       product = 0.0_wp
       call find_step()
       length = length_of_step(1.0_wp)

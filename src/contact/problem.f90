@@ -32,6 +32,9 @@ module epcont_contact_problem
     real(wp), allocatable :: initial_gap(:)     !! g0, negative: an overlap [length] [n]
     real(wp), allocatable :: load_gap(:)        !! gl, opening by the loads without contact [length] [n]
     real(wp), allocatable :: resultant(:)       !! P, load of the bodies along their free motions [m]
+    !> Forces about which those of the answer are found, and the gaps under loads and these, without motions:
+    !! F has a part in what is between the two alone. Not allocated: none [force], [length] [n]
+    real(wp), allocatable :: known_force(:), known_gap(:)
     !> What the unit motions of each body take it by: of motions that nothing determines the least is chosen.
     !! Not allocated: each by itself takes it by the largest gap that it closes [length] [any, m]
     real(wp), allocatable :: travel(:, :)
@@ -49,6 +52,7 @@ module epcont_contact_problem
   type :: contact_solution
     integer :: state = contact_stalled       !! one of the states above
     real(wp), allocatable :: force(:)        !! R [force] [n]
+    real(wp), allocatable :: change(:)       !! of these, more than the known forces [force] [n]
     real(wp), allocatable :: gap(:)          !! w [length] [n]
     real(wp), allocatable :: approach(:)     !! q [m]
     logical, allocatable :: touching(:)      !! closed pairs, pressed or not [n]

@@ -26,8 +26,9 @@ module epcont_contact_scaling
     real(wp), allocatable :: own_flexibility(:) !! that each pair has besides F [n]
     type(motion_matrix) :: motion               !! A [n, m]
     integer, allocatable :: motion_level(:)     !! last level of the pairs that each motion closes [m]
-    real(wp), allocatable :: gap(:)             !! g, gaps under load before contact acts [n]
-    real(wp), allocatable :: gap_terms(:)       !! |g0| + |gl|, what g is the sum of [n]
+    real(wp), allocatable :: gap(:)             !! g, gaps under load and known forces [n]
+    real(wp), allocatable :: known_force(:)     !! those, 0 where the problem has none [n]
+    real(wp), allocatable :: gap_terms(:)       !! what g is the sum of [n]
     real(wp), allocatable :: unloaded_gap(:)    !! g^, gaps of the start, >= 0 [n]
     real(wp), allocatable :: resultant(:)       !! P [m]
     real(wp) :: force_unit = 1.0_wp             !! rho
@@ -63,7 +64,6 @@ contains
     scaled%motion_size = problem%motion%sizes()
     scaled%motion_size = or_else(or_else(scaled%motion_size, largest_of(scaled%motion_size)), 1.0_wp)
     scaled%gap = problem%initial_gap + problem%load_gap
-    scaled%gap_terms = abs(problem%initial_gap) + abs(problem%load_gap)
     scaled%unloaded_gap = max(problem%initial_gap, 0.0_wp)
     largest = largest_of(problem%flexibility%diagonal())
 
@@ -75,8 +75,15 @@ contains
       omega = or_else(omega, 1.0_wp)
 
       scaled%flexibility_scale = merge(1.0_wp/or_else(largest, 1.0_wp), rho/omega, largest > 0.0_wp)
-      scaled%gap = scaled%gap/omega
+      scaled%known_force = 0*scaled%gap
+      scaled%gap_terms = abs(problem%initial_gap) + abs(problem%load_gap)
+      if (allocated(problem%known_force)) then
+        scaled%known_force = problem%known_force/rho
+        scaled%gap = problem%known_gap
+        scaled%gap_terms = abs(problem%known_gap)
+      end if
       scaled%gap_terms = scaled%gap_terms/omega
+      scaled%gap = scaled%gap/omega
       scaled%unloaded_gap = scaled%unloaded_gap/omega
       scaled%resultant = problem%resultant/scaled%motion_size/rho
     end associate

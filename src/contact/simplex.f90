@@ -86,7 +86,8 @@ contains
       type(contact_state) :: rest
 
       rest%contact_basis = state%contact_basis
-      call solve_set(rest, scaled, scaled%unloaded_gap, 0.0_wp*scaled%resultant, refinements=1)
+      call solve_set(rest, scaled, scaled%unloaded_gap + gaps_by_forces(scaled, scaled%known_force), &
+                     0.0_wp*scaled%resultant, refinements=1)
       values = max(basic_values(rest), 0.0_wp)
     end function unloaded_values
 

@@ -113,20 +113,31 @@ contains
       solution%motion_free = find_free_motions(motion, solution%touching, &
           state%force > lost_digits*maxval([state%force, 1.0_wp]))
       if (any(solution%motion_free)) then
-        where (state%force <= zero) state%force = 0.0_wp
+        call open_pairs(state, state%force <= zero)
         call choose_neutral(state, solution%approach)
         call find_touching(state, terms, solution%touching)
       end if
       if (.not. present(any_forces)) then
         solution%indeterminate = find_indeterminate_forces(scaled, solution%touching, state%force > zero)
         call share_equally(scaled, solution%indeterminate, state%force)
+        where (solution%indeterminate) state%change = state%force - scaled%known_force
       end if
       if (present(basis)) call move_basis(state%contact_basis, basis)
       ! In the deck's units.
       solution%force = state%force*scaled%force_unit
+      solution%change = state%change*scaled%force_unit
       solution%gap = state%gap*scaled%gap_unit
       solution%approach = solution%approach*scaled%gap_unit/scaled%motion_size
     end subroutine settle
+
+    !> Take their force from some pairs.
+    pure subroutine open_pairs(state, chosen)
+      type(contact_state), intent(inout) :: state
+      logical, intent(in) :: chosen(:)        !! [n]
+
+      where (chosen) state%force = 0.0_wp
+      where (chosen) state%change = -scaled%known_force
+    end subroutine open_pairs
 
     !> Which pairs touch: no gap is left of theirs.
     pure subroutine find_touching(state, terms, touching)
@@ -230,13 +241,13 @@ contains
 
       do
         pressed = state%force > cancelled
-        where (.not. pressed) state%force = 0.0_wp
+        call open_pairs(state, .not. pressed)
         terms = terms_of_gaps(scaled, state)
         moving = abs(state%approach) > cancelled*maxval([terms(state%pairs), cancelled])
         if (all(moving) .and. all(pressed(state%pairs))) return
         where (.not. moving) state%approach = 0.0_wp
         terms = terms_of_gaps(scaled, state)
-        state%gap = gaps_under(scaled, scaled%gap, state%force, state%approach)
+        state%gap = gaps_under(scaled, scaled%gap, state%change, state%approach)
         if (all(abs(state%gap) <= negligible*terms .or. .not. pressed) .or. &
             all(pressed(state%pairs))) return
         fewer%contact_basis = new_basis(scaled, pressed)
@@ -244,6 +255,7 @@ contains
         call solve_set(fewer, scaled, scaled%gap, scaled%resultant, refinements=1)
         call move_basis(fewer%contact_basis, state%contact_basis)
         state%force = fewer%force
+        state%change = fewer%change
         state%gap = fewer%gap
         state%approach = fewer%approach
       end do

@@ -16,6 +16,8 @@ module epcont_contact_state
   !> A set with its solution at full load; without forces where the basis is not sound.
   type, extends(contact_basis) :: contact_state
     real(wp), allocatable :: force(:)           !! zero outside the basis [n]
+    !> What they are more than the known ones: where these are large, no digits of it are left in the sum [n]
+    real(wp), allocatable :: change(:)
     real(wp), allocatable :: gap(:)             !! zero up to rounding in the basis [n]
     real(wp), allocatable :: approach(:)        !! [m]
   end type contact_state
@@ -38,39 +40,44 @@ contains
   pure subroutine solve_set(state, scaled, opening, load, refinements)
     type(contact_state), intent(inout) :: state   !! its basis is solved with
     type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
-    real(wp), intent(in) :: opening(:)            !! gaps without forces [n]
+    real(wp), intent(in) :: opening(:)            !! gaps under the known forces [n]
     real(wp), intent(in) :: load(:)               !! [m]
     integer, intent(in) :: refinements            !! steps that follow the solution
-    real(wp), allocatable :: force(:, :), approach(:, :)
+    real(wp), allocatable :: change(:, :), approach(:, :)
     real(wp) :: unbalanced(size(load), 1)         ! what is not carried yet
     integer :: step
 
-    state%gap = opening
-    state%force = spread(0.0_wp, 1, size(opening))
+    state%change = -scaled%known_force
     state%approach = spread(0.0_wp, 1, size(load))
+    if (state%sound) state%change(state%pairs) = 0.0_wp
+    state%force = scaled%known_force + state%change
+    state%gap = opening
+    if (any(abs(state%change) > 0.0_wp)) &
+      state%gap = gaps_under(scaled, opening, state%change, state%approach)
     if (.not. state%sound) return
-    unbalanced(:, 1) = load
     associate (pairs => state%pairs)
       do step = 0, refinements
-        call respond(state%contact_basis, reshape(state%gap(pairs), [size(pairs), 1]), unbalanced, &
-                     force, approach)
-        state%force(pairs) = state%force(pairs) + force(:, 1)
-        state%approach = state%approach + approach(:, 1)
-        state%gap = gaps_under(scaled, opening, state%force, state%approach)
         unbalanced(:, 1) = load - scaled%motion%carried(state%force)
+        call respond(state%contact_basis, reshape(state%gap(pairs), [size(pairs), 1]), unbalanced, &
+                     change, approach)
+        state%change(pairs) = state%change(pairs) + change(:, 1)
+        state%force(pairs) = scaled%known_force(pairs) + state%change(pairs)
+        state%approach = state%approach + approach(:, 1)
+        state%gap = gaps_under(scaled, opening, state%change, state%approach)
       end do
     end associate
   end subroutine solve_set
 
-  !> w = g + F R - A q.
-  pure function gaps_under(scaled, opening, force, approach) result(gap)
+  !> w = g + F R - A q, R without the known forces, which g has in it.
+  pure function gaps_under(scaled, opening, change, approach) result(gap)
     type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
     real(wp), intent(in) :: opening(:)            !! g [n]
-    real(wp), intent(in) :: force(:)              !! R [n]
+    real(wp), intent(in) :: change(:)             !! R [n]
     real(wp), intent(in) :: approach(:)           !! q [m]
     real(wp), allocatable :: gap(:)
 
-    gap = opening - scaled%motion%times(approach) + gaps_by_forces(scaled, force)
+    gap = opening - scaled%motion%times(approach) + gaps_by_forces(scaled, change) &
+          + scaled%own_flexibility*scaled%known_force
   end function gaps_under
 
   !> The basic variable of each pair: force where it is in the basis, gap elsewhere.
@@ -111,6 +118,6 @@ contains
     real(wp), allocatable :: terms(:)
 
     terms = scaled%gap_terms + scaled%motion%times(state%approach, magnitudes=.true.) &
-            + gaps_by_forces(scaled, state%force, magnitudes=.true.)
+            + gaps_by_forces(scaled, state%change, magnitudes=.true.)
   end function terms_of_gaps
 end module epcont_contact_state

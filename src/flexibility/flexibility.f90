@@ -6,7 +6,7 @@ module epcont_flexibility_flexibility
   use epcont_element_kinematics, only: directions
   use epcont_flexibility_motion_matrix, only: motion_matrix, new_motion_matrix
   use epcont_linalg_assembled, only: sparse_rows
-  use epcont_linalg_dense, only: cholesky_solve
+  use epcont_linalg_dense, only: cholesky_solve, null_space
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
   use epcont_plan_numbering, only: numbering_type
@@ -153,8 +153,9 @@ contains
     type(free_motions), intent(in) :: motions   !! free ones
     type(motion_matrix), intent(out) :: closing   !! A
     real(wp), allocatable, intent(out) :: resultant(:)    !! P [motions]
+    type(motion_matrix) :: of_pair   ! rows of A
     real(wp) :: all_loads(motions%count), load(directions), moved(directions)
-    integer :: c, i, m
+    integer :: b, c, i, m
 
     call close_gaps()
     allocate (resultant(motions%count), source=0.0_wp)
@@ -169,16 +170,69 @@ contains
       end do
     end do
     where (abs(resultant) <= cancelled*all_loads) resultant = 0.0_wp
+    of_pair = closing%turned()
+    do b = 1, model%bodies
+      if (motions%first(b + 1) > motions%first(b) + 1) &
+        call clear_slides(motions%first(b), motions%first(b + 1) - 1)
+    end do
+    call closing%drop(solved_to)
 
   contains
+
+    !> A motion of a body that closes no gap is seldom along one axis: on a flat that leans by 1E-8 it is that
+    !! along x but for 1E-8 of y. What these two close, and what drives them, is alike but for rounding; in
+    !! units of the motion along x that would be a hold, and a load. So it is taken off all of the body's.
+    subroutine clear_slides(first, last)
+      integer, intent(in) :: first, last             !! motions of one body
+      real(wp), allocatable :: noise(:), own(:, :), slide(:, :)
+      real(wp) :: drive
+      integer :: before, e, j, m
+
+      before = closing%start(first) - 1
+      own = rows_of_entries(first, last)
+      slide = null_space(own, solved_to*norm2(own))
+      do j = 1, size(slide, 2)
+        noise = matmul(own, slide(:, j))
+        drive = dot_product(resultant(first:last)/closing%travel(first:last), slide(:, j))
+        if (abs(drive) > solved_to*norm2(all_loads(first:last)/closing%travel(first:last))) drive = 0.0_wp
+        do m = first, last
+          do e = closing%start(m), closing%start(m + 1) - 1
+            closing%closing(e) = closing%closing(e) - &
+                                 noise(e - before)*slide(m - first + 1, j)*closing%travel(m)
+          end do
+          resultant(m) = resultant(m) - drive*slide(m - first + 1, j)*closing%travel(m)
+        end do
+      end do
+    end subroutine clear_slides
+
+    !> Of each entry of these motions its row of A, by their travels.
+    pure function rows_of_entries(first, last) result(row)
+      integer, intent(in) :: first, last
+      real(wp), allocatable :: row(:, :)   !! [entries, these]
+      integer :: before, e, i
+
+      before = closing%start(first) - 1
+      allocate (row(closing%start(last + 1) - 1 - before, last - first + 1), source=0.0_wp)
+      do e = 1, size(row, 1)
+        associate (pair => closing%pair(before + e))
+          do i = of_pair%start(pair), of_pair%start(pair + 1) - 1
+            associate (m => of_pair%pair(i))
+              if (m >= first .and. m <= last) row(e, m - first + 1) = of_pair%closing(i)/closing%travel(m)
+            end associate
+          end do
+        end associate
+      end do
+    end function rows_of_entries
 
     !> Of each pair by the motions of the bodies that have its nodes.
     subroutine close_gaps()
       real(wp) :: moved(directions, maxval([0, model%row_start(2:) - model%row_start(:model%pairs)]))
       integer, allocatable :: pair(:), motion(:)   ! of each entry of A
       real(wp), allocatable :: by(:)
+      real(wp) :: travel(motions%count)
       integer :: entries, i, j, k, m, n
 
+      travel = 0.0_wp
       n = sum(motions%first(model%body(model%row_node) + 1) - motions%first(model%body(model%row_node)))
       allocate (pair(n), motion(n), by(n))
       entries = 0
@@ -196,13 +250,13 @@ contains
               pair(entries) = k
               motion(entries) = m
               by(entries) = -model%opening(k, moved(:, :n))
-              if (abs(by(entries)) <= solved_to*sum(abs(weight)*norm2(moved(:, :n), dim=1))) &
-                by(entries) = 0.0_wp
+              travel(m) = max(travel(m), maxval(norm2(moved(:, :n), dim=1)))
             end do
           end do
         end associate
       end do
       closing = new_motion_matrix(model%pairs, motions%count, pair(:entries), motion(:entries), by(:entries))
+      closing%travel = merge(travel, 1.0_wp, travel > 0.0_wp)
     end subroutine close_gaps
   end subroutine see_motions
 end module epcont_flexibility_flexibility

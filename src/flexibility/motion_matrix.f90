@@ -7,12 +7,18 @@ module epcont_flexibility_motion_matrix
   private
   public :: motion_matrix, dense_motions, new_motion_matrix
 
+  !> A motion closes gaps by this part of how far it takes the body, or it is measured as if it did: of two
+  !! that close the same gaps that along the flat is the one which is none.
+  real(wp), parameter :: least_lever = 1.0e-4_wp
+
   !> Motion j closes the gaps of the pairs pair(start(j):start(j+1)-1).
   type :: motion_matrix
     integer :: pairs = 0                    !! of the problem
     integer, allocatable :: start(:)        !! [motions + 1]
     integer, allocatable :: pair(:)         !! ascending in each motion [entries]
     real(wp), allocatable :: closing(:)     !! [entries]
+    !> How far each takes nodes of its pairs, at most; not allocated: not known [motions]
+    real(wp), allocatable :: travel(:)
   contains
     procedure :: motions
     procedure :: sizes
@@ -25,6 +31,7 @@ module epcont_flexibility_motion_matrix
     procedure :: dense
     procedure :: only
     procedure :: turned
+    procedure :: drop
   end type motion_matrix
 
 contains
@@ -61,13 +68,16 @@ contains
     motions = size(self%start) - 1
   end function motions
 
-  !> Largest entry of each motion, without its sign; 0 of none [motions].
+  !> Largest entry of each motion, without its sign, or its least lever, where that is more; 0 of none
+  !! [motions].
   pure function sizes(self)
     class(motion_matrix), intent(in) :: self
     real(wp) :: sizes(size(self%start) - 1)
     integer :: j
 
     sizes = [(maxval([abs(self%closing(self%start(j):self%start(j + 1) - 1)), 0.0_wp]), j=1, size(sizes))]
+    if (.not. allocated(self%travel)) return
+    where (sizes > 0.0_wp) sizes = max(sizes, least_lever*self%travel)
   end function sizes
 
   !> The same, and one for a motion that closes no gap [motions].
@@ -197,6 +207,28 @@ contains
                                [((j, i=self%start(j), self%start(j + 1) - 1), j=1, self%motions())], &
                                self%pair, self%closing)
   end function turned
+
+  !> Drop what closes a gap by up to a part of the motion's travel.
+  pure subroutine drop(self, part)
+    class(motion_matrix), intent(inout) :: self   !! of known travels
+    real(wp), intent(in) :: part
+    integer :: i, j, last, start
+
+    last = 0
+    start = 1
+    do j = 1, self%motions()
+      do i = start, self%start(j + 1) - 1
+        if (abs(self%closing(i)) <= part*self%travel(j)) cycle
+        last = last + 1
+        self%pair(last) = self%pair(i)
+        self%closing(last) = self%closing(i)
+      end do
+      start = self%start(j + 1)
+      self%start(j + 1) = last + 1
+    end do
+    self%pair = self%pair(:last)
+    self%closing = self%closing(:last)
+  end subroutine drop
 
   !> With some of the motions only.
   pure type(motion_matrix) function only(self, kept) result(fewer)

@@ -29,9 +29,6 @@ module epcont_linear_linear_problem
   !> Where two steps of refinement change the strains by more than this part of what the two before did,
   !! rounding is reached, or single precision leaves too little to begin with.
   real(wp), parameter :: slowest_rate = 0.5_wp
-  !> Part of the contact forces that a step of refinement finds anew at first: what they round, and so open,
-  !! in slender bodies is as much smaller (strips 200:1: gaps of 3e-14, where all of the forces leave 3e-10).
-  real(wp), parameter :: least_share = 1.0e-4_wp
 
   type, extends(factored_bodies) :: linear_problem
     type(iteration_plan), private :: plan
@@ -195,6 +192,7 @@ contains
       if (any(self%law%initial_stress /= 0.0_wp)) &
         force = force - self%operator%nodal_forces(scene%model, self%law%initial_stress)
       call self%add_forces(scene, force, load_factor, half)
+      if (allocated(self%problem%known_gap)) deallocate (self%problem%known_force, self%problem%known_gap)
       self%problem%load_gap = gap_opening(scene%model, self%finish(scene, half, load_factor, .true.)) + &
                               load_factor*self%travel_gap
       self%problem%resultant = load_factor*self%resultant
@@ -211,7 +209,6 @@ contains
     !> The same to double precision with factors in single: step by step the forces out of balance, in double,
     !! are solved for, and the contact with them. `contact_stalled` where that does not converge.
     subroutine refine()
-      real(wp), allocatable :: added(:)
       real(wp) :: change, before(2)   ! of this step, of the two before
       integer :: step
 
@@ -240,7 +237,7 @@ contains
           return
         end if
         before = [before(2), change]
-        call correct_contact(self, scene, load_factor, 1.0_wp, state, added)
+        call correct_contact(self, scene, load_factor, state)
         call watch%lap(stage_contact)
         if (state%contact%state /= contact_solved) return
       end do
@@ -259,8 +256,6 @@ contains
     real(wp), intent(out) :: change             !! of displacements and contact forces, of the largest of each
     class(stopwatch), intent(inout) :: watch    !! takes the time
     type(scene_state) :: balanced, refined
-    real(wp), allocatable :: added(:)   ! to the contact forces
-    real(wp) :: share      ! of these that is found anew
     real(wp) :: strained   ! by a correction: the displacements tell what the step has done
 
     change = huge(1.0_wp)
@@ -268,21 +263,12 @@ contains
     balanced = state
     call correct(self, scene, load_factor, balanced, strained)
     call watch%lap(stage_displacements)
-    ! What opens where a force presses would have needed more of the forces.
-    share = least_share
-    do
-      refined = balanced
-      call correct_contact(self, scene, load_factor, share, refined, added)
-      if (share == 1.0_wp) exit
-      if (refined%contact%state == contact_solved) then
-        if (all(refined%contact%touching .or. state%contact%force == 0.0_wp)) exit
-      end if
-      share = min(1.0_wp, 100*share)
-    end do
+    refined = balanced
+    call correct_contact(self, scene, load_factor, refined)
     call watch%lap(stage_contact)
     if (refined%contact%state /= contact_solved) return
     ! Not under all forces again: in a slender body even the rounding of these opens gaps.
-    call deform(self, scene, pair_forces(scene%model, added), refined, strained)
+    call deform(self, scene, pair_forces(scene%model, refined%contact%change), refined, strained)
     call complete(self, scene, load_factor, refined)
     change = max(relative_change(state%displacement, refined%displacement, of=refined%displacement), &
                  force_change(state%contact, refined%contact, of=refined%contact))
@@ -300,13 +286,12 @@ contains
     type(scene_state), intent(in) :: state      !! what `solve` has found
     real(wp), intent(out) :: error              !! relative
     type(scene_state) :: refined
-    real(wp), allocatable :: added(:)
     real(wp) :: second
 
     refined = state
     call correct(self, scene, load_factor, refined, error)
     call correct(self, scene, load_factor, refined, second)
-    call correct_contact(self, scene, load_factor, 1.0_wp, refined, added)
+    call correct_contact(self, scene, load_factor, refined)
     if (second > max(slowest_rate*error, solved_to)) error = 1.0_wp
     if (refined%contact%state /= contact_solved) error = 1.0_wp
     error = max(error, relative_change(state%deformation, refined%deformation, of=state%deformation), &
@@ -341,29 +326,26 @@ contains
     change = maxval(abs(strain))/max(maxval(abs(state%strain)), tiny(1.0_wp))
   end subroutine deform
 
-  !> The contact with the gaps of a deformation, of which the contact forces' part goes by the flexibility: of
-  !! these a share is found anew, the rest stays as it is.
-  subroutine correct_contact(self, scene, load_factor, share, state, added)
+  !> The contact with the gaps of a deformation, about the contact forces that made it: what F says is what a
+  !! change of these opens.
+  subroutine correct_contact(self, scene, load_factor, state)
     type(linear_problem), intent(inout) :: self
     type(planned_scene), intent(in) :: scene
     real(wp), intent(in) :: load_factor
-    real(wp), intent(in) :: share
     type(scene_state), intent(inout) :: state   !! its touching pairs, if allocated, are a guess
-    real(wp), allocatable, intent(out) :: added(:)   !! to the contact forces
     logical, allocatable :: guess(:)
-    real(wp), allocatable :: moving(:), rest(:)   ! parts of the contact forces
 
     call move_alloc(state%contact%touching, guess)
-    moving = share*state%contact%force
-    rest = state%contact%force - moving
-    self%problem%load_gap = gap_opening(scene%model, state%deformation) + load_factor*self%travel_gap - &
-                            self%problem%flexibility%times(moving)
-    self%problem%resultant = load_factor*self%resultant - self%problem%motion%carried(rest)
+    associate (problem => self%problem, force => state%contact%force, &
+               opening => gap_opening(scene%model, state%deformation) + load_factor*self%travel_gap)
+      problem%known_force = force
+      problem%known_gap = problem%initial_gap + opening
+      problem%load_gap = opening - problem%flexibility%times(force)
+      problem%resultant = load_factor*self%resultant
+    end associate
     call solve_contact(self%problem, state%contact, guess, self%plan%by_blocks, self%basis)
-    if (state%contact%state /= contact_solved) return
-    added = state%contact%force - moving
-    state%contact%force = rest + state%contact%force
   end subroutine correct_contact
+
   !> What follows from deformation, strains and contact: stresses, displacements and gaps.
   subroutine complete(self, scene, load_factor, state)
     type(linear_problem), intent(in) :: self

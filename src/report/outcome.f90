@@ -281,7 +281,7 @@ contains
     character(len=:), allocatable :: word
     integer :: z
 
-    z = maxloc(run%answer%zones%max_pressure, dim=1)
+    z = run%accuracy%leading
     if (present(zone)) z = zone
     word = ''
     if (z == 0 .or. z > size(run%accuracy%zone)) return

@@ -35,6 +35,22 @@ def turned(text, degrees):
     return "\n".join(map(",".join, lines)) + "\n"
 
 
+def strips(sides, foundation):
+    """Square elements side by side on others of another modulus, held below, pressed evenly by 1."""
+    text = scene.Deck(2.1e5, 0.3)
+    text.material(2, foundation, 0.3)
+    ticks = [float(k) for k in range(sides + 1)]
+    lower, upper = text.block(2, ticks, [-1.0, 0.0]), text.block(1, ticks, [0.0, 1.0], 5001)
+    text.hold(12, *lower[0])
+    text.card("BLSEG", 1, *upper[0])
+    text.card("BLSEG", 2, *reversed(lower[1]))
+    text.card("BCONP", 1, 1, 2)
+    text.press(upper[1], float(sides))
+    text.support(12, upper[1][0])
+    text.support(2, upper[1][-1])
+    return text
+
+
 class Found(scene.Extremes):
 
     def test_joint_without_gap(self):
@@ -54,7 +70,7 @@ class Found(scene.Extremes):
         text = turned(deck("slide_rot0p001"), -1e-3)
         upright = self.valid(text)
         self.assertLess(max(abs(row["ux"]) for row in upright.nodes.values()), 1e-3)
-        for degrees in (1e-4, 1e-3, 1.0, 30.0, -60.0):
+        for degrees in (5.9e-9, -1e-8, -3e-7, 1e-6, -1e-5, 1e-4, 1e-3, 1.0, 30.0, -60.0):
             c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
             with self.subTest(degrees=degrees):
                 for name, node in self.valid(turned(text, degrees)).nodes.items():
@@ -75,6 +91,18 @@ class Found(scene.Extremes):
                         if result.status == 0:
                             self.near([pair["pressure"] for pair in result.table("contact")], [1e-5] * 45, 1e-4)
                             self.assertEqual(result.message, "")
+
+    def test_slender_strips(self):
+        """A strip 150 and 500 times as long as high lies on another: the last digit of its forces bends it further than gaps may be open."""
+        wave = self.valid(deck("oblique150x1"))
+        self.near(wave.summary["max_pressure"], 129.991, 1e-5)
+        for sides, degrees, foundation in ((500, 0.0, 2.1e5), (500, 17.0, 2.1e11), (1000, 45.0, 2.1e5)):
+            for solver in ("BAND", "FRONTAL"):
+                with self.subTest(sides=sides, degrees=degrees, foundation=foundation, solver=solver):
+                    text = strips(sides, foundation)
+                    text.parameter("SOLVER", solver)
+                    result = self.valid(turned(text.text(), degrees))
+                    self.near([pair["pressure"] for pair in result.table("contact")[20:-20]], [1.0] * (sides - 39), 1e-9)
 
     def test_gap_that_closes(self):
         """A block comes straight down on a stack: that is no slide, whichever side of the corner is the nearer one by rounding."""
