@@ -34,7 +34,7 @@ contains
   !> Errors of the answer's strains, and what they have in common with those of unit loads.
   subroutine compare_fields(scene, linear, answer, table, passed, field)
     type(planned_scene), intent(in) :: scene     !! that was solved
-    type(linear_problem), intent(in) :: linear   !! of the last solve
+    type(linear_problem), intent(inout) :: linear   !! of the last solve
     class(scene_state), intent(in) :: answer     !! to it
     type(patch_table), intent(in) :: table       !! of its elements
     type(passed_loads), intent(in) :: passed     !! contact forces under unit loads
