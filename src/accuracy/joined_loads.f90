@@ -1,5 +1,5 @@
-!> Unit loads on bodies that are one system, and what errors of the stiffness and of the gaps do to its contact
-!> forces: the figures of `unit_loads`, by solves with its factor, which they share.
+!> Unit loads on bodies that are one system, and what errors of the stiffness and of the gaps do to its
+!> contact forces: the figures of `unit_loads`, by solves with its factor, which they share.
 module epcont_accuracy_joined_loads
   use epcont_accuracy_passed_loads, only: dense_loads, passed_loads
   use epcont_base_kinds, only: wp

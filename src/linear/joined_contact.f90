@@ -354,7 +354,8 @@ contains
 
       do n = 1, scene%motions%count
         associate (c => scene%motions%component(n), node => scene%motions%node(n))
-          loads%force(c, :, n) = load(n, :) + bodies%spring%stiffness(spring_of_motion(scene, n))*u(c, :, node)
+          loads%force(c, :, n) = load(n, :) + &
+                                 bodies%spring%stiffness(spring_of_motion(scene, n))*u(c, :, node)
         end associate
       end do
       n = scene%motions%count
