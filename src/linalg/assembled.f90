@@ -148,12 +148,13 @@ contains
 
   !> Begin an estimate of the condition in the 1-norm, from the factor: of the inverse's norm a lower bound,
   !! seldom under a third of it. Two columns at a time (Higham and Tisseur, SIAM J. Matrix Anal. Appl. 21
-  !! (2000) 1185) in two solves, since a factor takes longer to read than to use: `dlacn2`, one column in each
-  !! of five solves, takes two and a half times as long for the same figure; the alternating column alone
-  !! takes three quarters, but its figure depends on the order of the equations (0.6 to 1 of this one). (Begun with
-  !! a solution already known it would take one, but where that has ties or zeros the figure would be a matter
-  !! of rounding: 0.4 to 1 of this one.) The second solve is left to whoever reads the factor anyway: the
-  !! largest entry of what comes of these columns is a bound, too, since the inverse is symmetric.
+  !! (2000) 1185) in two solves, since a factor takes longer to read than to use: `dlacn2`, one column in
+  !! each of five solves, takes two and a half times as long for the same figure; the alternating column
+  !! alone takes three quarters, but its figure depends on the order of the equations (0.6 to 1 of this
+  !! one). (Begun with a solution already known it would take one, but where that has ties or zeros the
+  !! figure would be a matter of rounding: 0.4 to 1 of this one.) The second solve is left to whoever reads
+  !! the factor anyway: the largest entry of what comes of these columns is a bound, too, since the inverse
+  !! is symmetric.
   subroutine begin_estimate(self, x, inverse_norm)
     class(assembled_matrix), intent(in) :: self
     real(wp), contiguous, intent(out) :: x(:, :)   !! columns to be solved with [order, 2]
