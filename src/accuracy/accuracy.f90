@@ -3,12 +3,12 @@
 !> zone; what rounding may have done to the contact forces; pairs that may as well be open.
 module epcont_accuracy_accuracy
   use epcont_accuracy_error_fields, only: compare_fields, error_fields
-  use epcont_accuracy_joined_sensitivity, only: find_joined_sensitivity
+  use epcont_accuracy_joined_loads, only: contact_sensitivity
   use epcont_accuracy_narrow_zone, only: find_turned, shifted_loads, too_near
   use epcont_accuracy_passed_loads, only: dense_loads
   use epcont_accuracy_patches, only: new_patch_table, patch_table, wide_patch
   use epcont_accuracy_surface_line, only: first_element, new_surface_line, smooth_pressures, surface_line
-  use epcont_accuracy_unit_loads, only: contact_sensitivity, find_sensitivity, find_unit_loads, unit_loads
+  use epcont_accuracy_unit_loads, only: find_sensitivity, find_unit_loads, unit_loads
   use epcont_accuracy_weights, only: concentrated, least_energy, of_shares, uncancelled, unresolved, &
       wave_height
   use epcont_accuracy_zone_error, only: estimate_zone, zone_error
@@ -55,7 +55,8 @@ contains
     !> Of the last solve; the basis of its contact is taken over
     type(linear_problem), intent(inout), target :: linear
     type(contact_line), intent(in) :: line         !! of the pairs
-    type(answer_type), intent(in) :: answer        !! with its pressures and zones
+    !> With its pressures and zones; the condition is added to it
+    type(answer_type), intent(inout) :: answer
     type(accuracy_type), intent(out) :: accuracy   !! of its figures
     type(patch_table) :: table
     type(unit_loads) :: loads
@@ -79,6 +80,7 @@ contains
     allocate (accuracy%approach_unbounded(motions), accuracy%weak(scene%model%pairs), source=.false.)
     allocate (accuracy%zone(0))
     call assess_mesh()
+    if (answer%condition < huge(1.0_wp)) call linear%estimate_condition(scene, answer%condition)
     if (pressed) call assess_zones()
     if (carried) call assess_sums()
     accuracy%leading = leading_zone()
@@ -145,14 +147,12 @@ contains
       real(wp) :: off(loads%passed%loads)
       integer :: j
 
-      if (scene%numbering%joined) then
-        accuracy%sensitivity = find_joined_sensitivity(scene, linear, answer)
-      else
+      accuracy%sensitivity = loads%sensitivity
+      if (.not. scene%numbering%joined) &
         accuracy%sensitivity = find_sensitivity( &
           loads%problem, loads%basis, answer%contact%force, &
           abs(linear%problem%initial_gap) + abs(linear%problem%load_gap) &
           + linear%problem%motion%times(answer%contact%approach, magnitudes=.true.), answer%condition)
-      end if
       ! What the last step of refinement has not changed is right.
       accuracy%sensitivity%rounding = min(accuracy%sensitivity%rounding, answer%last_correction)
       off = errors()

@@ -6,6 +6,7 @@
 module epcont_accuracy_body_loads
   use epcont_accuracy_element_errors, only: most_fields
   use epcont_accuracy_passed_loads, only: passed_loads
+  use epcont_assembly_bodies, only: force_fields
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: no_effect
   use epcont_element_kinematics, only: directions
@@ -143,44 +144,41 @@ contains
   !> Displacements of nodes of a body under the fields of a batch.
   subroutine find_displacements(scene, linear, b, pair, batch, node, u)
     type(planned_scene), intent(in) :: scene     !! that was solved
-    type(linear_problem), intent(in) :: linear   !! of the last solve
+    type(linear_problem), intent(inout) :: linear   !! of the last solve
     integer, intent(in) :: b                     !! the body
     integer, intent(in) :: pair(:)               !! its pairs
     type(load_batch), intent(in) :: batch        !! forces on it
     integer, intent(in) :: node(:)               !! that are asked for
     real(wp), allocatable, intent(out) :: u(:, :, :)   !! [length] [directions, fields, nodes asked for]
-    real(wp), allocatable :: force(:, :, :)            !! [directions, fields, loaded nodes]
-    integer, allocatable :: loaded(:)
+    type(force_fields) :: loads
 
     allocate (u(directions, size(batch%force, 2), size(node)))
     if (size(u) == 0) return
-    call put_forces(scene%model, b, pair, batch, loaded, force)
-    call linear%body_displacements(scene, b, loaded, force, node, u)
+    call put_forces(scene%model, b, pair, batch, loads)
+    call linear%body_displacements(scene, b, loads, node, u)
   end subroutine find_displacements
 
   !> What pairs exert on the nodes of a body, one entry of its rows after the other.
-  pure subroutine put_forces(model, b, pair, batch, loaded, force)
+  pure subroutine put_forces(model, b, pair, batch, loads)
     type(model_type), intent(in) :: model        !! the scene
     integer, intent(in) :: b, pair(:)            !! the body, its pairs
     type(load_batch), intent(in) :: batch        !! forces on it
-    integer, allocatable, intent(out) :: loaded(:)         !! nodes
-    real(wp), allocatable, intent(out) :: force(:, :, :)   !! [force] [directions, fields, loaded nodes]
+    type(force_fields), intent(out) :: loads
     integer :: c, i, k, n
 
     n = sum(model%row_start(pair + 1) - model%row_start(pair))
-    allocate (loaded(n), force(directions, size(batch%force, 2), n))
+    allocate (loads%node(n), loads%force(directions, size(batch%force, 2), n))
     n = 0
     do k = 1, size(pair)
       do i = model%row_start(pair(k)), model%row_start(pair(k) + 1) - 1
         if (model%body(model%row_node(i)) /= b) cycle
         n = n + 1
-        loaded(n) = model%row_node(i)
+        loads%node(n) = model%row_node(i)
         do c = 1, directions
-          force(c, :, n) = model%row_weight(i)*model%normal(c, pair(k))*batch%force(k, :)
+          loads%force(c, :, n) = model%row_weight(i)*model%normal(c, pair(k))*batch%force(k, :)
         end do
       end do
     end do
-    loaded = loaded(:n)
-    force = force(:, :, :n)
+    loads%node = loads%node(:n)   ! so many of the forces count
   end subroutine put_forces
 end module epcont_accuracy_body_loads

@@ -34,7 +34,7 @@ contains
   !> Errors of the answer's strains, and what they have in common with those of unit loads.
   subroutine compare_fields(scene, linear, answer, table, passed, field)
     type(planned_scene), intent(in) :: scene     !! that was solved
-    type(linear_problem), intent(in) :: linear   !! of the last solve
+    type(linear_problem), intent(inout) :: linear   !! of the last solve
     class(scene_state), intent(in) :: answer     !! to it
     type(patch_table), intent(in) :: table       !! of its elements
     type(passed_loads), intent(in) :: passed     !! contact forces under unit loads
@@ -116,10 +116,11 @@ contains
         call look_at(element(i))
         if (points == 1) then
           call find_strains(sample(:, samples%before(e) + 1))
+        else if (scene%model%kinds(scene%model%kind(e))%degree == 1) then
+          call find_means(sample(:, samples%before(e) + 1))
         else
           call find_strains(strain)
-          call samples%take(scene%model%kinds(scene%model%kind(e)), e, linear%operator%volume(first), width, &
-                            strain, sample)
+          call samples%take(scene%model%kinds(scene%model%kind(e)), e, width, strain, sample)
         end if
       end do
       call recover(scene%model, table, b, samples, size(u, 2), sample, smooth)
@@ -170,5 +171,19 @@ contains
       end do
       call linear%operator%add_fields(scene%model, e, own, size(u, 2), u, strain)
     end subroutine find_strains
+
+    !> Means of these over the element, its one sample.
+    subroutine find_means(strain)
+      real(wp), intent(inout) :: strain(components*(1 + size(u, 2)))
+      integer :: p
+
+      strain(:components) = 0.0_wp
+      associate (last => first + points - 1, volume => linear%operator%volume)
+        do p = first, last
+          strain(:components) = strain(:components) + volume(p)/sum(volume(first:last))*answer%strain(:, p)
+        end do
+      end associate
+      call linear%operator%add_means(scene%model, e, own, size(u, 2), u, strain)
+    end subroutine find_means
   end subroutine compare_fields
 end module epcont_accuracy_error_fields

@@ -68,26 +68,22 @@ contains
     end do
   end subroutine place_samples
 
-  !> What strains of an element are at its samples.
-  pure subroutine take(self, kind, element, volume, width, strain, sample)
+  !> What strains of an element with nodes between its corners are at its samples.
+  pure subroutine take(self, kind, element, width, strain, sample)
     class(body_samples), intent(in) :: self
     type(element_kind), intent(in) :: kind                !! of the element
     integer, intent(in) :: element                        !! which
-    real(wp), intent(in) :: volume(kind%points)           !! of its points
     integer, intent(in) :: width                          !! components of all fields
     real(wp), intent(in) :: strain(width, kind%points)    !! at its points
     real(wp), intent(inout) :: sample(width, *)           !! of the body [width, samples]
-    real(wp) :: part
     integer :: k, p, s, v
 
     do k = 1, kind%samples
       s = self%before(element) + k
       do p = 1, kind%points
-        part = kind%sample_of(p, k)
-        if (kind%degree == 1) part = volume(p)/sum(volume)
         do v = 1, width
           if (p == 1) sample(v, s) = 0.0_wp
-          sample(v, s) = sample(v, s) + part*strain(v, p)
+          sample(v, s) = sample(v, s) + kind%sample_of(p, k)*strain(v, p)
         end do
       end do
     end do

@@ -7,6 +7,7 @@
 !> (Skeel 1979). Its largest entry is the 1-norm of D M with D = diag(|dF| |R| + |dg|): summed up where pairs
 !> are few, else estimated from a few products (Hager 1984; Higham 1988).
 module epcont_accuracy_unit_loads
+  use epcont_accuracy_joined_loads, only: contact_sensitivity, find_joined_loads
   use epcont_accuracy_passed_loads, only: dense_loads, pass_on_loads, passed_loads
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: least_difference, solved_to
@@ -31,18 +32,12 @@ module epcont_accuracy_unit_loads
   integer, parameter :: few_pairs = 200
   integer, parameter :: most_products = 5
 
-  type :: contact_sensitivity
-    logical :: known = .false.
-    !> Relative error of the forces / relative error of the flexibility, at most
-    real(wp) :: amplification = 0.0_wp
-    real(wp) :: rounding = 0.0_wp        !! what rounding may leave in a force, of the largest
-  end type contact_sensitivity
-
   !> A unit load along each free motion, then gaps that shrink by what each pair counts in a sum of forces.
   type :: unit_loads
     type(scaled_problem) :: problem
     type(contact_basis) :: basis              !! of the pairs in contact
     type(passed_loads) :: passed              !! what they make the pairs bear
+    type(contact_sensitivity) :: sensitivity  !! known only of joined bodies yet
     logical, allocatable :: told(:)           !! which say something [loads]
     !> Of pairs in the sum of all, then in each resultant on a body that may be off by itself; what two bodies
     !! exert on each other is one [pairs, any]
@@ -65,7 +60,8 @@ contains
 
     call find_shares()
     if (scene%numbering%joined) then
-      call put_on_system()
+      call find_joined_loads(scene, linear, answer, loads%share, loads%passed, loads%sensitivity)
+      loads%basis%sound = .true.
     else
       call put_on_pairs()
     end if
@@ -100,58 +96,6 @@ contains
         end if
       end associate
     end subroutine put_on_pairs
-
-    !> All loads on joined bodies.
-    subroutine put_on_system()
-      real(wp) :: load(scene%motions%count, scene%motions%count + size(loads%share, 2))
-      real(wp), dimension(scene%model%pairs, size(load, 2)) :: force, opening
-      real(wp) :: u(directions, size(load, 2), scene%model%nodes)
-      integer :: k
-
-      load = 0.0_wp
-      opening = 0.0_wp
-      force = 0.0_wp
-      u = 0.0_wp
-      do j = 1, scene%motions%count
-        load(j, j) = 1.0_wp
-      end do
-      opening(:, scene%motions%count + 1:) = -loads%share
-      do k = 1, 2
-        call linear%joined%respond(scene, linear%factored_bodies, load, opening, force, u)
-      end do
-      loads%basis%sound = .true.
-      do j = scene%motions%count + 1, size(load, 2)
-        if (give_way(opening(:, j))) force(:, j) = 0.0_wp
-      end do
-      call dense_loads(force, loads%passed)
-      loads%passed%displacement = u
-    end subroutine put_on_system
-
-    !> Do motions open the gaps of the pressed pairs so? Then no forces come of it. The motions' part is taken
-    !! off by Gram and Schmidt's way, twice, against rounding.
-    logical function give_way(opening)
-      real(wp), intent(in) :: opening(:)
-      real(wp), allocatable :: closing(:, :), rest(:)
-      integer, allocatable :: pressed(:)
-      real(wp) :: length
-      integer :: i, k, turn
-
-      pressed = pack([(k, k=1, size(opening))], answer%contact%force > 0.0_wp)
-      rest = opening(pressed)
-      closing = linear%problem%motion%rows(pressed)
-      do k = 1, size(closing, 2)
-        length = norm2(closing(:, k))
-        do turn = 1, 2
-          do i = 1, k - 1
-            closing(:, k) = closing(:, k) - dot_product(closing(:, i), closing(:, k))*closing(:, i)
-          end do
-        end do
-        if (norm2(closing(:, k)) <= solved_to*length) closing(:, k) = 0.0_wp
-        if (any(closing(:, k) /= 0.0_wp)) closing(:, k) = closing(:, k)/norm2(closing(:, k))
-        rest = rest - dot_product(closing(:, k), rest)*closing(:, k)
-      end do
-      give_way = norm2(rest) <= solved_to*norm2(opening(pressed))
-    end function give_way
 
     !> Shares of pairs in sums of forces. Of bodies that no pair touches, though some might, nothing is known.
     subroutine find_shares()

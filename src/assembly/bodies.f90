@@ -9,7 +9,7 @@ module epcont_assembly_bodies
   use epcont_system_threads, only: use_one_thread_each
   implicit none
   private
-  public :: factored_bodies, half_solved_body, new_bodies, prescribe, weak_pivot
+  public :: factored_bodies, force_fields, half_solved_body, new_bodies, prescribe, weak_pivot
 
   !> The pivot that has lost most of its digits to rounding.
   type :: weak_pivot
@@ -23,6 +23,12 @@ module epcont_assembly_bodies
     real(wp), allocatable :: inner(:, :)   !! [equations, 1]
     real(wp), allocatable :: border(:, :)  !! [border, 1]
   end type half_solved_body
+
+  !> Several fields of forces on some nodes, one of which may stand there twice.
+  type :: force_fields
+    integer, allocatable :: node(:)          !! [loaded nodes]
+    real(wp), allocatable :: force(:, :, :)  !! [force] [directions, fields, loaded nodes]
+  end type force_fields
 
   type :: factored_bodies
     type(strain_operator) :: operator
@@ -105,16 +111,20 @@ contains
   end subroutine prescribe
 
   !> Estimate of the condition of the stiffness in the 1-norm: the largest of the bodies. What has yielded is
-  !! not as stiff as it was when it was assembled first.
+  !! not as stiff as it was when it was assembled first. Bodies that have been solved have theirs.
   subroutine estimate_condition(self, scene, condition)
     class(factored_bodies), intent(inout) :: self
     type(planned_scene), intent(in) :: scene   !! with the numbers of its equations
     real(wp), intent(out) :: condition         !! 1 where all bodies are rigid
+    type(force_fields) :: nothing
+    real(wp) :: u(directions, 0, 0)
     integer :: b
 
     condition = 1.0_wp
+    allocate (nothing%node(0), nothing%force(directions, 0, 0))
     do b = 1, size(self%body)
-      condition = max(condition, self%body(b)%matrix%condition())
+      if (self%body(b)%condition <= 0.0_wp) call self%body_displacements(scene, b, nothing, [integer ::], u)
+      condition = max(condition, self%body(b)%condition)
     end do
     if (scene%numbering%joined) condition = condition*self%spring%norm/self%body(1)%matrix%norm
   end subroutine estimate_condition
@@ -233,40 +243,40 @@ contains
   end function finish
 
   !> Displacements of nodes of one body under several fields of forces on some of its nodes, supports at zero.
-  !! All fields are solved for at once: so the factor is read only twice.
-  subroutine body_displacements(self, scene, b, loaded, force, node, u)
-    class(factored_bodies), intent(in) :: self
+  !! All fields are solved for at once, and what is left of the estimate of the condition: so the factor is
+  !! read only twice.
+  subroutine body_displacements(self, scene, b, loads, node, u)
+    class(factored_bodies), intent(inout) :: self
     type(planned_scene), intent(in) :: scene       !! with the numbers of its equations
     integer, intent(in) :: b                       !! the body
-    integer, intent(in) :: loaded(:)               !! its nodes that forces act on; one may stand there twice
-    real(wp), intent(in) :: force(:, :, :)         !! [force] [directions, fields, loaded nodes]
+    type(force_fields), intent(in) :: loads        !! forces on it
     integer, intent(in) :: node(:)                 !! those that are asked for
     real(wp), intent(out) :: u(:, :, :)            !! [length] [directions, fields, nodes asked for]
     real(wp), allocatable :: border(:, :), inner(:, :)
-    real(wp) :: own(directions, size(force, 2))
-    integer :: c, i
+    real(wp) :: own(directions, size(u, 2))
+    integer :: c, fields, i
 
+    fields = size(u, 2)
     associate (body => scene%numbering%body(b))
-      allocate (inner(body%equations, size(force, 2)), border(body%border, size(force, 2)), source=0.0_wp)
+      allocate (inner(body%equations, fields + 2), border(body%border, fields + 2), source=0.0_wp)
     end associate
-    do i = 1, size(loaded)
-      own = force(:, :, i)
-      call turn(loaded(i), .true.)
+    do i = 1, size(loads%node)
+      own = loads%force(:, :, i)
+      call turn(loads%node(i), .true.)
       do c = 1, directions
-        associate (number => scene%numbering%equation(c, loaded(i)))
-          if (number > 0) inner(number, :) = inner(number, :) + own(c, :)
-          if (number < 0) border(-number, :) = border(-number, :) + own(c, :)
+        associate (number => scene%numbering%equation(c, loads%node(i)))
+          if (number > 0) inner(number, :fields) = inner(number, :fields) + own(c, :)
+          if (number < 0) border(-number, :fields) = border(-number, :fields) + own(c, :)
         end associate
       end do
     end do
-    call self%body(b)%solve_lower(inner, border)
-    call self%body(b)%solve_upper(inner, border, 1)
+    call self%body(b)%solve_and_estimate(inner, border)
     do i = 1, size(node)
       own = 0.0_wp
       do c = 1, directions
         associate (number => scene%numbering%equation(c, node(i)))
-          if (number > 0) own(c, :) = inner(number, :)
-          if (number < 0) own(c, :) = border(-number, :)
+          if (number > 0) own(c, :) = inner(number, :fields)
+          if (number < 0) own(c, :) = border(-number, :fields)
         end associate
       end do
       call turn(node(i), .false.)

@@ -37,12 +37,15 @@ module epcont_assembly_stiffness
     !> K is over this, in the range of single precision; a power of four [force/length]
     real(wp) :: unit = 1.0_wp
     real(wp) :: smallest_ratio = 1.0_wp       !! smallest pivot over its diagonal entry
+    !> Estimate of the condition of K_bb in the 1-norm; 0: none has been made of this factor
+    real(wp) :: condition = 0.0_wp
   contains
     procedure :: assemble
     procedure :: factor
     procedure :: is_sound
     procedure :: solve_lower
     procedure :: solve_upper
+    procedure :: solve_and_estimate
   end type body_stiffness
 
 contains
@@ -259,6 +262,7 @@ contains
     integer :: at, info
 
     self%smallest_ratio = 0.0_wp
+    self%condition = 0.0_wp
     if (self%lacks_memory) return
     call self%matrix%factor(self%smallest_ratio, at)
     if (self%smallest_ratio == 0.0_wp .or. size(self%schur) == 0) return
@@ -282,7 +286,7 @@ contains
     real(wp), contiguous, intent(inout) :: inner(:, :)    !! [order of the matrix, 1]
     real(wp), contiguous, intent(inout) :: border(:, :)   !! [border, 1]
 
-    inner = inner/self%unit
+    if (self%unit /= 1.0_wp) inner = inner/self%unit
     border = border/self%unit - matmul(transpose(self%coupling), inner)
     call self%matrix%solve_lower(inner)
   end subroutine solve_lower
@@ -299,4 +303,26 @@ contains
     call cholesky_solve(self%schur, border)
     inner = inner - matmul(self%coupling, border)
   end subroutine solve_upper
+
+  !> Solve, and estimate the condition with two more right-hand sides, where that has not been done.
+  subroutine solve_and_estimate(self, inner, border)
+    class(body_stiffness), intent(inout) :: self
+    !> The last two columns are those of the estimate [order of the matrix, any]
+    real(wp), contiguous, intent(inout) :: inner(:, :)
+    real(wp), contiguous, intent(inout) :: border(:, :)   !! the same [border, any]
+    real(wp) :: inverse_norm
+    integer :: fields
+
+    fields = size(inner, 2) - 2
+    if (self%condition > 0.0_wp) then
+      call self%solve_lower(inner(:, :fields), border(:, :fields))
+      call self%solve_upper(inner(:, :fields), border(:, :fields), 1)
+      return
+    end if
+    call self%matrix%begin_estimate(inner(:, fields + 1:), inverse_norm)
+    call self%solve_lower(inner, border)
+    call self%solve_upper(inner, border, 1)
+    self%condition = max(1.0_wp, self%matrix%norm* &
+                         max(inverse_norm, self%unit*maxval(abs(inner(:, fields + 1:)))))
+  end subroutine solve_and_estimate
 end module epcont_assembly_stiffness

@@ -20,6 +20,7 @@ module epcont_assembly_strain_operator
   contains
     procedure :: strains
     procedure :: add_fields
+    procedure :: add_means
     procedure :: nodal_forces
     procedure :: element_stiffness
   end type strain_operator
@@ -115,21 +116,58 @@ contains
     real(wp), intent(in) :: u(directions, fields, *)   !! displacements [length]
     !> At its points: the first field stays as it is [components, 0:fields, points]
     real(wp), intent(inout) :: strain(components, 0:fields, *)
-    real(wp) :: now(components)
-    integer :: c, f, i, nodes, p
+    integer :: p
 
-    nodes = model%node_count(element)
+    if (fields == 0) return
     do p = 1, model%first_point(element + 1) - model%first_point(element)
-      c = self%column(model%first_point(element) + p - 1)
-      do f = 1, fields
-        now = 0.0_wp
-        do i = 1, nodes
-          now = now + self%b(:, c + 2*i - 1)*u(1, f, place(i)) + self%b(:, c + 2*i)*u(2, f, place(i))
-        end do
-        strain(:, f, p) = now
-      end do
+      call apply(model%node_count(element), self%b(1, self%column(model%first_point(element) + p - 1) + 1), &
+                 place, fields, u, strain(1, 1, p))
     end do
   end subroutine add_fields
+
+  !> The same of their means over the element: by the mean of B.
+  pure subroutine add_means(self, model, element, place, fields, u, strain)
+    class(strain_operator), intent(in) :: self
+    type(model_type), intent(in) :: model        !! the scene
+    integer, intent(in) :: element               !! which
+    integer, intent(in) :: place(*)              !! where its nodes are in `u`
+    integer, intent(in) :: fields                !! how many
+    real(wp), intent(in) :: u(directions, fields, *)   !! displacements [length]
+    real(wp), intent(inout) :: strain(components, 0:fields)   !! the first stays as it is
+    real(wp) :: b(components, directions*most_nodes), part
+    integer :: c, i, p
+
+    if (fields == 0) return
+    b = 0.0_wp
+    associate (first => model%first_point(element), last => model%first_point(element + 1) - 1)
+      do p = first, last
+        c = self%column(p)
+        part = self%volume(p)/sum(self%volume(first:last))
+        do i = 1, directions*model%node_count(element)
+          b(:, i) = b(:, i) + part*self%b(:, c + i)
+        end do
+      end do
+    end associate
+    call apply(model%node_count(element), b, place, fields, u, strain(1, 1))
+  end subroutine add_means
+
+  !> Strains at a point under several fields.
+  pure subroutine apply(nodes, b, place, fields, u, strain)
+    integer, intent(in) :: nodes, place(nodes), fields
+    real(wp), intent(in) :: b(components, directions, nodes)
+    real(wp), intent(in) :: u(directions, fields, *)
+    real(wp), intent(inout) :: strain(components, fields)
+    real(wp) :: now(components)
+    integer :: f, i
+
+    do f = 1, fields
+      now = 0.0_wp
+      do i = 1, nodes
+        now = now + b(:, 1, i)*u(1, f, place(i)) + b(:, 2, i)*u(2, f, place(i))
+      end do
+      strain(:, f) = now
+    end do
+  end subroutine apply
 
   !> Forces that nodes must exert on the elements to hold their stresses [force] [directions, nodes].
   pure function nodal_forces(self, model, stress) result(force)

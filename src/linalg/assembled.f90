@@ -41,7 +41,7 @@ module epcont_linalg_assembled
     procedure(columns_of_factor), deferred :: half_solved_probes
     procedure(last_of_factor), deferred :: get_trailing_factor
     procedure :: solve
-    procedure :: condition
+    procedure :: begin_estimate
     procedure :: find_compliance
   end type assembled_matrix
 
@@ -146,28 +146,25 @@ contains
     call self%solve_upper(x, 1)
   end subroutine solve
 
-  !> Estimate of the condition in the 1-norm, from the factor: of the inverse's norm a lower bound, seldom
-  !! under a third of it. Two columns at a time (Higham and Tisseur, SIAM J. Matrix Anal. Appl. 21 (2000)
-  !! 1185) in two solves, since a factor takes longer to read than to use: `dlacn2`, one column in each of
-  !! five solves, takes two and a half times as long for the same figure; the alternating column alone takes
-  !! three quarters, but its figure depends on the order of the equations (0.6 to 1 of this one). (Begun with
-  !! a solution already known it would take one, but where that has ties or zeros the figure would be a matter
-  !! of rounding: 0.4 to 1 of this one.)
-  real(wp) function condition(self)
+  !> Begin an estimate of the condition in the 1-norm, from the factor: of the inverse's norm a lower bound,
+  !! seldom under a third of it. Two columns at a time (Higham and Tisseur, SIAM J. Matrix Anal. Appl. 21
+  !! (2000) 1185) in two solves, since a factor takes longer to read than to use: `dlacn2`, one column in
+  !! each of five solves, takes two and a half times as long for the same figure; the alternating column
+  !! alone takes three quarters, but its figure depends on the order of the equations (0.6 to 1 of this
+  !! one). (Begun with a solution already known it would take one, but where that has ties or zeros the
+  !! figure would be a matter of rounding: 0.4 to 1 of this one.) The second solve is left to whoever reads
+  !! the factor anyway: the largest entry of what comes of these columns is a bound, too, since the inverse
+  !! is symmetric.
+  subroutine begin_estimate(self, x, inverse_norm)
     class(assembled_matrix), intent(in) :: self
-    real(wp), allocatable :: x(:, :)
-    real(wp) :: inverse_norm
+    real(wp), contiguous, intent(out) :: x(:, :)   !! columns to be solved with [order, 2]
+    real(wp), intent(out) :: inverse_norm          !! as far as the first solve tells
 
-    condition = 1.0_wp
-    if (self%order == 0) return
     x = self%half_solved_probes()
     call self%solve_upper(x, 1)
     inverse_norm = maxval(sum(abs(x), dim=1))
     x = sign(1.0_wp, x)
-    call self%solve(x)
-    ! The inverse is symmetric: a row's sum is a column's.
-    condition = self%norm*max(inverse_norm, maxval(abs(x)))
-  end function condition
+  end subroutine begin_estimate
 
   !> What the estimate begins with, of 1-norm 1: equal parts, and the alternating column that finds what they
   !! cancel (Higham's).

@@ -22,4 +22,21 @@ contains
   include 'columns_kernel.inc'
   include 'front_kernel.inc'
   include 'front_solve_kernel.inc'
+
+  !> The first half of a solve, in place.
+  pure subroutine solve_lower(self, x)
+    class(blocked_matrix), intent(in) :: self
+    real(wp), contiguous, intent(inout) :: x(:, :)   !! [order, any]
+
+    call self%go_forwards(x)
+  end subroutine solve_lower
+
+  !> The second half, in place.
+  subroutine solve_upper(self, x, first)
+    class(blocked_matrix), intent(in) :: self
+    real(wp), contiguous, intent(inout) :: x(:, :)   !! [order, any]
+    integer, intent(in) :: first                     !! row that is wanted
+
+    call self%go_back(x, first)
+  end subroutine solve_upper
 end module epcont_linalg_factors

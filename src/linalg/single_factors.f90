@@ -24,4 +24,40 @@ contains
   include 'columns_kernel.inc'
   include 'front_kernel.inc'
   include 'front_solve_kernel.inc'
+
+  !> The first half of a solve. What is solved for has the size of 1, so that single precision has room for
+  !! it.
+  pure subroutine solve_lower(self, x)
+    class(blocked_matrix), intent(in) :: self
+    real(wp), contiguous, intent(inout) :: x(:, :)   !! [order, any]
+    real(rp) :: y(size(x, 1), size(x, 2))
+    real(wp) :: unit
+
+    unit = power_of_two(maxval(abs(x)))
+    y = real(x/unit, rp)
+    call self%go_forwards(y)
+    x = unit*real(y, wp)
+  end subroutine solve_lower
+
+  !> The second half.
+  subroutine solve_upper(self, x, first)
+    class(blocked_matrix), intent(in) :: self
+    real(wp), contiguous, intent(inout) :: x(:, :)   !! [order, any]
+    integer, intent(in) :: first                     !! row that is wanted
+    real(rp) :: y(size(x, 1), size(x, 2))
+    real(wp) :: unit
+
+    unit = power_of_two(maxval(abs(x)))
+    y = real(x/unit, rp)
+    call self%go_back(y, first)
+    x = unit*real(y, wp)
+  end subroutine solve_upper
+
+  !> A power of two near a size: dividing by it rounds nothing, and takes less than `scale` of each number.
+  pure real(wp) function power_of_two(size)
+    real(wp), intent(in) :: size
+    integer, parameter :: highest = maxexponent(size) - 2
+
+    power_of_two = scale(1.0_wp, min(highest, max(-highest, exponent(size))))
+  end function power_of_two
 end module epcont_linalg_single_factors

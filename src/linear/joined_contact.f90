@@ -14,7 +14,7 @@
 !> Lambda waits until the set stays, so that each step is one of that function. Where full ones run in circles
 !> they are cut where it is least along them: then each makes it less.
 module epcont_linear_joined_contact
-  use epcont_assembly_bodies, only: factored_bodies, half_solved_body, prescribe
+  use epcont_assembly_bodies, only: factored_bodies, force_fields, half_solved_body, prescribe
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: lost_digits, negligible, no_effect
   use epcont_contact_equilibrium, only: find_rigid_start, rigid_start
@@ -333,22 +333,22 @@ contains
   subroutine respond(self, scene, bodies, load, opening, force, u)
     class(joined_contact), intent(in) :: self
     type(planned_scene), intent(in) :: scene
-    class(factored_bodies), intent(in) :: bodies    !! factored with that set
+    class(factored_bodies), intent(inout) :: bodies !! factored with that set
     real(wp), intent(in) :: load(:, :)              !! [force] [motions, any]
     real(wp), intent(in) :: opening(:, :)           !! [length] [pairs, any]
     real(wp), intent(inout) :: force(:, :)          !! as far as known; then better [force] [pairs, any]
     !> As far as known, for what springs at SUPORT freedoms bear [length] [directions, any, nodes]
     real(wp), intent(inout) :: u(:, :, :)
-    real(wp), allocatable :: nodal(:, :, :)         ! what acts on each loaded node [directions, any, loaded]
-    integer, allocatable :: loaded(:), pair(:)
+    type(force_fields) :: loads
+    integer, allocatable :: pair(:)
     integer :: k
 
     pair = pack([(k, k=1, size(self%closed))], self%closed)
-    loaded = [scene%motions%node, [(scene%model%row_node(scene%model%row_start(pair(k)): &
+    loads%node = [scene%motions%node, [(scene%model%row_node(scene%model%row_start(pair(k)): &
                                     scene%model%row_start(pair(k) + 1) - 1), k=1, size(pair))]]
-    allocate (nodal(directions, size(load, 2), size(loaded)), source=0.0_wp)
+    allocate (loads%force(directions, size(load, 2), size(loads%node)), source=0.0_wp)
     call put_loads()
-    call bodies%body_displacements(scene, 1, loaded, nodal, [(k, k=1, scene%model%nodes)], u)
+    call bodies%body_displacements(scene, 1, loads, [(k, k=1, scene%model%nodes)], u)
     do k = 1, size(load, 2)
       where (self%closed) force(:, k) = force(:, k) - self%gamma*gap_opening(scene%model, u(:, k, :))
     end do
@@ -361,7 +361,7 @@ contains
 
       do n = 1, scene%motions%count
         associate (c => scene%motions%component(n), node => scene%motions%node(n))
-          nodal(c, :, n) = load(n, :) + self%hold(n)*u(c, :, node)
+          loads%force(c, :, n) = load(n, :) + self%hold(n)*u(c, :, node)
         end associate
       end do
       n = scene%motions%count
@@ -370,7 +370,7 @@ contains
         do i = scene%model%row_start(pair(k)), scene%model%row_start(pair(k) + 1) - 1
           n = n + 1
           do c = 1, directions
-            nodal(c, :, n) = scene%model%row_weight(i)*scene%model%normal(c, pair(k))*force(pair(k), :)
+            loads%force(c, :, n) = scene%model%row_weight(i)*scene%model%normal(c, pair(k))*force(pair(k), :)
           end do
         end do
       end do
@@ -382,7 +382,7 @@ contains
   logical function are_unique(self, scene, bodies)
     class(joined_contact), intent(in) :: self
     type(planned_scene), intent(in) :: scene
-    class(factored_bodies), intent(in) :: bodies    !! factored with the set of contacts
+    class(factored_bodies), intent(inout) :: bodies !! factored with the set of contacts
     real(wp) :: force(scene%model%pairs, 2), u(directions, 2, scene%model%nodes)
     integer :: k
 

@@ -102,7 +102,8 @@ contains
       failed_body = 0
       if (.not. converged .and. answer%carried) call return_to_carried(failed_body)
       if (failed_body > 0) answer%condition = huge(1.0_wp)
-      if (failed_body == 0 .and. (step == plan%load_steps .or. .not. converged)) call estimate_rounding()
+      if (failed_body == 0 .and. plan%precision == precision_single .and. &
+          (step == plan%load_steps .or. .not. converged)) call estimate_rounding()
       if (.not. converged) exit
       answer%carried = .true.
       if (plan%load_steps > 1) call find_unloaded(scene%model, answer%point, plan%tolerance, strained, &
@@ -382,11 +383,9 @@ contains
       load_factor = answer%load_factor
     end subroutine return_to_carried
 
-    !> What rounding may have done to the answer.
+    !> What single precision may have done to the answer.
     subroutine estimate_rounding()
-      call linear%estimate_condition(scene, answer%condition)
-      if (plan%precision == precision_single) &
-        call linear%rounding_error(scene, load_factor, answer%scene_state, answer%rounding_error)
+      call linear%rounding_error(scene, load_factor, answer%scene_state, answer%rounding_error)
       call watch%lap(stage_accuracy)
     end subroutine estimate_rounding
   end subroutine follow_loads

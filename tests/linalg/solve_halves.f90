@@ -4,7 +4,7 @@ module solve_halves
   use epcont_linalg_assembled, only: assembled_matrix
   implicit none
   private
-  public :: error_of_halves
+  public :: condition_of, error_of_halves
 
 contains
 
@@ -31,4 +31,14 @@ contains
       if (first <= n) error = max(error, maxval(abs(half(first:, 1) - whole(first:, 1)))/maxval(abs(whole)))
     end do
   end function error_of_halves
+
+  !> The estimate of the condition, with its second solve.
+  real(wp) function condition_of(matrix) result(condition)
+    class(assembled_matrix), intent(in) :: matrix   !! factored
+    real(wp) :: inverse_norm, x(matrix%order, 2)
+
+    call matrix%begin_estimate(x, inverse_norm)
+    call matrix%solve(x)
+    condition = matrix%norm*max(inverse_norm, maxval(abs(x)))
+  end function condition_of
 end module solve_halves

@@ -1,0 +1,135 @@
+!> Unit loads on bodies that are one system, and what errors of the stiffness and of the gaps do to its
+!> contact forces: the figures of `unit_loads`, by solves with its factor, which they share.
+module epcont_accuracy_joined_loads
+  use epcont_accuracy_passed_loads, only: dense_loads, passed_loads
+  use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: solved_to
+  use epcont_element_kinematics, only: directions
+  use epcont_flexibility_flexibility, only: terms_of_openings
+  use epcont_linear_linear_problem, only: linear_problem
+  use epcont_plan_planned_scene, only: planned_scene
+  use epcont_result_answer, only: answer_type
+  implicit none
+  private
+  public :: contact_sensitivity, find_joined_loads
+
+  type :: contact_sensitivity
+    logical :: known = .false.
+    !> Relative error of the forces / relative error of the flexibility, at most
+    real(wp) :: amplification = 0.0_wp
+    real(wp) :: rounding = 0.0_wp        !! what rounding may leave in a force, of the largest
+  end type contact_sensitivity
+
+contains
+
+  !> Unit loads along the motions, then closing gaps; behind them two columns that tell the 1-norms of D M
+  !! (`unit_loads`) by Higham and Tisseur. The second solve makes the loads better, and has the columns that
+  !! the first has led to. What the contact forces open gaps by, body by body, is taken from the deformation.
+  subroutine find_joined_loads(scene, linear, answer, share, passed, sensitivity)
+    type(planned_scene), intent(in) :: scene         !! that was solved
+    type(linear_problem), intent(inout) :: linear    !! of the last solve
+    type(answer_type), intent(in) :: answer          !! with some contact
+    real(wp), intent(in) :: share(:, :)              !! by which gaps close [pairs, loads of that kind]
+    type(passed_loads), intent(out) :: passed        !! contact forces and displacements
+    type(contact_sensitivity), intent(out) :: sensitivity
+    real(wp) :: load(scene%motions%count, scene%motions%count + size(share, 2) + 2)
+    real(wp), dimension(scene%model%pairs, size(load, 2)) :: force, opening
+    real(wp) :: u(directions, size(load, 2), scene%model%nodes)
+    !> Sums that the gaps come from, and what rounding leaves of these [length] [pairs]
+    real(wp) :: sums(scene%model%pairs, 2)
+    integer, allocatable :: pressed(:)
+    integer :: j, k, loads
+
+    loads = size(load, 2) - 2
+    pressed = pack([(k, k=1, scene%model%pairs)], answer%contact%force > 0.0_wp)
+    load = 0.0_wp
+    opening = 0.0_wp
+    force = 0.0_wp
+    u = 0.0_wp
+    do j = 1, scene%motions%count
+      load(j, j) = 1.0_wp
+    end do
+    opening(:, scene%motions%count + 1:loads) = -share
+    call begin_probes(opening(:, loads + 1:))
+    call linear%joined%respond(scene, linear%factored_bodies, load, opening, force, u)
+    call find_sums()
+    call turn_probes(opening(:, loads + 1:), force(:, loads + 1:))
+    u(:, loads + 1:, :) = 0.0_wp
+    call linear%joined%respond(scene, linear%factored_bodies, load, opening, force, u)
+    associate (found => maxval(abs(force(pressed, loads + 1:)), dim=1)/maxval(answer%contact%force))
+      sensitivity%known = .true.
+      sensitivity%amplification = max(sensitivity%amplification, found(1))
+      sensitivity%rounding = min(1.0_wp, max(sensitivity%rounding, found(2)))
+    end associate
+    do j = scene%motions%count + 1, loads
+      if (give_way(opening(:, j))) force(:, j) = 0.0_wp
+    end do
+    call dense_loads(force(:, :loads), passed)
+    passed%displacement = u(:, :loads, :)
+
+  contains
+
+    !> Equal parts, and the alternating column that finds what they cancel.
+    subroutine begin_probes(x)
+      real(wp), intent(out) :: x(:, :)
+
+      x = 0.0_wp
+      x(pressed, 1) = 1.0_wp/size(pressed)
+      x(pressed, 2) = [((1 - 2*mod(k, 2))*(1.0_wp + (k - 1.0_wp)/size(pressed)), k=1, size(pressed))]
+      x(:, 2) = x(:, 2)/sum(abs(x(:, 2)))
+    end subroutine begin_probes
+
+    !> What a solve has told of the norms, and for each of them the column that is next: of M'D the largest
+    !! entry is a bound, too.
+    subroutine turn_probes(x, product)
+      real(wp), intent(out) :: x(:, :)
+      real(wp), intent(inout) :: product(:, :)   !! M x, then zero
+      real(wp) :: change(2, 2)   ! of all forces, by sums and columns
+
+      change = matmul(transpose(sums), abs(product))/maxval(answer%contact%force)
+      sensitivity%amplification = maxval(change(1, :))
+      sensitivity%rounding = maxval(change(2, :))
+      do k = 1, 2
+        x(:, k) = sums(:, k)*sign(1.0_wp, product(:, maxloc(change(k, :), dim=1)))
+      end do
+      product = 0.0_wp
+    end subroutine turn_probes
+
+    subroutine find_sums()
+      real(wp) :: condition
+
+      call linear%estimate_condition(scene, condition)
+      sums = 0.0_wp
+      associate (terms => terms_of_openings(scene%model, answer%deformation), &
+                 travel => linear%problem%motion%times(answer%contact%approach, magnitudes=.true.))
+        sums(pressed, 1) = terms(pressed)
+        sums(pressed, 2) = epsilon(1.0_wp)*(condition*terms(pressed) + travel(pressed) + &
+                                            abs(linear%problem%initial_gap(pressed)))
+      end associate
+    end subroutine find_sums
+
+    !> Do motions open the gaps of the pressed pairs so? Then no forces come of it. The motions' part is taken
+    !! off by Gram and Schmidt's way, twice, against rounding.
+    logical function give_way(opening)
+      real(wp), intent(in) :: opening(:)
+      real(wp), allocatable :: closing(:, :), rest(:)
+      real(wp) :: length
+      integer :: i, k, turn
+
+      rest = opening(pressed)
+      closing = linear%problem%motion%rows(pressed)
+      do k = 1, size(closing, 2)
+        length = norm2(closing(:, k))
+        do turn = 1, 2
+          do i = 1, k - 1
+            closing(:, k) = closing(:, k) - dot_product(closing(:, i), closing(:, k))*closing(:, i)
+          end do
+        end do
+        if (norm2(closing(:, k)) <= solved_to*length) closing(:, k) = 0.0_wp
+        if (any(closing(:, k) /= 0.0_wp)) closing(:, k) = closing(:, k)/norm2(closing(:, k))
+        rest = rest - dot_product(closing(:, k), rest)*closing(:, k)
+      end do
+      give_way = norm2(rest) <= solved_to*norm2(opening(pressed))
+    end function give_way
+  end subroutine find_joined_loads
+end module epcont_accuracy_joined_loads
