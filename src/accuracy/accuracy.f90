@@ -317,7 +317,7 @@ contains
       integer :: k, z
 
       if (scene%numbering%joined) then
-        compliance = linear%joined%compliance()
+        compliance = linear%joined%compliance
       else
         compliance = linear%problem%flexibility%diagonal()
       end if

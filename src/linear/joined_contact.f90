@@ -24,7 +24,7 @@ module epcont_linear_joined_contact
   use epcont_flexibility_flexibility, only: gap_opening, pair_forces, terms_of_openings
   use epcont_flexibility_motion_matrix, only: motion_matrix
   use epcont_linear_contact_ends, only: reach_ends
-  use epcont_linear_joined_springs, only: find_springs, of_pairs
+  use epcont_linear_joined_springs, only: find_springs, half_plane, of_pairs
   use epcont_linear_line_search, only: least_at
   use epcont_linear_scene_state, only: scene_state
   use epcont_plan_planned_scene, only: planned_scene
@@ -39,13 +39,12 @@ module epcont_linear_joined_contact
   real(wp), parameter :: nearly = 1.0e-3_wp
   !> What a solve leaves of forces of size one, at most, where they open gaps.
   real(wp), parameter :: most_left = 0.1_wp
-  !> What a half-plane gives way by at a force on a node of its boundary, against what is a hundred sides
-  !! below it (2 ln(200)/pi), over what the node's own stiffness would let it.
-  real(wp), parameter :: half_plane = 3.4_wp
 
   type :: joined_contact
     integer :: threads = 1                         !! that share the fronts
     logical :: failed = .false.     !! to find a contact, or all that is to be told of it
+    !> What a pair gives way by under a force of its own, about [length/force] [pairs]
+    real(wp), allocatable :: compliance(:)
     real(wp), allocatable, private :: gamma(:)     !! springs of the pairs [force/length] [pairs]
     real(wp), allocatable, private :: hold(:)      !! springs of SUPORT freedoms [force/length] [motions]
     logical, allocatable, private :: closed(:)     !! whose springs are to be in the factor [pairs]
@@ -57,7 +56,6 @@ module epcont_linear_joined_contact
     procedure :: solve
     procedure :: respond
     procedure :: are_unique
-    procedure :: compliance
     procedure, private :: find_set
     procedure, private :: settle
   end type joined_contact
@@ -81,6 +79,7 @@ contains
                           joined%rigid)
     if (.not. joined%rigid%balanced) return
     call find_springs(scene, bodies, joined%rigid%redundant, joined%gamma, joined%hold)
+    joined%compliance = half_plane*of_pairs/joined%gamma
     allocate (joined%closed(scene%model%pairs), source=.true.)
   end subroutine new_joined
 
@@ -175,6 +174,7 @@ contains
     call begin_at_state()
     wanted = pull > 0.0_wp
     if (allocated(self%last)) call choose_set()
+    if (.not. allocated(self%last)) call begin_set()
     do taken = 1, step_limit
       call self%factor(scene, bodies, sound, watch)
       if (.not. sound) exit
@@ -214,6 +214,17 @@ contains
             self%motion%times(state%contact%approach)
       pull = state%contact%force - self%gamma*gap
     end subroutine begin_at_state
+
+    !> The first set: pairs that are as near as contact may give way, and overlap, if they hold all motions;
+    !! else all pairs. Those that are far apart would bend bodies into each other.
+    subroutine begin_set()
+      logical :: near(size(gap))
+
+      near = gap <= maxval(self%compliance)*maxval(sum(abs(unbalanced), dim=2)) - min(0.0_wp, minval(gap))
+      associate (free => find_free_motions(self%motion%over(self%motion%units()), near, near))
+        if (all(free .eqv. self%rigid%redundant)) self%closed = near
+      end associate
+    end subroutine begin_set
 
     !> The pairs that press; of those that do so by rounding alone, as they are.
     subroutine choose_set()
@@ -319,14 +330,6 @@ contains
       if (any(contact%motion_free .neqv. self%rigid%redundant)) contact%state = contact_stalled
     end associate
   end subroutine settle
-
-  !> What a pair gives way by under a force of its own, about [length/force] [pairs].
-  pure function compliance(self)
-    class(joined_contact), intent(in) :: self
-    real(wp), allocatable :: compliance(:)
-
-    compliance = half_plane*of_pairs/self%gamma
-  end function compliance
 
   !> Contact forces and displacements, the set of contacts frozen, under loads along the free motions and
   !! openings of the gaps, in one solve: of what is wrong of the forces it leaves a thousandth or less.

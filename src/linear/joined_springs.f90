@@ -17,6 +17,9 @@ module epcont_linear_joined_springs
   real(wp), parameter :: of_suport = 1.0e-9_wp
   !> But over that of its node so strong that a pivot is left where no pair holds the body.
   real(wp), parameter :: least_pivot = 1.0e-13_wp
+  !> What a half-plane gives way by at a force on a node of its boundary, against what is a hundred sides
+  !! below it (2 ln(200)/pi), over what the node's own stiffness would let it.
+  real(wp), parameter, public :: half_plane = 3.4_wp
 
 contains
 
