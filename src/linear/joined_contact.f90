@@ -1,5 +1,4 @@
-!> Contact of bodies that are one system, without their flexibility: of many pairs that takes longer than all
-!> factors.
+!> Contact of bodies that are one system, without their flexibility: of many pairs that takes longest.
 !>
 !> With forces lambda that are known, gaps g(u) and a spring of stiffness gamma at each pair,
 !>
@@ -75,8 +74,7 @@ contains
     joined%threads = threads
     joined%motion = motion
     scaled = motion%over(motion%units())
-    call find_rigid_start(scaled, resultant/motion%units(), spread(0.0_wp, 1, motion%pairs), &
-                          joined%rigid)
+    call find_rigid_start(scaled, resultant/motion%units(), spread(0.0_wp, 1, motion%pairs), joined%rigid)
     if (.not. joined%rigid%balanced) return
     call find_springs(scene, bodies, joined%rigid%redundant, joined%gamma, joined%hold)
     joined%compliance = half_plane*of_pairs/joined%gamma
@@ -170,6 +168,8 @@ contains
     state%strain = bodies%operator%strains(scene%model, state%deformation)
     change = huge(1.0_wp)
     whole = .false.
+    borne = 0.0_wp
+    held = 0.0_wp
     call balance()
     call begin_at_state()
     wanted = pull > 0.0_wp
