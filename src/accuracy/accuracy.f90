@@ -296,15 +296,13 @@ contains
     !! not feel it [elements].
     pure function beside_point_loads() result(beside)
       logical :: beside(scene%model%elements)
-      integer :: seen(scene%model%elements)
       integer, allocatable :: patch(:)
       integer :: j
 
       beside = .false.
-      seen = 0
       do j = 1, motions
         if (.not. point_load(j)) cycle
-        call wide_patch(scene%model, table, scene%motions%node(j), seen, patch)
+        call wide_patch(scene%model, table, scene%motions%node(j), patch)
         beside(patch) = .true.
       end do
     end function beside_point_loads

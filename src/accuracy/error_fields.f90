@@ -16,9 +16,13 @@ module epcont_accuracy_error_fields
   use epcont_linear_linear_problem, only: linear_problem
   use epcont_linear_scene_state, only: scene_state
   use epcont_plan_planned_scene, only: planned_scene
+  use epcont_system_threads, only: threads_over, use_one_thread_each
   implicit none
   private
   public :: compare_fields, error_fields
+
+  !> Elements that a thread takes at once.
+  integer, parameter :: at_once = 8192
 
   !> Strains less smooth ones are errors: their energies, and their products with those of unit loads.
   type :: error_fields
@@ -46,9 +50,6 @@ contains
     real(wp) :: sum_of(4, size(passed%unit))     ! what `field_sums` has of all bodies, of each column
     real(wp) :: total(4, passed%loads)           ! of each load
     real(wp), allocatable :: u(:, :, :)          ! under the fields of a batch [directions, fields, places]
-    real(wp), allocatable :: strain(:, :)        ! of the answer and all fields in an element [width, points]
-    integer :: e, first, nodes, points           ! the element, its first point, how many it has
-    integer :: own(most_nodes)                   ! its places, among those of the body
     integer, allocatable :: element(:)           ! of the body
     integer :: b, k
 
@@ -98,48 +99,35 @@ contains
       end do
     end subroutine find_fields
 
-    !> What the elements of a body add, under a batch of loads.
+    !> What the elements of a body add, under a batch of loads. Threads share them by parts, always the same,
+    !! whose sums are added in their order.
     subroutine compare_on_body(element, place)
       integer, intent(in) :: element(:), place(:)   !! those of the body
-      type(element_errors) :: errors
-      type(field_sums) :: sums
+      type(field_sums) :: part, sums
       real(wp), allocatable :: sample(:, :), smooth(:, :)   ! of the answer and all fields [width, any]
-      integer :: i, width
+      integer :: first, width
 
-      errors = new_element_errors(size(u, 2))
-      sums = new_field_sums(batch%share, size(element))
+      width = components*(1 + size(u, 2))
+      sums = new_field_sums(batch%share, 0)
       call place_samples(scene%model, element, samples)
-      width = errors%width
-      if (allocated(strain)) deallocate (strain)
-      allocate (strain(width, most_points), sample(width, size(samples%x, 2)), smooth(width, size(place)))
-      do i = 1, size(element)
-        call look_at(element(i))
-        if (points == 1) then
-          call find_strains(sample(:, samples%before(e) + 1))
-        else if (scene%model%kinds(scene%model%kind(e))%degree == 1) then
-          call find_means(sample(:, samples%before(e) + 1))
-        else
-          call find_strains(strain)
-          call samples%take(scene%model%kinds(scene%model%kind(e)), e, width, strain, sample)
-        end if
+      allocate (sample(width, size(samples%x, 2)), smooth(width, size(place)))
+      !$omp parallel do num_threads(threads_over(size(element)))
+      do first = 1, size(element), at_once
+        call sample_elements(element(first:min(first + at_once - 1, size(element))), width, sample)
       end do
+      !$omp end parallel do
       call recover(scene%model, table, b, samples, size(u, 2), sample, smooth)
-      ! Strains are found again: kept at all points they would be the largest array of all.
-      do i = 1, size(element)
-        call look_at(element(i))
-        if (points == 1) then
-          strain(:, 1) = sample(:, samples%before(e) + 1)
-        else
-          call find_strains(strain)
-        end if
-        associate (law => linear%materials%section(scene%model%section(e))%law, &
-                   kind => scene%model%kinds(scene%model%kind(e)))
-          call errors%compare(kind, linear%operator%volume(first), strain, own, smooth)
-          call errors%find_stress(kind, law, first, answer%point)
-          field%element(e) = errors%energy(0)
-          if (size(u, 2) > 0) call sums%add(errors, law)
-        end associate
+      !$omp parallel do num_threads(threads_over(size(element))) schedule(dynamic) ordered private(part)
+      do first = 1, size(element), at_once
+        call use_one_thread_each()
+        part = new_field_sums(batch%share, min(at_once, size(element) - first + 1))
+        call compare_elements(element(first:min(first + at_once - 1, size(element))), width, sample, smooth, &
+                              part)
+        !$omp ordered
+        call sums%include(part)
+        !$omp end ordered
       end do
+      !$omp end parallel do
       field%smooth(:, place) = smooth(:components, :)
       if (size(u, 2) == 0) return
       call sums%finish()
@@ -147,43 +135,93 @@ contains
       sum_of(3:, batch%load) = sum_of(3:, batch%load) + sums%energy
     end subroutine compare_on_body
 
-    !> Turn to an element.
-    subroutine look_at(element)
-      integer, intent(in) :: element
-      integer :: k
+    !> The strains of some elements at their samples.
+    subroutine sample_elements(element, width, sample)
+      integer, intent(in) :: element(:)   !! these
+      integer, intent(in) :: width        !! components of all fields
+      real(wp), intent(inout) :: sample(width, *)   !! of the body
+      real(wp) :: strain(width, most_points)
+      integer :: i
 
-      e = element
-      nodes = scene%model%node_count(e)
-      first = scene%model%first_point(e)
-      points = scene%model%first_point(e + 1) - first
-      do k = 1, nodes
+      do i = 1, size(element)
+        associate (e => element(i), kind => scene%model%kinds(scene%model%kind(element(i))))
+          if (kind%points == 1) then
+            call find_strains(e, sample(:, samples%before(e) + 1))
+          else if (kind%degree == 1) then
+            call find_means(e, sample(:, samples%before(e) + 1))
+          else
+            call find_strains(e, strain)
+            call samples%take(kind, e, width, strain, sample)
+          end if
+        end associate
+      end do
+    end subroutine sample_elements
+
+    !> The errors of some elements. Strains are found again: kept at all points they would be the largest
+    !! array of all.
+    subroutine compare_elements(element, width, sample, smooth, sums)
+      integer, intent(in) :: element(:)            !! these
+      integer, intent(in) :: width                 !! components of all fields
+      real(wp), intent(in) :: sample(width, *), smooth(width, *)   !! of the body
+      type(field_sums), intent(inout) :: sums      !! they are added
+      type(element_errors) :: errors
+      real(wp) :: strain(width, most_points)
+      integer :: i
+
+      errors = new_element_errors(size(u, 2))
+      do i = 1, size(element)
+        associate (e => element(i), kind => scene%model%kinds(scene%model%kind(element(i))), &
+                   first => scene%model%first_point(element(i)), &
+                   law => linear%materials%section(scene%model%section(element(i)))%law)
+          if (kind%points == 1) then
+            strain(:, 1) = sample(:, samples%before(e) + 1)
+          else
+            call find_strains(e, strain)
+          end if
+          call errors%compare(kind, linear%operator%volume(first), strain, places_of(e), smooth)
+          call errors%find_stress(kind, law, first, answer%point)
+          field%element(e) = errors%energy(0)
+          if (size(u, 2) > 0) call sums%add(errors, law)
+        end associate
+      end do
+    end subroutine compare_elements
+
+    !> The places of an element's nodes, among those of the body.
+    pure function places_of(e) result(own)
+      integer, intent(in) :: e
+      integer :: own(most_nodes), k
+
+      do k = 1, scene%model%node_count(e)
         own(k) = table%own(table%place(k, e))
       end do
-    end subroutine look_at
+    end function places_of
 
-    !> Its strains, of the answer and of all fields.
-    subroutine find_strains(strain)
+    !> Strains of an element, of the answer and of all fields.
+    subroutine find_strains(e, strain)
+      integer, intent(in) :: e
       real(wp), intent(inout) :: strain(components*(1 + size(u, 2)), *)   !! at its points
       integer :: p
 
-      do p = 1, points
-        strain(:components, p) = answer%strain(:, first + p - 1)
+      do p = scene%model%first_point(e), scene%model%first_point(e + 1) - 1
+        strain(:components, p - scene%model%first_point(e) + 1) = answer%strain(:, p)
       end do
-      call linear%operator%add_fields(scene%model, e, own, size(u, 2), u, strain)
+      call linear%operator%add_fields(scene%model, e, places_of(e), size(u, 2), u, strain)
     end subroutine find_strains
 
     !> Means of these over the element, its one sample.
-    subroutine find_means(strain)
+    subroutine find_means(e, strain)
+      integer, intent(in) :: e
       real(wp), intent(inout) :: strain(components*(1 + size(u, 2)))
       integer :: p
 
       strain(:components) = 0.0_wp
-      associate (last => first + points - 1, volume => linear%operator%volume)
+      associate (first => scene%model%first_point(e), last => scene%model%first_point(e + 1) - 1, &
+                 volume => linear%operator%volume)
         do p = first, last
           strain(:components) = strain(:components) + volume(p)/sum(volume(first:last))*answer%strain(:, p)
         end do
       end associate
-      call linear%operator%add_means(scene%model, e, own, size(u, 2), u, strain)
+      call linear%operator%add_means(scene%model, e, places_of(e), size(u, 2), u, strain)
     end subroutine find_means
   end subroutine compare_fields
 end module epcont_accuracy_error_fields

@@ -32,6 +32,7 @@ module epcont_accuracy_field_sums
     real(wp), allocatable, private :: strain(:, :, :), stress(:, :, :)
   contains
     procedure :: add
+    procedure :: include
     procedure :: finish
     procedure, private :: sum_up
   end type field_sums
@@ -103,12 +104,23 @@ contains
     end subroutine put
   end subroutine add
 
+  !> Add the sums of other elements, for the same loads.
+  pure subroutine include(self, others)
+    class(field_sums), intent(inout) :: self
+    type(field_sums), intent(inout) :: others   !! none of them waits any more
+
+    call others%sum_up()
+    self%along = self%along + others%along
+    self%together = self%together + others%together
+  end subroutine include
+
   !> Sum up the elements that wait.
   pure subroutine sum_up(self)
     class(field_sums), intent(inout) :: self
     real(wp) :: of_load(size(self%product, 1), size(self%share, 2))
     integer :: i
 
+    if (self%elements == 0) return
     self%product(self%elements + 1:, :) = 0.0_wp
     of_load = 0.0_wp
     call add_product(1.0_wp, self%product, self%share, of_load)

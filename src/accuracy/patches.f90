@@ -98,15 +98,13 @@ contains
   end function new_patch_table
 
   !> The elements around a place and around the corners of these.
-  pure subroutine wide_patch(model, table, place, seen, patch)
+  pure subroutine wide_patch(model, table, place, patch)
     type(model_type), intent(in) :: model             !! the scene
     type(patch_table), intent(in) :: table            !! of its elements
     integer, intent(in) :: place                      !! which place
-    !> The last place that each element was taken for [elements]
-    integer, intent(inout) :: seen(:)
     integer, allocatable, intent(out) :: patch(:)     !! elements
     integer, allocatable :: found(:)
-    integer :: count, e, i, j, k
+    integer :: count, i, j, k
 
     associate (start => table%around%start, group => table%around%group)
       allocate (found(most_at_first))
@@ -115,12 +113,10 @@ contains
         do k = 1, model%corners(group(i))
           associate (corner => table%place(k, group(i)))
             do j = start(corner), start(corner + 1) - 1
-              e = group(j)
-              if (seen(e) == place) cycle
-              seen(e) = place
+              if (any(found(:count) == group(j))) cycle
               if (count == size(found)) found = [found, found]
               count = count + 1
-              found(count) = e
+              found(count) = group(j)
             end do
           end associate
         end do

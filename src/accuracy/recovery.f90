@@ -11,6 +11,7 @@ module epcont_accuracy_recovery
   use epcont_element_element_kind, only: element_kind
   use epcont_element_kinematics, only: components
   use epcont_model_model, only: model_type
+  use epcont_system_threads, only: threads_over
   implicit none
   private
   public :: body_samples, place_samples, recover
@@ -21,8 +22,6 @@ module epcont_accuracy_recovery
     !> Before those of each element [elements of the scene; of others nothing is said]
     integer, allocatable :: before(:)
     real(wp), allocatable :: x(:, :)       !! [length] [2, samples]
-    !> The last place that each was taken for [elements of the scene]
-    integer, allocatable :: seen(:)
   contains
     procedure :: take
   end type body_samples
@@ -35,17 +34,14 @@ module epcont_accuracy_recovery
 contains
 
   !> The samples of a body.
-  pure subroutine place_samples(model, element, samples)
+  subroutine place_samples(model, element, samples)
     type(model_type), intent(in) :: model    !! the scene
     integer, intent(in) :: element(:)        !! those of the body
     type(body_samples), intent(inout) :: samples   !! none yet, or those of another body
-    integer :: e, i, k, last
+    integer :: i, last
 
     samples%element = element
-    if (.not. allocated(samples%before)) then   ! once for all bodies
-      allocate (samples%before(model%elements))
-      allocate (samples%seen(model%elements), source=0)
-    end if
+    if (.not. allocated(samples%before)) allocate (samples%before(model%elements))   ! once for all bodies
     last = 0
     do i = 1, size(element)
       samples%before(element(i)) = last
@@ -53,8 +49,19 @@ contains
     end do
     if (allocated(samples%x)) deallocate (samples%x)
     allocate (samples%x(2, last))
+    !$omp parallel do num_threads(threads_over(size(element)))
     do i = 1, size(element)
-      e = element(i)
+      call place_element(element(i))
+    end do
+    !$omp end parallel do
+
+  contains
+
+    !> The samples of an element.
+    subroutine place_element(e)
+      integer, intent(in) :: e
+      integer :: k
+
       associate (node => model%connectivity(:model%node_count(e), e), kind => model%kinds(model%kind(e)), &
                  before => samples%before(e))
         if (kind%degree > 1) then
@@ -65,7 +72,7 @@ contains
           samples%x(:, before + 1) = sum(model%x(:, node), dim=2)/kind%nodes
         end if
       end associate
-    end do
+    end subroutine place_element
   end subroutine place_samples
 
   !> What strains of an element with nodes between its corners are at its samples.
@@ -94,38 +101,25 @@ contains
     type(model_type), intent(in) :: model        !! the scene
     type(patch_table), intent(in) :: table       !! of its elements
     integer, intent(in) :: b                     !! the body
-    type(body_samples), intent(inout) :: samples   !! of its elements
+    type(body_samples), intent(in) :: samples   !! of its elements
     integer, intent(in) :: fields                !! how many, besides the answer's
     real(wp), intent(in) :: strain(components, 0:fields, *)   !! [.., .., samples]
     !> [.., .., its places]
     real(wp), intent(out) :: smooth(components, 0:fields, table%of_body%start(b + 1) - table%of_body%start(b))
     integer, allocatable :: fits(:)   !! of a node between corners: polynomials that reach it; of others -1
-    integer, allocatable :: patch(:)
-    integer, allocatable :: at(:)           !! samples of a patch [any]
-    real(wp), allocatable :: weight(:)      !! that they have there [any]
-    integer :: first, i, last, p
-    logical :: any_curved, curved   ! elements of the body, of the patch, have nodes between their corners
+    integer :: i
+    logical :: any_curved             ! elements of the body have nodes between their corners
 
     smooth = 0.0_wp
-    samples%seen(samples%element) = 0
     allocate (fits(size(smooth, 3)), source=-1)
-    allocate (at(size(samples%element)), weight(size(samples%element)))
+    call find_middles()
     associate (places => table%of_body%group(table%of_body%start(b):table%of_body%start(b + 1) - 1))
-      call find_middles()
+      ! What is about a corner adds to the nodes between it and others: one thread.
+      !$omp parallel do num_threads(merge(1, threads_over(size(places)), any_curved))
       do i = 1, size(places)
-        p = places(i)
-        first = table%around%start(p)
-        last = table%around%start(p + 1) - 1
-        if (last < first .or. fits(i) >= 0) cycle
-        curved = any_curved
-        if (any_curved) curved = has_curved(table%around%group(first:last))
-        if (table%inside(p) .and. last - first + 1 >= merge(least_quadratic/3, least_linear, curved)) then
-          call fit(table%around%group(first:last))
-        else
-          call wide_patch(model, table, p, samples%seen, patch)
-          call fit(patch)
-        end if
+        if (fits(i) < 0) call recover_place(i, places(i))
       end do
+      !$omp end parallel do
     end associate
     do i = 1, size(fits)
       if (fits(i) > 0) smooth(:, :, i) = smooth(:, :, i)/fits(i)
@@ -158,53 +152,55 @@ contains
       end do
     end function has_curved
 
-    !> The polynomials about the place.
-    subroutine fit(patch)
-      integer, intent(in) :: patch(:)
+    !> The polynomials about a place, the i-th of the body.
+    subroutine recover_place(i, p)
+      integer, intent(in) :: i, p
+      integer, allocatable :: patch(:)
+      logical :: curved
+
+      associate (first => table%around%start(p), last => table%around%start(p + 1) - 1)
+        if (last < first) return
+        curved = any_curved
+        if (any_curved) curved = has_curved(table%around%group(first:last))
+        if (table%inside(p) .and. last - first + 1 >= merge(least_quadratic/3, least_linear, curved)) then
+          call fit(i, p, curved, table%around%group(first:last))
+        else
+          call wide_patch(model, table, p, patch)
+          call fit(i, p, curved, patch)
+        end if
+      end associate
+    end subroutine recover_place
+
+    subroutine fit(i, p, curved, patch)
+      integer, intent(in) :: i, p, patch(:)
+      logical, intent(in) :: curved   !! elements of the patch have nodes between their corners
 
       if (curved) then
-        call fit_quadratic(patch)
+        call fit_quadratic(i, p, patch)
       else
-        call fit_linear(patch)
+        call fit_linear(patch, model%x(1, table%node(p)), model%x(2, table%node(p)), smooth(:, :, i))
       end if
     end subroutine fit
 
-    !> The linear polynomials of one sample an element, at the place: a sum of the samples. A direction in
-    !! which they do not spread is constant.
-    subroutine fit_linear(patch)
-      integer, intent(in) :: patch(:)
-      real(wp) :: here(components)
-      integer :: f, k
-
-      do k = 1, size(patch)
-        at(k) = samples%before(patch(k)) + 1
-      end do
-      call weigh(size(patch), model%x(1, table%node(p)), model%x(2, table%node(p)))
-      do f = 0, fields
-        here = 0.0_wp
-        do k = 1, size(patch)
-          here = here + weight(k)*strain(:, f, at(k))
-        end do
-        smooth(:, f, i) = here
-      end do
-    end subroutine fit_linear
-
-    !> What n samples count in the value of that polynomial at a place.
-    subroutine weigh(n, x, y)
-      integer, intent(in) :: n
+    !> The value at a place of the linear polynomials of one sample an element: a sum of the samples. A
+    !! direction in which they do not spread is constant.
+    subroutine fit_linear(patch, x, y, here)
+      integer, intent(in) :: patch(:)   !! elements
       real(wp), intent(in) :: x, y
-      real(wp) :: determinant, dx, dy, slope(2)
+      real(wp), intent(inout) :: here(components, 0:fields)   !! zero before
+      real(wp) :: determinant, dx, dy, slope(2), weight
       real(wp) :: mx, my, xx, xy, yy   !! moments of the samples about the place, then about their middle
-      integer :: k
+      integer :: f, k, n
 
+      n = size(patch)
       mx = 0.0_wp
       my = 0.0_wp
       xx = 0.0_wp
       xy = 0.0_wp
       yy = 0.0_wp
       do k = 1, n
-        dx = samples%x(1, at(k)) - x
-        dy = samples%x(2, at(k)) - y
+        dx = samples%x(1, samples%before(patch(k)) + 1) - x
+        dy = samples%x(2, samples%before(patch(k)) + 1) - y
         mx = mx + dx
         my = my + dy
         xx = xx + dx*dx
@@ -220,15 +216,19 @@ contains
       slope = 0.0_wp
       if (determinant > lost_digits*(xx + yy)**2) slope = [mx*yy - my*xy, my*xx - mx*xy]/determinant
       do k = 1, n
-        weight(k) = 1.0_wp/n - slope(1)*(samples%x(1, at(k)) - x - mx) &
-                    - slope(2)*(samples%x(2, at(k)) - y - my)
+        associate (at => samples%before(patch(k)) + 1)
+          weight = 1.0_wp/n - slope(1)*(samples%x(1, at) - x - mx) - slope(2)*(samples%x(2, at) - y - my)
+          do f = 0, fields
+            here(:, f) = here(:, f) + weight*strain(:, f, at)
+          end do
+        end associate
       end do
-    end subroutine weigh
+    end subroutine fit_linear
 
     !> The quadratic polynomials about a corner: their values there, and added at the nodes on the sides that
     !! meet there.
-    subroutine fit_quadratic(patch)
-      integer, intent(in) :: patch(:)
+    subroutine fit_quadratic(i, p, patch)
+      integer, intent(in) :: i, p, patch(:)
       real(wp) :: matrix(quadratic, quadratic), term(quadratic)
       real(wp) :: coefficient(components, 0:fields, quadratic)
       real(wp) :: centre(2), near, reach

@@ -6,7 +6,7 @@ module epcont_assembly_bodies
   use epcont_element_kinematics, only: directions
   use epcont_material_linear_law, only: linear_law
   use epcont_plan_planned_scene, only: planned_scene
-  use epcont_system_threads, only: use_one_thread_each
+  use epcont_system_threads, only: threads_over, use_one_thread_each
   implicit none
   private
   public :: factored_bodies, force_fields, half_solved_body, new_bodies, prescribe, weak_pivot
@@ -155,7 +155,7 @@ contains
   end function displacements
 
   !> Put forces on the bodies: the half of the solve that can be done before all of them are known.
-  pure subroutine add_forces(self, scene, force, load_factor, half)
+  subroutine add_forces(self, scene, force, load_factor, half)
     class(factored_bodies), intent(in) :: self
     type(planned_scene), intent(in) :: scene     !! with the numbers of its equations
     real(wp), intent(in) :: force(:, :)          !! [directions, nodes]
@@ -172,7 +172,7 @@ contains
   contains
 
     !> Put forces on one body.
-    pure subroutine add_to_body(b, half)
+    subroutine add_to_body(b, half)
       integer, intent(in) :: b
       type(half_solved_body), intent(inout) :: half
       real(wp), allocatable :: border(:, :), inner(:, :)
@@ -181,6 +181,9 @@ contains
 
       associate (body => scene%numbering%body(b), axes => scene%numbering%axes)
         allocate (inner(body%equations, 1), border(body%border, 1), source=0.0_wp)
+        ! Equations are of one freedom each; those of the border are of many.
+        !$omp parallel do private(c, own) &
+        !$omp num_threads(merge(1, threads_over(size(body%node)), body%border > 0))
         do i = 1, size(body%node)
           associate (node => body%node(i))
             own = force(:, node) + load_factor*self%settlement(:, node)
@@ -193,6 +196,7 @@ contains
             end do
           end associate
         end do
+        !$omp end parallel do
       end associate
       if (any(inner /= 0.0_wp) .or. any(border /= 0.0_wp)) then
         call self%body(b)%solve_lower(inner, border)
@@ -227,6 +231,7 @@ contains
         border = half(b)%border
         first = merge(body%first_contact, 1, at_contact)
         if (half(b)%loaded) call self%body(b)%solve_upper(inner, border, first)
+        !$omp parallel do num_threads(threads_over(size(body%node))) private(c)
         do i = 1, size(body%node)
           associate (node => body%node(i))
             do c = 1, directions
@@ -238,6 +243,7 @@ contains
             if (axes%turn(node) > 0) u(:, node) = axes%back(node, u(:, node))
           end associate
         end do
+        !$omp end parallel do
       end associate
     end do
   end function finish

@@ -281,7 +281,7 @@ contains
   end function is_sound
 
   !> The first half of a solve for one right-hand side, in place: what has it behind it may still be added to.
-  pure subroutine solve_lower(self, inner, border)
+  subroutine solve_lower(self, inner, border)
     class(body_stiffness), intent(in) :: self
     real(wp), contiguous, intent(inout) :: inner(:, :)    !! [order of the matrix, 1]
     real(wp), contiguous, intent(inout) :: border(:, :)   !! [border, 1]

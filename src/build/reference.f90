@@ -7,6 +7,7 @@ module epcont_build_reference
   use epcont_deck_card_kinds, only: card_blseg
   use epcont_deck_deck, only: deck_type
   use epcont_model_finding, only: findings, of_scene
+  use epcont_system_threads, only: threads_over
   implicit none
   private
   public :: card_index, index_of, check_unique, resolve, chosen_set
@@ -54,7 +55,7 @@ contains
 
   !> Positions of what a field of each card names; 0 where there is no such thing, or where nothing is named.
   !! The former is a fault, but for the id 0, the basic system, and where others are at fault.
-  pure subroutine resolve(deck, card, column, index, found, position)
+  subroutine resolve(deck, card, column, index, found, position)
     type(deck_type), intent(in) :: deck      !! its cards
     integer, intent(in) :: card              !! which table
     integer, intent(in) :: column            !! the field that holds the id
@@ -64,12 +65,17 @@ contains
     integer :: i, id
 
     associate (table => deck%card(card), noun => index%noun)
+      !$omp parallel do num_threads(threads_over(table%count))
       do i = 1, table%count
         position(i) = 0
+        if (table%given(column, i)) position(i) = index%find(int(table%value(column, i)))
+      end do
+      !$omp end parallel do
+      do i = 1, table%count
+        if (position(i) > 0) cycle
         if (.not. table%given(column, i)) cycle   ! the reader has said so where it must be
         id = int(table%value(column, i))
-        position(i) = index%find(id)
-        if (position(i) > 0 .or. id == 0 .or. .not. (table%sound(i) .and. index%whole)) cycle
+        if (id == 0 .or. .not. (table%sound(i) .and. index%whole)) cycle
         call found%add_error(card, i, column, ': '//table%entry%field_text(column)//': there is no '// &
                              trim(noun)//' '//text_of(id), &
                              'the id of '//trim(merge('an', 'a ', noun == 'element'))//' '//trim(noun))

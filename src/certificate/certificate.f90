@@ -13,6 +13,7 @@ module epcont_certificate_certificate
   use epcont_element_kinematics, only: axisymmetric, components, directions, plane_stress
   use epcont_model_model, only: model_type
   use epcont_result_answer, only: answer_type
+  use epcont_system_threads, only: threads_over
   implicit none
   private
   public :: certificate_type, certify
@@ -58,6 +59,14 @@ module epcont_certificate_certificate
     procedure :: figures
     procedure :: has_spoilt
   end type certificate_type
+
+  !> What is found of elements that follow each other, and that a thread takes at once; these are as many.
+  type :: checked_elements
+    real(wp), allocatable :: force(:, :, :)   !! on their nodes [force] [directions, nodes, elements]
+    real(wp), allocatable :: work(:)          !! of the stresses [points]
+    real(wp) :: off_curve = 0.0_wp, motion_strain = 0.0_wp, lost_stress = 0.0_wp   !! as in the certificate
+  end type checked_elements
+  integer, parameter :: at_once = 4096
 
   !> Figures that a limit is set to, and what they say.
   character(len=*), parameter :: off_the_curve = 'stresses are off their curve by'
@@ -135,40 +144,81 @@ contains
     end function least_indentation
 
     !> Internal forces at the nodes and work of the stresses on the strains; the stresses' largest distance
-    !! from the curve and what roundings and rigid motions strain go into the certificate.
+    !! from the curve and what roundings and rigid motions strain go into the certificate. Threads share the
+    !! elements by parts, which are summed up one after the other.
     subroutine add_elements()
       real(wp) :: slope(directions, most_nodes, most_points, size(model%kinds))
-      real(wp) :: unit(components, directions, most_nodes, most_points), volume(most_points)
-      real(wp) :: force(directions)
-      integer :: c, e, k, node, p
+      type(checked_elements) :: part
+      integer :: first, k
 
       do k = 1, size(model%kinds)
         call find_slopes(model%kinds(k), slope(:, :, :, k))
       end do
-      do e = 1, model%elements
+      !$omp parallel do num_threads(threads_over(model%elements)) schedule(dynamic) ordered private(part)
+      do first = 1, model%elements, at_once
+        call check_elements(first, min(first + at_once - 1, model%elements), slope, part)
+        !$omp ordered
+        call add_part(first, part)
+        !$omp end ordered
+      end do
+      !$omp end parallel do
+    end subroutine add_elements
+
+    !> Some elements that follow each other.
+    subroutine check_elements(first, last, slope, part)
+      integer, intent(in) :: first, last          !! of them
+      real(wp), intent(in) :: slope(directions, most_nodes, most_points, *)   !! of each kind
+      type(checked_elements), intent(out) :: part
+      real(wp) :: unit(components, directions, most_nodes, most_points), volume(most_points)
+      real(wp) :: force(directions)
+      integer :: c, e, k, p
+
+      allocate (part%force(directions, size(model%connectivity, 1), first:last), source=0.0_wp)
+      allocate (part%work(model%first_point(first):model%first_point(last + 1) - 1))
+      do e = first, last
         call unit_strains(model, e, slope(:, :, :, model%kind(e)), unit, volume)
         associate (stress => answer%point_stress(:, model%first_point(e):model%first_point(e + 1) - 1))
-          call check_points(e, stress, unit, volume)
+          call check_points(e, stress, unit, volume, part)
           do k = 1, model%node_count(e)
-            force = 0.0_wp
             do p = 1, size(stress, 2)
               do c = 1, directions
-                force(c) = force(c) + volume(p)*dot_product(stress(:, p), unit(:, c, k, p))
+                force(c) = volume(p)*dot_product(stress(:, p), unit(:, c, k, p))
               end do
+              part%force(:, k, e) = part%force(:, k, e) + force
             end do
-            node = model%connectivity(k, e)
-            residual(:, node) = residual(:, node) + force
-            element_force(node) = element_force(node) + maxval(abs(force))
           end do
         end associate
       end do
-    end subroutine add_elements
+    end subroutine check_elements
+
+    !> What has been found of elements from `first` on.
+    subroutine add_part(first, part)
+      integer, intent(in) :: first
+      type(checked_elements), intent(in) :: part
+      integer :: e, k, p
+
+      do e = first, first + size(part%force, 3) - 1
+        do k = 1, model%node_count(e)
+          associate (node => model%connectivity(k, e), force => part%force(:, k, e))
+            residual(:, node) = residual(:, node) + force
+            element_force(node) = element_force(node) + maxval(abs(force))
+          end associate
+        end do
+        do p = model%first_point(e), model%first_point(e + 1) - 1
+          stored = stored + part%work(p)
+        end do
+      end do
+      found%off_curve = max(found%off_curve, part%off_curve)
+      found%motion_strain = max(found%motion_strain, part%motion_strain)
+      found%lost_stress = max(found%lost_stress, part%lost_stress)
+    end subroutine add_part
 
     !> The integration points of an element.
-    subroutine check_points(e, stress, unit, volume)
+    subroutine check_points(e, stress, unit, volume, part)
       integer, intent(in) :: e
       real(wp), intent(in) :: stress(:, :), volume(:)
       real(wp), intent(in) :: unit(:, :, :, :)      !! strains by unit displacements
+      type(checked_elements), intent(inout) :: part
       real(wp), dimension(directions, most_nodes) :: motion, u
       real(wp) :: rounding, strain(components)
       integer :: k, n, node, p
@@ -185,12 +235,12 @@ contains
       do p = 1, size(stress, 2)
         rounding = epsilon(1.0_wp)*maxval(abs(unit(:, :, :n, p)))   ! of a strain by unit displacements
         strain = strain_by(u(:, :n), unit(:, :, :, p), ring)
-        stored = stored + volume(p)*dot_product(stress(:, p), strain)
-        call check_stress(model%section(e), strain, stress(:, p), rounding*maxval(abs(u(:, :n))))
+        part%work(model%first_point(e) + p - 1) = volume(p)*dot_product(stress(:, p), strain)
+        call check_stress(model%section(e), strain, stress(:, p), rounding*maxval(abs(u(:, :n))), part)
         if (.not. moves) cycle
         strain = strain_by(motion(:, :n), unit(:, :, :, p), ring)
         rounding = rounding*maxval(abs(motion(:, :n)) + abs(u(:, :n)))
-        found%motion_strain = max(found%motion_strain, ratio(maxval(abs(strain)), rounding))
+        part%motion_strain = max(part%motion_strain, ratio(maxval(abs(strain)), rounding))
       end do
     end subroutine check_points
 
@@ -199,10 +249,11 @@ contains
     !! and the difference of the mean parts, which are elastic, over the largest stress: hydrostatic stress
     !! says nothing of the curve. Of an elastic one: the largest difference over the largest stress. What
     !! rounding strains makes a stress that is compared with the same.
-    subroutine check_stress(section, strain, stress, rounding)
+    subroutine check_stress(section, strain, stress, rounding, part)
       integer, intent(in) :: section
       real(wp), intent(in) :: strain(components), stress(components)
       real(wp), intent(in) :: rounding         !! of the strain
+      type(checked_elements), intent(inout) :: part
       real(wp) :: apart(components), off, on_curve(components), scale, stiffest
 
       on_curve = stress_on_curve(model, section, strain)
@@ -213,15 +264,15 @@ contains
         scale = max(von_mises_stress(on_curve), min(model%curve(section)%stress(2), largest_stress))
         off = max(ratio(von_mises_stress(apart), scale), ratio(abs(sum(apart(:3)))/3.0_wp, largest_stress))
       end if
-      found%off_curve = max(found%off_curve, off)
+      part%off_curve = max(part%off_curve, off)
       ! Stress over the strain along it where nothing gives way to the sides: near a Poisson's ratio of 0.5
       ! far above E.
       associate (young => model%young(section), nu => model%poisson(section))
         stiffest = young
         if (model%kinematics(section) /= plane_stress) &
           stiffest = young*(1.0_wp - nu)/((1.0_wp + nu)*(1.0_wp - 2.0_wp*nu))
-        found%lost_stress = max(found%lost_stress, ratio(young*rounding, scale), &
-                                ratio(stiffest*rounding, largest_stress))
+        part%lost_stress = max(part%lost_stress, ratio(young*rounding, scale), &
+                               ratio(stiffest*rounding, largest_stress))
       end associate
     end subroutine check_stress
 

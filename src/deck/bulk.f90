@@ -1,6 +1,8 @@
 !> The bulk data: each card checked field by field against the catalogue, and stored in its table.
 module epcont_deck_bulk
   use epcont_base_diagnostic, only: diagnostics
+  use epcont_base_incidence, only: incidence, new_incidence
+  use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of, upper
   use epcont_deck_card, only: card_fields, continues, find_name, gather
   use epcont_deck_card_kinds, only: card_kinds, card_param
@@ -12,12 +14,15 @@ module epcont_deck_bulk
   use epcont_deck_source, only: source
   use epcont_deck_spelling, only: suggestion
   use epcont_deck_table, only: card_table
+  use epcont_system_threads, only: threads_over
   implicit none
   private
   public :: read_bulk
 
   !> Kinds of lines beside those of the cards that begin there.
-  integer, parameter :: no_card = -1, unknown_card = 0
+  integer, parameter :: no_card = 0, unknown_card = card_kinds + 1
+  !> Cards that a thread takes at once.
+  integer, parameter :: at_once = 1000
 
 contains
 
@@ -31,31 +36,32 @@ contains
     type(card_fields) :: card
     type(field_entry), allocatable :: parameter_entry(:)
     character(len=8) :: names(card_kinds)
-    integer :: kind(lines%count)   ! of the card that begins on each line
-    integer :: errors, k, line
+    integer, allocatable :: kind(:, :)   ! of the card that begins on each line [1, lines]
+    type(incidence) :: begun             ! lines on which those of each kind begin
+    integer :: next(card_kinds)          ! cards of each that the next line may begin
+    integer :: k, line
 
     entry = catalogue()
     names = entry%name
     parameter_entry = parameters()
     call find_kinds()
+    begun = new_incidence(kind, unknown_card)
     allocate (table(card_kinds))
     do k = 1, card_kinds
-      call table(k)%begin(entry(k), count(kind == k))
+      call table(k)%begin(entry(k), begun%of(k))
+      if (k /= card_param .and. .not. allocated(entry(k)%list_name)) call read_plain(table(k))
     end do
+    next = 1
     do line = first, lines%count
-      if (kind(line) == no_card) cycle
-      errors = faults%errors
-      call gather(lines, line, card, faults)
-      if (kind(line) == unknown_card) then
+      k = kind(1, line)
+      if (k == no_card) cycle
+      if (k == unknown_card) then
+        call gather(lines, line, card, faults)
         if (card%sound) call refuse_name()
         cycle
       end if
-      associate (cards => table(kind(line)))
-        call cards%add_card(line)
-        if (kind(line) == card_param .and. card%sound) call choose_parameter(cards%entry%field(2))
-        if (faults%errors == errors) call read_card(card, cards, faults)
-        cards%sound(cards%count) = faults%errors == errors
-      end associate
+      if (.not. table(k)%sound(next(k))) call read_in_turn(table(k), next(k))
+      next(k) = next(k) + 1
     end do
     do k = 1, card_kinds
       call note_fields(table(k))
@@ -63,23 +69,66 @@ contains
 
   contains
 
+    !> Read cards without lists, but those that are at fault, by as many threads as are granted.
+    subroutine read_plain(cards)
+      type(card_table), intent(inout) :: cards
+      integer :: i
+
+      !$omp parallel do num_threads(threads_over(cards%count)) schedule(dynamic)
+      do i = 1, cards%count, at_once
+        call read_cards(cards, i, min(i + at_once - 1, cards%count))
+      end do
+      !$omp end parallel do
+    end subroutine read_plain
+
+    subroutine read_cards(cards, first, last)
+      type(card_table), intent(inout) :: cards
+      integer, intent(in) :: first, last   !! of them
+      type(card_fields) :: card
+      type(diagnostics) :: unheard
+      integer :: errors, i
+
+      do i = first, last
+        errors = unheard%errors
+        call cards%clear(i)
+        call gather(lines, cards%line(i), card, unheard)
+        if (unheard%errors == errors) call read_card(card, cards, i, unheard)
+        cards%sound(i) = unheard%errors == errors
+      end do
+    end subroutine read_cards
+
+    !> Read a card that has a list, is a PARAM, or is at fault: faults are told in the order of lines.
+    subroutine read_in_turn(cards, i)
+      type(card_table), intent(inout) :: cards
+      integer, intent(in) :: i
+      integer :: errors
+
+      errors = faults%errors
+      call gather(lines, cards%line(i), card, faults)
+      call cards%clear(i)
+      call cards%begin_list(i)
+      if (k == card_param .and. card%sound) call choose_parameter(cards%entry%field(2))
+      if (faults%errors == errors) call read_card(card, cards, i, faults)
+      cards%sound(i) = faults%errors == errors
+    end subroutine read_in_turn
+
     !> The kind of the card that begins on each line. Cards of one name mostly follow each other.
     subroutine find_kinds()
       character(len=8) :: text, before
-      logical :: begun
+      logical :: is_first
       integer :: i, found
 
-      kind = no_card
-      begun = .false.
+      allocate (kind(1, lines%count), source=no_card)
+      is_first = .true.
       before = ''
       found = unknown_card   ! a card without a name
       do i = first, lines%count
         associate (line => lines%line(i))
           if (line%last < line%first) cycle
-          if (begun) then
+          if (.not. is_first) then
             if (continues(lines%text(line%first:line%last))) cycle
           end if
-          begun = .true.
+          is_first = .false.
           text = lines%text(line%first:min(line%last, line%first + 7))
           if (line%special <= line%last) then   ! with a comma the name may be longer
             found = kind_of(lines%text(line%first:line%last))
@@ -88,7 +137,7 @@ contains
             found = kind_of(text)
             before = text
           end if
-          kind(i) = found
+          kind(1, i) = found
         end associate
       end do
     end subroutine find_kinds
@@ -102,7 +151,8 @@ contains
 
       call find_name(text, index(text, ','), first, last, large)
       name = upper(text(first:min(last, first + 7)))
-      kind_of = findloc(names == name, .true., dim=1)   ! unknown_card: none
+      kind_of = findloc(names == name, .true., dim=1)
+      if (kind_of == 0) kind_of = unknown_card
     end function kind_of
 
     !> The card has a name that is not in the catalogue.
@@ -158,6 +208,7 @@ contains
 
       do slot = 1, size(cards%given, 1)
         associate (field => cards%entry%field(slot))
+          if (field%used .and. field%heard_to == huge(1.0_wp)) cycle
           noted = cards%given(slot, :) .and. (.not. field%used .or. cards%value(slot, :) > field%heard_to)
         end associate
         if (.not. any(noted)) cycle

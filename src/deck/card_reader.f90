@@ -34,10 +34,11 @@ module epcont_deck_card_reader
 
 contains
 
-  !> Read a card into the last row of its table.
-  subroutine read_card(card, table, faults)
+  !> Read a card into its row of a table.
+  subroutine read_card(card, table, row, faults)
     type(card_fields), intent(in) :: card        !! its fields
     type(card_table), intent(inout) :: table     !! those of its kind
+    integer, intent(in) :: row                   !! which of them
     type(diagnostics), intent(inout) :: faults   !! what is wrong is added to them
     integer :: slot
 
@@ -69,7 +70,7 @@ contains
       integer, intent(in) :: slot
       character(len=*), intent(in) :: what, remedy
 
-      call faults%add_error(card%place(slot), table%identity(table%count)//': '// &
+      call faults%add_error(card%place(slot), table%identity(row)//': '// &
                             table%entry%field_text(slot)//' '//what, remedy)
     end subroutine refuse
 
@@ -86,9 +87,9 @@ contains
     !> A blank field has its default, or the value of another; some may not be blank.
     subroutine take_blank()
 
-      associate (field => table%entry%field(slot), i => table%count)
-        table%value(slot, i) = field%default
-        if (field%same_as /= 0) table%value(slot, i) = table%value(slot + field%same_as, i)
+      associate (field => table%entry%field(slot))
+        table%value(slot, row) = field%default
+        if (field%same_as /= 0) table%value(slot, row) = table%value(slot + field%same_as, row)
         if (field%required .or. card%filled(slot + field%with)) &
           call refuse(slot, 'is blank', field%allowed())
       end associate
@@ -100,9 +101,9 @@ contains
 
       call read_slot(slot, table%entry%field(slot), value)
       if (value%outcome /= scan_sound) return
-      table%value(slot, table%count) = value%number
-      if (table%entry%field(slot)%kind == kind_word) table%word(slot, table%count) = value%word
-      table%given(slot, table%count) = .true.
+      table%value(slot, row) = value%number
+      if (table%entry%field(slot)%kind == kind_word) table%word(slot, row) = value%word
+      table%given(slot, row) = .true.
     end subroutine take_value
 
     !> Read a field; where it is blank, or cannot be taken, say why.
@@ -243,7 +244,7 @@ contains
         call refuse(slot, 'is less than the id before THRU', 'an id of at least '//text_of(item%from))
         return
       end if
-      call table%add_item(item)
+      call table%add_item(row, item)
     end subroutine read_range
 
     !> The step of a range: 1 towards its end, or as `BY` behind it says; `slot` is then that of the step.
@@ -285,12 +286,12 @@ contains
           call read_slot(slot + k - 1, coordinate, value(k))
           if (value(k)%outcome /= scan_sound) return
         end do
-        call table%add_item(list_item(point=value%number, place=card%place(slot)))
+        call table%add_item(row, list_item(point=value%number, place=card%place(slot)))
         slot = slot + 2
       end do
       do slot = slot + 1, card%count
         if (card%filled(slot)) &
-          call faults%add_error(card%place(slot), table%identity(table%count)//': field '// &
+          call faults%add_error(card%place(slot), table%identity(row)//': field '// &
                                 text_of(number_of(slot))//' must be blank', &
                                 'blank: '//end_word//' ends the card')
       end do

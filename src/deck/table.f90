@@ -34,26 +34,29 @@ module epcont_deck_table
     procedure :: number
     procedure :: has
     procedure :: identity
-    procedure :: add_card
+    procedure :: clear
+    procedure :: begin_list
     procedure :: add_item
   end type card_table
 
 contains
 
-  !> An empty table with room for cards that are still to come.
-  subroutine begin(self, entry, cards)
+  !> A table of cards that are still to be read.
+  subroutine begin(self, entry, line)
     class(card_table), intent(out) :: self
     type(card_entry), intent(in) :: entry   !! what the catalogue says of them
-    integer, intent(in) :: cards            !! how many there will be
+    integer, intent(in) :: line(:)          !! where each begins
     integer :: columns
 
     columns = size(entry%field)
     self%entry = entry
-    allocate (self%value(columns, cards), source=0.0_wp)
-    allocate (self%given(columns, cards), source=.false.)
-    if (any(entry%field%kind == kind_word)) allocate (self%word(columns, cards), source=repeat(' ', 8))
-    allocate (self%sound(cards), self%line(cards), self%list_start(cards + 1), self%list(16))
-    self%list_start(1) = 1
+    self%line = line
+    self%count = size(line)
+    allocate (self%value(columns, self%count), self%given(columns, self%count))
+    if (any(entry%field%kind == kind_word)) allocate (self%word(columns, self%count))
+    allocate (self%sound(self%count), source=.false.)
+    allocate (self%list_start(self%count + 1), source=1)
+    allocate (self%list(16))
   end subroutine begin
 
   !> The column of a field by name. A name that the catalogue has not is a fault of the program.
@@ -100,24 +103,33 @@ contains
     end if
   end function identity
 
-  !> Add a card, all its fields blank; there is room for it.
-  pure subroutine add_card(self, line)
+  !> All fields of a card are blank. (Row by row, since threads that read touch their memory first.)
+  pure subroutine clear(self, card)
     class(card_table), intent(inout) :: self
-    integer, intent(in) :: line   !! where it begins
+    integer, intent(in) :: card   !! which
 
-    self%count = self%count + 1
-    self%line(self%count) = line
-    self%list_start(self%count + 1) = self%items + 1
-  end subroutine add_card
+    self%value(:, card) = 0.0_wp
+    self%given(:, card) = .false.
+    if (allocated(self%word)) self%word(:, card) = ''
+  end subroutine clear
 
-  !> Add an item to the list of the last card.
-  pure subroutine add_item(self, item)
+  !> What items are added from here on are of this card; those before it have theirs.
+  pure subroutine begin_list(self, card)
     class(card_table), intent(inout) :: self
+    integer, intent(in) :: card   !! which
+
+    self%list_start(card:card + 1) = self%items + 1
+  end subroutine begin_list
+
+  !> Add an item to the list of a card.
+  pure subroutine add_item(self, card, item)
+    class(card_table), intent(inout) :: self
+    integer, intent(in) :: card           !! the one that was begun last
     type(list_item), intent(in) :: item   !! ids or a point
 
     if (self%items == size(self%list)) self%list = [self%list, self%list]
     self%items = self%items + 1
     self%list(self%items) = item
-    self%list_start(self%count + 1) = self%items + 1
+    self%list_start(card + 1) = self%items + 1
   end subroutine add_item
 end module epcont_deck_table

@@ -74,7 +74,7 @@ module epcont_linalg_assembled
 
     !> The first half of a solve, L^-1 x: right-hand sides that have it behind them may still be added to each
     !! other.
-    pure subroutine first_half(self, x)
+    subroutine first_half(self, x)
       import :: assembled_matrix, wp
       class(assembled_matrix), intent(in) :: self
       real(wp), contiguous, intent(inout) :: x(:, :)  !! [order, any]
@@ -90,7 +90,7 @@ module epcont_linalg_assembled
 
     !> `probes` with the first half of the solve behind them; they were taken along when the factor was made,
     !! perhaps.
-    pure function columns_of_factor(self) result(x)
+    function columns_of_factor(self) result(x)
       import :: assembled_matrix, wp
       class(assembled_matrix), intent(in) :: self
       real(wp), allocatable :: x(:, :)

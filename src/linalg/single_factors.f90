@@ -1,6 +1,7 @@
 !> The factors of epcont_linalg_factors with their entries in single precision: half of the memory and of the
 !> time to factor them.
 module epcont_linalg_single_factors
+  use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: i8, rp => sp, wp
   use epcont_base_sorting, only: sorted_order
   use epcont_linalg_assembled, only: assembled_matrix, find_compliance, order_rows, probes, sparse_rows
@@ -10,6 +11,7 @@ module epcont_linalg_single_factors
   use epcont_linalg_single_lapack, only: gemm => sgemm, gemv => sgemv, potrf => spotrf, syrk => ssyrk, &
       trsm => strsm
   use epcont_system_large_pages, only: use_large_pages, use_small_pages
+  use epcont_system_threads, only: use_one_thread_each
   !$ use omp_lib, only: omp_get_num_threads
   implicit none
   private
@@ -27,7 +29,7 @@ contains
 
   !> The first half of a solve. What is solved for has the size of 1, so that single precision has room for
   !! it.
-  pure subroutine solve_lower(self, x)
+  subroutine solve_lower(self, x)
     class(blocked_matrix), intent(in) :: self
     real(wp), contiguous, intent(inout) :: x(:, :)   !! [order, any]
     real(rp) :: y(size(x, 1), size(x, 2))

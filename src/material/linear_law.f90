@@ -65,9 +65,14 @@ contains
     class(linear_law), intent(in) :: self
     real(wp), intent(in) :: strain(:, :)   !! [components, points]
     real(wp), allocatable :: stress(:, :)
+    integer :: p
 
     stress = self%increment(strain)
-    stress = stress + self%initial_stress
+    !$omp parallel do num_threads(threads_over(size(strain, 2)))
+    do p = 1, size(strain, 2)
+      stress(:, p) = stress(:, p) + self%initial_stress(:, p)
+    end do
+    !$omp end parallel do
   end function stress
 
   !> What a strain adds to the stress of each point [components, points].

@@ -24,6 +24,7 @@ module epcont_material_scene_materials
     logical :: yields = .false.                    !! does any section?
   contains
     procedure :: states
+    procedure :: measure
   end type scene_materials
 
 contains
@@ -65,4 +66,31 @@ contains
     end do
     !$omp end parallel do
   end function states
+
+  !> How far stresses are from those of the materials, by `distance`, at most, and how many elements yield.
+  subroutine measure(self, model, state, stress, farthest, yielded)
+    class(scene_materials), intent(in) :: self
+    type(model_type), intent(in) :: model        !! the scene
+    type(point_state), intent(in) :: state(:)    !! [points]
+    real(wp), intent(in) :: stress(:, :)         !! xx, yy, zz, xy [stress] [components, points]
+    real(wp), intent(out) :: farthest            !! 0 where nothing can yield
+    integer, intent(out) :: yielded              !! elements
+    integer :: e, p
+
+    farthest = 0.0_wp
+    yielded = 0
+    !$omp parallel do num_threads(threads_over(model%elements)) private(p) &
+    !$omp reduction(max: farthest) reduction(+: yielded)
+    do e = 1, model%elements
+      if (.not. model%can_yield(e)) cycle
+      associate (law => self%section(model%section(e))%law, &
+                 first => model%first_point(e), last => model%first_point(e + 1) - 1)
+        do p = first, last
+          farthest = max(farthest, law%distance(state(p), stress(:, p)))
+        end do
+        if (any(state(first:last)%yielded)) yielded = yielded + 1
+      end associate
+    end do
+    !$omp end parallel do
+  end subroutine measure
 end module epcont_material_scene_materials

@@ -7,6 +7,7 @@ module epcont_model_element_shapes
   use epcont_element_element_kind, only: most_nodes
   use epcont_model_finding, only: and_more, findings, of_element, of_node
   use epcont_model_model, only: model_type
+  use epcont_system_threads, only: threads_over
   implicit none
   private
   public :: complete_elements, check_axis, check_overlaps
@@ -22,18 +23,24 @@ contains
     type(model_type), intent(inout) :: model   !! the scene
     type(findings), intent(inout) :: found   !! what is wrong with it is added
     logical :: is_ring(model%elements)
+    logical :: plain(model%elements)                    ! nothing has to be done to it
     real(wp), dimension(2, most_nodes) :: x, straight   ! nodes of an element; with straight sides
     integer :: e, n, next, plane, ring, turn            ! it, its corners; 0: it folds over
 
     model%node_count = model%kinds(model%kind)%nodes
     model%points = sum(model%kinds(model%kind)%points)
     allocate (model%first_point(model%elements + 1), model%point_element(model%points))
+    !$omp parallel do num_threads(threads_over(model%elements))
+    do e = 1, model%elements
+      call turn_plain(e, plain(e))
+    end do
+    !$omp end parallel do
     next = 1
     do e = 1, model%elements
       model%first_point(e) = next
       next = next + model%kinds(model%kind(e))%points
       model%point_element(model%first_point(e):next - 1) = e
-      if (all(model%connectivity(:model%node_count(e), e) > 0)) call check_shape()
+      if (.not. plain(e)) call check_shape()
     end do
     model%first_point(e) = next
     model%around = new_incidence(model%connectivity, model%nodes)
@@ -46,7 +53,28 @@ contains
 
   contains
 
-    !> Turn the element counter-clockwise; a shape that is none is a fault.
+    !> Turn an element counter-clockwise if it has straight sides and there is nothing to be said of it.
+    subroutine turn_plain(e, plain)
+      integer, intent(in) :: e
+      logical, intent(out) :: plain   !! that is so, or it is not whole
+      real(wp) :: x(2, most_nodes)
+      integer :: k, turn
+
+      associate (node => model%connectivity(:, e), n => model%node_count(e), &
+                 kind => model%kinds(model%kind(e)))
+        plain = any(node(:n) == 0)
+        if (plain .or. n > kind%corners) return
+        do k = 1, n
+          x(:, k) = model%x(:, node(k))
+        end do
+        turn = kind%turn(x)
+        plain = turn /= 0 .and. &
+                max(maxval(abs(x(1, 2:n) - x(1, 1))), maxval(abs(x(2, 2:n) - x(2, 1)))) >= shortest_side
+        if (plain .and. turn < 0) node([2, n]) = node([n, 2])   ! the first one stays, and the third of four
+      end associate
+    end subroutine turn_plain
+
+    !> Turn any other counter-clockwise; a shape that is none is a fault.
     subroutine check_shape()
       integer :: k
       real(wp) :: extent   ! from its first corner [length]
@@ -66,9 +94,7 @@ contains
         else if (turn /= 0 .or. kind%turn(straight) /= 0) then
           if (size(node) > n) call check_middles()
           if (turn < 0) then
-            k = node(2)   ! the first one stays, and the third of four
-            node(2) = node(n)
-            node(n) = k
+            node([2, n]) = node([n, 2])
             if (size(node) > n) node(n + 1:) = node(size(node):n + 1:-1)
           end if
         else if (n == 3) then

@@ -13,6 +13,7 @@ module epcont_plan_free_motion
   use epcont_model_finding, only: findings, of_body, of_node
   use epcont_model_model, only: model_type
   use epcont_plan_rigid_parts, only: find_rigid_parts, part_motions, rigid_parts
+  use epcont_system_threads, only: threads_over
   implicit none
   private
   public :: free_motions, find_free_motions
@@ -45,13 +46,14 @@ module epcont_plan_free_motion
 contains
 
   !> Add rigid motions to displacements.
-  pure subroutine add(self, model, motion, displacement)
+  subroutine add(self, model, motion, displacement)
     class(free_motions), intent(in) :: self
     type(model_type), intent(in) :: model              !! the scene
     real(wp), intent(in) :: motion(:)                  !! how far each goes [count]
     real(wp), intent(inout) :: displacement(:, :)      !! [length] [directions, nodes]
     integer :: k, node
 
+    !$omp parallel do num_threads(threads_over(model%nodes)) private(k)
     do node = 1, model%nodes
       associate (b => model%body(node))
         do k = self%first(b), self%first(b + 1) - 1
@@ -59,6 +61,7 @@ contains
         end do
       end associate
     end do
+    !$omp end parallel do
   end subroutine add
 
   !> Displacement of a node in unit motion k.

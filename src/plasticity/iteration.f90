@@ -248,8 +248,6 @@ contains
     !! exact in each solve: that distance is all that is left of the scene's equations.
     subroutine measure(found)
       type(scene_state), intent(inout) :: found         !! its points are set
-      logical, allocatable :: yields(:)
-      integer :: p
 
       now%load_factor = load_factor
       now%change = ratio(maxval(abs(found%displacement - about%displacement)), &
@@ -260,17 +258,7 @@ contains
       now%kept = size(found%contact%history)
       if (.not. linear%materials%yields) return
       found%point = linear%materials%states(found%strain)
-      now%residual = 0.0_wp
-      allocate (yields(scene%model%elements), source=.false.)
-      do p = 1, scene%model%points
-        if (.not. linear%materials%can_yield(p)) cycle
-        associate (e => scene%model%point_element(p), state => found%point(p), &
-                   material => linear%materials%section(linear%materials%of_point(p))%law)
-          yields(e) = yields(e) .or. state%yielded
-          now%residual = max(now%residual, material%distance(state, found%point_stress(:, p)))
-        end associate
-      end do
-      now%yielded = count(yields)
+      call linear%materials%measure(scene%model, found%point, found%point_stress, now%residual, now%yielded)
     end subroutine measure
 
     !> How far the iteration still is from where it goes, from what its last steps were worth.

@@ -12,6 +12,7 @@ module epcont_plasticity_newton
   use epcont_material_material_law, only: point_state
   use epcont_model_model, only: model_type
   use epcont_plasticity_secant, only: secant_method
+  use epcont_system_threads, only: threads_over
   implicit none
   private
   public :: newton_method
@@ -115,13 +116,19 @@ contains
     end subroutine find_length
 
     !> (f_int - f).d with the stresses of some states.
-    pure real(wp) function slope_of(state) result(slope)
+    real(wp) function slope_of(state) result(slope)
       type(point_state), intent(in) :: state(:)
+      real(wp) :: work(size(state))
       integer :: p
 
+      !$omp parallel do num_threads(threads_over(size(work)))
+      do p = 1, size(work)
+        work(p) = linear%operator%volume(p)*dot_product(state(p)%stress, along(:, p))
+      end do
+      !$omp end parallel do
       slope = -load_factor*sum(model%load*travel)
-      do p = 1, size(state)
-        slope = slope + linear%operator%volume(p)*dot_product(state(p)%stress, along(:, p))
+      do p = 1, size(work)   ! in their order
+        slope = slope + work(p)
       end do
     end function slope_of
   end subroutine advance

@@ -24,20 +24,16 @@ contains
     type(linear_problem), intent(in) :: linear     !! of the last solve
     real(wp), intent(in) :: applied(:, :)        !! nodal forces of loads and pairs [force] [2, nodes]
     type(answer_type), intent(inout) :: answer   !! its state is given
-    real(wp) :: nothing(model%elements)
     real(wp), allocatable :: force(:, :)   ! that the elements need at the nodes [force] [2, nodes]
     real(wp) :: shortfall
     integer :: c, e, leader, node
 
-    nothing = 0.0_wp
-    answer%stress = spread(nothing, 1, components)
-    answer%equivalent_stress = nothing
-    answer%equivalent_strain = nothing
-    answer%secant_modulus = nothing
-    answer%largest_stress = nothing
-    answer%largest_at = int(nothing)
-    answer%plastic = nothing > 0.0_wp
-    answer%beyond = answer%plastic
+    associate (n => model%elements)
+      if (.not. allocated(answer%stress)) &
+        allocate (answer%stress(components, n), answer%equivalent_stress(n), answer%equivalent_strain(n), &
+                  answer%secant_modulus(n), answer%largest_stress(n), answer%largest_at(n), &
+                  answer%plastic(n), answer%beyond(n))
+    end associate
     shortfall = 0.0_wp
     !$omp parallel do num_threads(threads_over(model%elements)) reduction(max:shortfall)
     do e = 1, model%elements
@@ -69,6 +65,12 @@ contains
 
     associate (law => linear%materials%section(model%section(e))%law, first => model%first_point(e), &
                last => model%first_point(e + 1) - 1, volume => linear%operator%volume)
+      answer%stress(:, e) = 0.0_wp
+      answer%equivalent_stress(e) = 0.0_wp
+      answer%equivalent_strain(e) = 0.0_wp
+      answer%secant_modulus(e) = 0.0_wp
+      answer%plastic(e) = .false.
+      answer%beyond(e) = .false.
       whole = sum(volume(first:last))
       do p = first, last
         mises(p - first + 1) = equivalent_stress(answer%point_stress(:, p))

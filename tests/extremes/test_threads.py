@@ -73,6 +73,26 @@ class Bytes(Extremes):
         """Large enough that threads share its dissection, its solves and the loops over its points, too."""
         self.same(stack(1, 150, stress=120.0))
 
+    def test_large_body_of_triangles(self):
+        """Elements in several parts, half of them clockwise: read, checked, compared and certified by threads."""
+        deck = Deck(*STEEL)
+        deck.stand(deck.block(1, [i/150 for i in range(151)], [j/150 for j in range(151)], triangles=True), 100.0)
+        for k, (name, *fields) in enumerate(deck.cards):
+            if name == "CTRIA3" and fields[0] % 2:
+                deck.cards[k] = (name, *fields[:2], *fields[:1:-1])
+        self.same(deck)
+
+    def test_faults_of_a_long_deck(self):
+        """Whoever reads a card: its faults come in the order of the lines."""
+        deck = stack(1, 150)
+        for k in range(3000, len(deck.cards), 4001):
+            name, *fields = deck.cards[k]
+            deck.cards[k] = (name, *fields[:2], "1x", "no" if name == "GRID" else fields[3], *fields[4:])
+        one, *others = [solve(deck, threads=count) for count in COUNTS]
+        self.assertEqual(2, one.status)
+        self.assertGreater(one.message.count("'1x'") + one.message.count("1x"), 5)
+        self.assertEqual([one.message]*len(others), [other.message for other in others])
+
     def test_many_bodies(self):
         self.same(stack(12, 24, parameters=[("SOLVER", "BAND")]))
 
