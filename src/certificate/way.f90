@@ -189,9 +189,8 @@ contains
       integer :: k
 
       x = point%drawn + time*point%motion
-      within = search%allowance%length(point%side)
+      within = min(reach, search%allowance%length(point%side))
       do
-        within = min(within, reach)
         near = sides_meeting(search%now, part, motion_query(point%x - within, point%x + within, &
                                                             point%motion, [time, time]))
         ! At a node both sides say what is inside.
@@ -202,7 +201,7 @@ contains
           if (place%distance < best%distance) best = place
         end do
         if (best%distance <= within .or. within >= reach) exit
-        within = widening*within
+        within = min(reach, widening*within)
       end do
       if (best%side > 0) best%inside = between%is_inside(best, x)
     end function nearest_place

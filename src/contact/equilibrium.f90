@@ -8,7 +8,8 @@
 !> the second, bounded since g^ >= 0, the statically determinate set of pairs that closes first.
 !>
 !> There is no tableau, only the inverse of its basis, from which a column or a row of it is put together when
-!> it is asked for: of many bodies each has few pairs, so A has few entries.
+!> it is asked for: of many bodies each has few pairs, so A has few entries. A row of the inverse often has
+!> few, too, far apart in memory: marks tell where they may be.
 module epcont_contact_equilibrium
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: dependent, negligible, null_component
@@ -24,6 +25,9 @@ module epcont_contact_equilibrium
     logical, allocatable :: redundant(:)   !! motions neither resisted nor loaded [m]
     real(wp), allocatable :: escape(:)     !! y with P'y > 0, A y <= 0, if not balanced [m]
   end type rigid_start
+
+  !> Columns of the inverse that are marked at a time.
+  integer, parameter :: at_once = 64
 
 contains
 
@@ -47,8 +51,10 @@ contains
     !! phase 1 these carry all of the load and cost one a unit.
     integer :: basic(size(resultant))
     real(wp) :: value(size(resultant))      ! basic variables
-    !> Row i is inverse(:, i); equations have the signs that make P >= 0
-    real(wp), allocatable :: inverse(:, :)
+    real(wp), allocatable :: inverse(:, :)  ! of the basis; equations have the signs that make P >= 0
+    !> Its rows that have entries in so many columns at a time [m, m/at_once]
+    logical, allocatable :: filled(:, :)
+    logical, allocatable :: is_basic(:)     ! forces, then artificial ones [n + m]
     real(wp) :: cost(size(gap))             ! of a unit of each force
     real(wp) :: price(size(resultant))      ! what a unit of load costs by the basic variables
     type(motion_matrix) :: of_pair          ! the equations that each force is in
@@ -59,8 +65,10 @@ contains
     value = abs(resultant)
     if (any(value > 0.0_wp)) value = value/maxval(value)
     allocate (inverse(size(resultant), size(resultant)), source=0.0_wp)
+    allocate (filled(size(resultant), (size(resultant) + at_once - 1)/at_once), source=.false.)
     do i = 1, size(resultant)
       inverse(i, i) = 1.0_wp
+      filled(i, (i + at_once - 1)/at_once) = .true.
       basic(i) = n + i
     end do
     cost = 0.0_wp
@@ -71,13 +79,14 @@ contains
       call expel_artificials()
       ! Phase 2: forces cost their gaps; what is left of the artificials is zero and costs nothing.
       cost = gap
-      price = 0.0_wp
-      do i = 1, size(basic)
-        if (basic(i) <= n) price = price + gap(basic(i))*inverse(:, i)
-      end do
+      associate (of_all => [gap, 0.0_wp*value])
+        price = [(dot_product(of_all(basic), inverse(:, i)), i=1, size(basic))]
+      end associate
       call minimise()
-      start%touching = [(any(basic == i), i=1, n)]
-      start%redundant = [(any(basic == n + i), i=1, size(resultant))]
+      allocate (is_basic(n + size(basic)), source=.false.)
+      is_basic(basic) = .true.
+      start%touching = is_basic(:n)
+      start%redundant = is_basic(n + 1:)
     else
       start%escape = sign(1.0_wp, resultant)*price
     end if
@@ -90,7 +99,7 @@ contains
     !! ends. The limit guards against rounding, and a set that is not quite the best serves as well, since the
     !! contact simplex lifts its start.
     subroutine minimise()
-      real(wp) :: reduced_cost(n), pivot(size(basic))
+      real(wp) :: reduced_cost(n), pivot(size(basic)), resolved(size(basic))
       integer :: column, count, row
       logical :: by_index
 
@@ -107,8 +116,8 @@ contains
         pivot = column_of(column)
         row = leaving_row(pivot, by_index)
         if (row == 0) exit
-        call exchange(row, column, pivot)
-        price = price + reduced_cost(column)*inverse(:, row)
+        call exchange(row, column, pivot, resolved)
+        price = price + reduced_cost(column)*resolved
       end do
     end subroutine minimise
 
@@ -131,7 +140,7 @@ contains
         associate (equation => of_pair%pair(k))
           entry = sign(1.0_wp, resultant(equation))*of_pair%closing(k)
           do i = 1, size(pivot)
-            pivot(i) = pivot(i) + entry*inverse(equation, i)
+            pivot(i) = pivot(i) + entry*inverse(i, equation)
           end do
         end associate
       end do
@@ -163,20 +172,27 @@ contains
       end do
     end function leaving_row
 
-    !> A force becomes basic in a row.
-    subroutine exchange(row, column, pivot)
+    !> A force becomes basic in a row of the inverse.
+    subroutine exchange(row, column, pivot, resolved)
       integer, intent(in) :: row, column   !! column: the force
       real(wp), intent(in) :: pivot(:)     !! its column
-      integer, allocatable :: filled(:)    ! entries of that row that are not zero
-      integer :: i
+      real(wp), intent(out) :: resolved(:)   !! that row, then
+      integer, allocatable :: falling(:)   ! the others that it changes
+      integer :: equation, i, many
 
-      inverse(:, row) = inverse(:, row)/pivot(row)
+      falling = pack([(i, i=1, size(basic))], pivot /= 0.0_wp .and. [(i /= row, i=1, size(basic))])
       value(row) = value(row)/pivot(row)
-      filled = pack([(i, i=1, size(basic))], inverse(:, row) /= 0.0_wp)
-      do i = 1, size(basic)
-        if (i == row .or. pivot(i) == 0.0_wp) cycle
-        inverse(filled, i) = inverse(filled, i) - pivot(i)*inverse(filled, row)
-        value(i) = max(value(i) - pivot(i)*value(row), 0.0_wp)
+      value(falling) = max(value(falling) - pivot(falling)*value(row), 0.0_wp)
+      resolved = 0.0_wp
+      do many = 1, size(filled, 2)
+        if (.not. filled(row, many)) cycle
+        filled(falling, many) = .true.
+        do equation = (many - 1)*at_once + 1, min(many*at_once, size(basic))
+          if (inverse(row, equation) == 0.0_wp) cycle
+          inverse(row, equation) = inverse(row, equation)/pivot(row)
+          resolved(equation) = inverse(row, equation)
+          inverse(falling, equation) = inverse(falling, equation) - pivot(falling)*resolved(equation)
+        end do
       end do
       basic(row) = column
     end subroutine exchange
@@ -184,18 +200,18 @@ contains
     !> Replace each artificial force that is basic at zero by a true one; where none can, the equation is
     !! redundant and the artificial stays to mark it.
     subroutine expel_artificials()
-      real(wp) :: row(n)
+      real(wp) :: resolved(size(basic)), row(n)
       integer :: column, i
 
       do i = 1, size(basic)
         if (basic(i) <= n) cycle
         value(i) = 0.0_wp
-        row = row_of(inverse(:, i))
-        column = first_largest(abs(row), null_component*maxval(abs(inverse(:, i))))
+        row = row_of(inverse(i, :))
+        column = first_largest(abs(row), null_component*maxval(abs(inverse(i, :))))
         if (column > 0) then
-          call exchange(i, column, column_of(column))
+          call exchange(i, column, column_of(column), resolved)
         else
-          inverse(:, i) = 0.0_wp
+          inverse(i, :) = 0.0_wp
         end if
       end do
     end subroutine expel_artificials
@@ -209,9 +225,8 @@ contains
     real(wp) :: largest
 
     at = 0
-    largest = maxval([values, least])
-    if (largest > least) then
+    largest = max(maxval(values), least)   ! -huge of no values
+    if (largest > least) &
       at = findloc(values > max(largest - negligible*maxval(abs(values)), least), .true., dim=1)
-    end if
   end function first_largest
 end module epcont_contact_equilibrium

@@ -122,13 +122,15 @@ contains
     class(boundary_line), intent(in) :: self
     integer, intent(in) :: sides(:)   !! their numbers
     type(boundary_line) :: part
-    integer :: k, number(0:size(self%element))
+    integer :: end, k
+    integer :: number(minval(sides):maxval(sides))   ! of many lines each has its own
 
     number = 0
     number(sides) = [(k, k=1, size(sides))]
     part%segment = self%segment(:, sides)
     part%element = self%element(sides)
-    part%neighbour = reshape(number([self%neighbour(:, sides)]), [2, size(sides)])
+    part%neighbour = reshape([((numbered(self%neighbour(end, sides(k))), end=1, 2), k=1, size(sides))], &
+                             [2, size(sides)])
     part%x = self%x(:, :, sides)
     part%normal = self%normal(:, :, sides)
     part%corner = self%corner(:, sides)
@@ -136,6 +138,16 @@ contains
     part%mirrored = self%mirrored(:, sides)
     part%end_normal = self%end_normal(:, :, sides)
     call part%set_boxes()
+
+  contains
+
+    !> The new number of a side; 0: it is none of them.
+    pure integer function numbered(side)
+      integer, intent(in) :: side
+
+      numbered = 0
+      if (side >= lbound(number, 1) .and. side <= ubound(number, 1)) numbered = number(side)
+    end function numbered
   end function pick
 
   !> Length of a side, from end to end [length].

@@ -75,16 +75,15 @@ contains
     rounding = cancelled*maxval(abs(from%x))
     ahead = from%x + aside*from%along
     more = min(search, 2.0_wp*norm2(from%along))
-    within = max(nearby*more, least_difference*search)
+    within = min(search, max(nearby*more, least_difference*search))
     do
-      within = min(within, search)
       sides = line%in_box(line_query(from%x - within, from%x + within, spread(from%x, 2, 2), .true.))
       met = [(look_at(sides(k)), k=1, size(sides))]
       face = best_two(pack(met, met%found))
       ! Sides that were left out are farther than `within`.
       if (face(1)%found .and. abs(face(1)%gap) + more < within - 2.0_wp*least_difference*search) exit
       if (within >= search) exit
-      within = widening*within
+      within = min(search, widening*within)
     end do
     if (abs(face(2)%gap) > abs(face(1)%gap) + more) face(2) = facing_type()
     where (abs(face%gap) <= rounding) face%gap = 0.0_wp

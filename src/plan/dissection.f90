@@ -28,6 +28,10 @@ module epcont_plan_dissection
   !> The part of a set on either side of the band. From .3 to .4 operations are level within 3 %; the wider
   !! the band, the more regular meshes gain (triangles by turns 20 %), and the longer it takes.
   real(wp), parameter :: end_part = 0.35_wp
+  !> In larger sets the band becomes narrower, by the root of their size, since ways through a wide one take
+  !! ever more rounds; no narrower than by the root of this, or it would be lost in what thresholds are off.
+  integer, parameter :: large = 30000
+  real(wp), parameter :: least_square = 1.0_wp/6.0_wp
   !> Coordinates that halve a set less evenly are not used.
   real(wp), parameter :: largest_half = 2.0_wp/3.0_wp
   !> Larger halves are tasks of their own, if there are threads: by themselves they take a millisecond.
@@ -131,7 +135,7 @@ contains
     !! too few values, nodes are taken as they come.
     recursive subroutine lay_band(set)
       integer, intent(in) :: set(:)
-      real(wp) :: at_left, at_right, sample(most_sampled, axes), median(axes)
+      real(wp) :: at_left, at_right, beside, sample(most_sampled, axes), median(axes)
       integer :: axis, i, n
 
       n = 0
@@ -148,8 +152,10 @@ contains
         call lay_band(set)
         return
       end if
-      at_left = threshold(sample(:n, axis), nint(end_part*n))
-      at_right = threshold(sample(:n, axis), n - nint(end_part*n))
+      beside = min(1.0_wp, max(least_square, real(large, wp)/size(set)))
+      beside = n*(0.5_wp - (0.5_wp - end_part)*sqrt(beside))
+      at_left = threshold(sample(:n, axis), nint(beside))
+      at_right = threshold(sample(:n, axis), n - nint(beside))
       do i = 1, size(set)
         associate (c => coordinate(axis, set(i)))
           graph%side(set(i)) = merge(left, merge(right, between, c > at_right), c <= at_left)

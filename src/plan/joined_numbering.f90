@@ -30,7 +30,7 @@ contains
     integer :: springs(0:model%nodes)   ! nodes that they act on so far in the order
     logical, allocatable :: acted(:)    ! springs act on what is eliminated into the front
     integer, allocatable :: order(:)    ! of the fronts
-    integer :: begun, i, last, p
+    integer :: apart, begun, i, last, p
 
     found = dissect(model, 2.0_wp*model%x(1, :) + model%x(2, :), [(i, i=1, model%nodes)], &
                     followed_nodes(model), new_incidence(model%nodes_of_pairs(), model%nodes))
@@ -40,6 +40,7 @@ contains
       springs(i) = springs(i - 1) + merge(1, 0, acted(found%node(i)))
     end do
     acted = springs(found%first(2:) - 1) > springs(found%below - 1)
+    apart = count(.not. acted)
     order = [pack([(p, p=1, size(acted))], .not. acted), pack([(p, p=1, size(acted))], acted)]
     allocate (equation(directions, model%nodes), source=0)
     allocate (node(model%nodes), first(size(order) + 1))
@@ -47,7 +48,7 @@ contains
     last = 0
     first_contact = 0
     do p = 1, size(order)
-      if (p == size(order) - count(acted) + 1) first_contact = last + 1
+      if (p == apart + 1) first_contact = last + 1
       first(p) = last + 1
       do i = found%first(order(p)), found%first(order(p) + 1) - 1
         begun = begun + 1

@@ -25,7 +25,7 @@ module epcont_plan_run_time
   real(wp), parameter :: of_files = 1.5e-3_wp, of_row = 1.2e-5_wp
   !> Each two free motions: the rigid start, and what loads along the one do to the other (stacks of 100 to
   !! 3 000 bodies: .8 to 1.2 of the time) [s].
-  real(wp), parameter :: of_motions = 1.0e-7_wp
+  real(wp), parameter :: of_motions = 6.0e-8_wp
   !> Solves at each load: the middle of all decks of `input` and `tests` that yield, most of which take four
   !! to nine by NEWTON to 1E-8, and by SECANT to 1E-2; of initial stresses, where each is quick, more.
   integer, parameter :: usual_solves = 7, elastic_solves = 13
