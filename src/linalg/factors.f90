@@ -4,8 +4,7 @@ module epcont_linalg_factors
   use epcont_base_kinds, only: i8, rp => wp, wp
   use epcont_base_sorting, only: sorted_order
   use epcont_linalg_assembled, only: assembled_matrix, find_compliance, order_rows, probes, sparse_rows
-  use epcont_linalg_front_layout, only: block_width, columns_along, front_layout, triangle_size, &
-    update_size
+  use epcont_linalg_front_layout, only: block_width, columns_along, front_layout, update_size
   use epcont_linalg_lapack, only: gemm => dgemm, gemv => dgemv, potrf => dpotrf, syrk => dsyrk, trsm => dtrsm
   use epcont_linalg_panel_layout, only: panel_layout
   use epcont_system_large_pages, only: use_large_pages, use_small_pages

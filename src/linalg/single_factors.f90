@@ -5,8 +5,7 @@ module epcont_linalg_single_factors
   use epcont_base_kinds, only: i8, rp => sp, wp
   use epcont_base_sorting, only: sorted_order
   use epcont_linalg_assembled, only: assembled_matrix, find_compliance, order_rows, probes, sparse_rows
-  use epcont_linalg_front_layout, only: block_width, columns_along, front_layout, triangle_size, &
-    update_size
+  use epcont_linalg_front_layout, only: block_width, columns_along, front_layout, update_size
   use epcont_linalg_panel_layout, only: panel_layout
   use epcont_linalg_single_lapack, only: gemm => sgemm, gemv => sgemv, potrf => spotrf, syrk => ssyrk, &
       trsm => strsm

@@ -1,4 +1,4 @@
-/* The solve part by libraries alone: bench_bare SYSTEM [METHOD...]
+/* The solve part by libraries alone: bench_bare SYSTEM [--solves] [METHOD...]
 
    SYSTEM is what bench_ours writes: K in coordinates, the rows N of the pairs, gaps, motions, loads, the pairs that touch and the
    displacements. Each method orders and factors K, makes F = N K^-1 N', solves for the forces of the touching pairs (given, not
@@ -9,7 +9,8 @@
    Times are of the processor, medians of as many runs as fit into three tenths of a second, the first of several left out. Filling in
    the matrix is not timed. Three ways to F: "forward": X = L^-1 N', X'X; "last": the contact equations are ordered last, whose block
    of the factor alone gives F (MUMPS hands out its Schur complement instead); "entries": of the inverse, at the contact equations,
-   by MUMPS. Without METHOD: all. */
+   by MUMPS. Without METHOD: all. With --solves, by CHOLMOD: ordering, one factor, and one solve for the displacements, nothing else;
+   of many pairs F by "forward" takes minutes. */
 #include "bare.h"
 #include <math.h>
 #include <stdio.h>
@@ -209,11 +210,12 @@ static void run(const scene *s, const method *way) {
 }
 
 int main(int count, char **word) {
-    if (count < 2) fail("bench_bare SYSTEM [METHOD...]");
-    const scene s = read_scene(word[1]);
+    if (count < 2) fail("bench_bare SYSTEM [--solves] [METHOD...]");
+    scene s = read_scene(word[1]);
+    s.solves = count > 2 && !strcmp(word[2], "--solves");
     for (size_t i = 0; i < sizeof METHODS / sizeof *METHODS; i++) {
-        int wanted = count == 2;
-        for (int k = 2; k < count; k++) wanted |= !strcmp(word[k], METHODS[i].name);
+        int wanted = count == 2 + s.solves;
+        for (int k = 2 + s.solves; k < count; k++) wanted |= !strcmp(word[k], METHODS[i].name);
         if (wanted) run(&s, &METHODS[i]);
     }
     return 0;

@@ -14,6 +14,7 @@ typedef struct {
     int *start, *equation, *touching;           /* rows of N, from 1 */
     double *value, *weight, *gap, *motion, *resultant, *load, *displacement;
     int contacts, *contact, *place;             /* equations in N, from 0; the place of each among them, or -1 */
+    int solves;                                 /* CHOLMOD: one factor and one solve alone, no F and no contact */
 } scene;
 
 typedef struct {
