@@ -353,7 +353,7 @@ contains
     real(wp), intent(in) :: load_factor
     type(scene_state), intent(inout) :: state
     real(wp), dimension(scene%model%pairs) :: gap, rounding
-    real(wp) :: far(0:scene%model%bodies)   ! how far each body moves, at most [length]
+    real(wp) :: off(0:scene%model%bodies)   ! rounding of displacements of each body, at most [length]
     integer :: i
 
     state%point_stress = self%law%stress(state%strain)
@@ -364,16 +364,16 @@ contains
             motion%times(contact%approach)
       ! A pair without force touches where its gap is none but for rounding, as the displacements have it,
       ! whatever a rule makes of it by the flexibility.
-      far = 0.0_wp
+      off = 0.0_wp
       do i = 1, scene%model%nodes
         associate (b => scene%model%body(i))
-          far(b) = max(far(b), maxval(abs(state%displacement(:, i))))
+          off(b) = max(off(b), negligible*maxval(abs(state%deformation(:, i))), &
+                       cancelled*maxval(abs(state%displacement(:, i))))
         end associate
       end do
       rounding = negligible*(abs(self%problem%initial_gap) + abs(travel) + &
                              motion%times(contact%approach, magnitudes=.true.) + &
-                             terms_of_openings(scene%model, state%deformation)) + &
-                 cancelled*largest_of_bodies(far)
+                             terms_of_openings(scene%model, state%deformation)) + largest_of_bodies(off)
       contact%touching = contact%force > 0.0_wp .or. gap <= rounding
       contact%gap = merge(0.0_wp, max(gap, 0.0_wp), contact%touching)
     end associate
