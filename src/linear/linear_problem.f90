@@ -4,7 +4,7 @@ module epcont_linear_linear_problem
   use epcont_assembly_bodies, only: factored_bodies, half_solved_body, new_bodies, prescribe
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
-  use epcont_base_tolerances, only: negligible, no_effect, solved_to
+  use epcont_base_tolerances, only: cancelled, negligible, solved_to
   use epcont_contact_basis, only: contact_basis
   use epcont_contact_flexibility_matrix, only: flexibility_matrix, new_flexibility
   use epcont_contact_problem, only: contact_problem, contact_solution, contact_solved, contact_stalled
@@ -352,7 +352,9 @@ contains
     type(planned_scene), intent(in) :: scene
     real(wp), intent(in) :: load_factor
     type(scene_state), intent(inout) :: state
-    real(wp), dimension(scene%model%pairs) :: gap, terms   ! what gaps are the sum of
+    real(wp), dimension(scene%model%pairs) :: gap, rounding
+    real(wp) :: off(0:scene%model%bodies)   ! rounding of displacements of each body, at most [length]
+    integer :: i
 
     state%point_stress = self%law%stress(state%strain)
     state%displacement = state%deformation + load_factor*scene%model%travel
@@ -360,13 +362,33 @@ contains
     associate (contact => state%contact, travel => load_factor*self%travel_gap, motion => self%problem%motion)
       gap = self%problem%initial_gap + (gap_opening(scene%model, state%deformation) + travel) - &
             motion%times(contact%approach)
-      terms = abs(self%problem%initial_gap) + abs(travel) + &
-              motion%times(contact%approach, magnitudes=.true.) + &
-              terms_of_openings(scene%model, state%deformation)
-      ! Where a rigid stop takes the load, what the flexibility says of this gap is rounding of two
-      ! deformations that cancel: a pair that seemed to touch may be open, as the displacements have it.
-      contact%touching = contact%force > 0.0_wp .or. contact%touching .and. gap <= no_effect*terms
-      where (.not. contact%touching) contact%gap = max(gap, 0.0_wp)
+      ! A pair without force touches where its gap is none but for rounding, as the displacements have it,
+      ! whatever a rule makes of it by the flexibility.
+      off = 0.0_wp
+      do i = 1, scene%model%nodes
+        associate (b => scene%model%body(i))
+          off(b) = max(off(b), negligible*maxval(abs(state%deformation(:, i))), &
+                       cancelled*maxval(abs(state%displacement(:, i))))
+        end associate
+      end do
+      rounding = negligible*(abs(self%problem%initial_gap) + abs(travel) + &
+                             motion%times(contact%approach, magnitudes=.true.) + &
+                             terms_of_openings(scene%model, state%deformation)) + largest_of_bodies(off)
+      contact%touching = contact%force > 0.0_wp .or. gap <= rounding
+      contact%gap = merge(0.0_wp, max(gap, 0.0_wp), contact%touching)
     end associate
+
+  contains
+
+    !> The largest value of the bodies that each pair has nodes of [pairs].
+    pure function largest_of_bodies(value) result(largest)
+      real(wp), intent(in) :: value(0:)   !! [bodies]
+      real(wp) :: largest(scene%model%pairs)
+      integer, allocatable :: body(:, :)
+      integer :: k
+
+      body = scene%model%bodies_of_pairs()
+      largest = [(maxval(value(body(:, k))), k=1, size(largest))]
+    end function largest_of_bodies
   end subroutine complete
 end module epcont_linear_linear_problem

@@ -130,6 +130,22 @@ class Found(scene.Extremes):
         one, other = (self.valid(deck(name)).summary["mesh_error_pressure_zone_2"] for name in ("perr26", "perr26_mirror"))
         self.near(one, other, 1e-6)
 
+    def test_equal_zones(self):
+        """Of two zones with one largest pressure the one of which less is known has the word, by every rule."""
+        for rule in ("CONRY", "BLOCK", "JOINED"):
+            with self.subTest(rule=rule):
+                result = self.valid(deck("equal_zones").replace("BEGIN BULK", f"BEGIN BULK\nPARAM,RULE,{rule}"))
+                self.assertEqual(result.summary["max_pressure_is"], "unbounded")
+
+    def test_pairs_without_force(self):
+        """Whether a pair that bears nothing is open does not depend on the rule: not where its body turns about it, nor far below what softer bodies do."""
+        for name, touching in (("turns_about_a_corner", 4), ("stiff_among_soft", 23)):
+            text = re.sub("PARAM,RULE,.*\n", "", deck(name))
+            for rule in ("CONRY", "BLOCK", "JOINED"):
+                with self.subTest(name=name, rule=rule):
+                    result = self.valid(text.replace("BEGIN BULK", f"BEGIN BULK\nPARAM,RULE,{rule}"))
+                    self.assertEqual(result.summary["pairs_in_contact"], touching)
+
     def test_estimates_of_another_numbering(self):
         """Nothing resists most motions: what a force does along these says nothing of the errors of forces."""
         one, other = (self.valid(deck(name)) for name in ("toterr_a", "toterr_b"))

@@ -452,7 +452,7 @@ def came_near(contacts, told, size):
         late = [(line, other, lacking.keys() & nodes) for line, other, nodes in
                 ((contact.slave, contact.master, slave), (contact.master, contact.slave, master))]
         gaps = [abs(place.gap) for line, other, nodes in late for one in line.segments for i, node in enumerate(one.nodes) if node in nodes
-                for place in other.face(eye_of(one, i), size)[:1] if place]
+                for place in other.face(eye_of(one, i), size)[:told[node]] if place]
         if gaps:
             reach = max(contact.reach, max(gaps) * (1 + EQUAL))
             contacts[k] = Contact(contact.slave, contact.master, contact.ring, contact.motion, reach, late[1][2])

@@ -177,14 +177,20 @@ def chains(sides, x, stands_on, feet):
 def divide(sides, x, pairs, own, group, stands_on, feet):
     """Where nodes of the master stand on a side they share its area with the slave's: each piece belongs by halves to its ends. Of those
     sides what is beside each pair; and the pairs that stand at one place, by twos."""
-    at = {pairs[k][0]: k for k in reversed(group) if k not in stands_on}
+
+    def at(node, ends):
+        """The node's pair against what the side faces: of several the one whose normal is most across it."""
+        (xa, ya), (xb, yb) = (x[end] for end in sides[ends].nodes[:2])
+        own = [k for k in group if k not in stands_on and pairs[k][0] == node]
+        return min(own, key=lambda k: abs((xb - xa) * pairs[k][1][0] + (yb - ya) * pairs[k][1][1]), default=None)
+
     of_group = {k: nodes for k, nodes in stands_on.items() if k in group}
     divided, close = {}, []
     for ends, order in chains(sides, x, of_group, feet):
         a, b = sides[ends].nodes[:2]
         first = next(k for _, k, _ in order if k is not None)
         width = sum(share(sides[ends], x, pairs[first][1])) / hypot(x[b][0] - x[a][0], x[b][1] - x[a][1])
-        run = [(at.get(node) if k is None else k, place) for node, k, place in order]
+        run = [(at(node, ends) if k is None else k, place) for node, k, place in order]
         for k, _ in run:
             if k is not None and (ends in own[k] or k in of_group):
                 own[k][ends] = 0.0

@@ -20,10 +20,7 @@ def neighbours(scene):
             around.setdefault(node, []).append(side)
     found, mirrored = {}, set()
     for contact in scene.contacts:
-        at = {}
-        for name in contact:
-            if not scene.pair[name].stands_on:
-                at.setdefault(scene.pair[name].node, name)
+        at = pairs_by_side(scene, contact)
         for name in contact:
             pair, own = scene.pair[name], []
             for side in around.get(pair.node, []) if not pair.stands_on else []:
@@ -32,7 +29,7 @@ def neighbours(scene):
                 if abs(along[0] * pair.normal[0] + along[1] * pair.normal[1]) > ALONG * math.hypot(*along):
                     continue
                 beside = [a, b] if pair.node in side.nodes[2:] else [*side.nodes[2:], b if pair.node == a else a][:1]
-                own += [at.get(node) for node in beside]
+                own += [at(node, side) for node in beside]
             found[name] = own[:2]
             longest = max((math.dist(*(scene.x[end] for end in side.nodes[:2])) for side in around.get(pair.node, [])), default=0.0)
             if not pair.stands_on and sum(other is not None for other in own[:2]) < 2 and \
@@ -42,12 +39,26 @@ def neighbours(scene):
     return {name: [other for other in others if other is not None] for name, others in found.items()}, mirrored
 
 
+def pairs_by_side(scene, contact):
+    """A function of node and side: the node's pair against what the side faces, of several the one whose normal is most across it."""
+    of_node = {}
+    for name in contact:
+        if not scene.pair[name].stands_on:
+            of_node.setdefault(scene.pair[name].node, []).append(name)
+
+    def at(node, side):
+        (xa, ya), (xb, yb) = (scene.x[end] for end in side.nodes[:2])
+        return min(of_node.get(node, []), default=None,
+                   key=lambda name: abs((xb - xa) * scene.pair[name].normal[0] + (yb - ya) * scene.pair[name].normal[1]))
+    return at
+
+
 def insert_masters(scene, contact, at, found):
     """Between neighbouring nodes of a slave's side come the pairs of the master's nodes that stand there."""
     on = {name: scene.pair[name].stands_on for name in contact if scene.pair[name].stands_on}
     feet = {name: stands(scene.x, scene.pair[name].weights, scene.pair[name].node) for name in on}
-    for _, order in chains(scene.side, scene.x, on, feet):
-        run = [at.get(node) if tip is None else tip for node, tip, _ in order]
+    for ends, order in chains(scene.side, scene.x, on, feet):
+        run = [at(node, scene.side[ends]) if tip is None else tip for node, tip, _ in order]
         fixed = [k for k, (_, tip, _) in enumerate(order) if tip is None]
         for first, last in zip(fixed, fixed[1:]):
             if last == first + 1:
