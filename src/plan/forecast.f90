@@ -3,6 +3,8 @@ module epcont_plan_forecast
   use epcont_base_error, only: error_type, raise, status_usage
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: i8, wp
+  use epcont_base_partition, only: new_partition, partition
+  use epcont_base_sorting, only: sorted_order
   use epcont_base_text, only: short_real
   use epcont_linalg_levels, only: levels_of_pairs
   use epcont_model_controls, only: method_inistr, precision_double, solver_frontal
@@ -21,7 +23,10 @@ module epcont_plan_forecast
     real(wp) :: operations = 0.0_wp     !! floating-point operations of factor, flexibility and simplex
     real(wp) :: operations_again = 0.0_wp   !! of these, what each solve but the first has, beyond yield
     real(wp) :: contact = 0.0_wp        !! of these, what the simplex has
+    !> Of joined bodies: about the same should they have to be solved apart, with their F
+    integer(i8) :: apart_bytes = 0
     integer :: motions = 0              !! that are free
+    integer :: loops = 0                !! contacts between bodies beyond those that join them (`loops_of`)
     integer(i8) :: entries = 0          !! of the factors
     integer(i8) :: entries_again = 0    !! of these, what is factored for each solve
   end type forecast_type
@@ -120,16 +125,18 @@ contains
     real(wp) :: operations
     integer :: b
 
+    pairs = model%pairs
+    level = sizes_of(levels_of_pairs(model%bodies_of_pairs(), model%bodies))
+    ! Entries of F, by levels.
+    coupled = sum(int(level, i8)*(level + [level(2:), 0]))
+    expected%loops = loops_of(model%bodies_of_pairs(), model%bodies)
+    expected%motions = motions%count
     if (plan%joined) then
       call foresee_joined()
       return
     end if
-    pairs = model%pairs
     of_bodies = new_incidence(model%bodies_of_pairs(), model%bodies)
     own_pairs = of_bodies%start(2:) - of_bodies%start(:model%bodies)
-    level = sizes_of(levels_of_pairs(model%bodies_of_pairs(), model%bodies))
-    ! Entries of F, by levels.
-    coupled = sum(int(level, i8)*(level + [level(2:), 0]))
     entries = 0       ! of the factors
     saved = 0         ! bytes, by factors in single precision
     flexibility = 0   ! entries that are wanted for that of one body
@@ -176,7 +183,6 @@ contains
                   pairs*min(motion_matrices*motions%count, level_matrices*maxval(level)))
     expected%double_bytes = real_bytes*entries + beside_matrices() + unit_loads
     expected%bytes = expected%double_bytes - saved
-    expected%motions = motions%count
     expected%contact = contact_operations(level, plan%by_blocks)
     expected%operations = expected%operations + expected%contact
     expected%operations_again = expected%operations_again + expected%contact
@@ -192,7 +198,7 @@ contains
         expected%bytes = real_bytes*expected%entries + beside_matrices() + &
                          load_of_node*model%nodes*loads
         expected%double_bytes = expected%bytes
-        expected%motions = motions%count
+        expected%apart_bytes = expected%bytes + int(pair_matrices*coupled, i8)*real_bytes
         expected%contact = of_sets*fronts%operations() + of_solves*expected%entries
         expected%operations = fronts%operations() + expected%contact
         expected%operations_again = expected%operations
@@ -222,4 +228,33 @@ contains
       end do
     end function beside_matrices
   end function forecast
+
+  !> How many contacts of two bodies there are beyond those that make one heap of them: of a stack none, of a
+  !! wall about as many as bodies. There what one body bears depends on many.
+  pure integer function loops_of(body, bodies) result(loops)
+    integer, intent(in) :: body(:, :)      !! of each pair, 0 behind them [any, pairs]
+    integer, intent(in) :: bodies
+    type(partition) :: heaps
+    integer :: low(size(body, 2)), high(size(body, 2)), order(size(body, 2)), count, i
+    integer, allocatable :: heap(:)   ! of each body
+
+    loops = 0
+    if (size(body, 1) < 2) return
+    low = minval(body(:2, :), dim=1)
+    high = maxval(body(:2, :), dim=1)
+    order = sorted_order(low)
+    order = order(sorted_order(high(order)))
+    heaps = new_partition(bodies)
+    loops = -bodies
+    do i = 1, size(order)
+      if (low(order(i)) == 0) cycle
+      if (i > 1) then
+        if (low(order(i - 1)) == low(order(i)) .and. high(order(i - 1)) == high(order(i))) cycle
+      end if
+      loops = loops + 1
+      call heaps%join(low(order(i)), high(order(i)))
+    end do
+    call heaps%numbers(heap, count)
+    loops = loops + count
+  end function loops_of
 end module epcont_plan_forecast

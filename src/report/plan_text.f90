@@ -68,6 +68,8 @@ contains
     call plan%line('')
     call say('memory '//megabytes(scene%expected%bytes)// &
              when(.not. in_double, ' (in double '//megabytes(scene%expected%double_bytes)//')')// &
+             when(iteration%joined, ' (up to '//megabytes(scene%expected%apart_bytes)// &
+                  ' should bodies have to be solved apart)')// &
              ', operations '//short_real(scene%expected%operations)//when(iteration%yields, ' a solve'))
     text = plan%text
 

@@ -38,6 +38,33 @@ def taken(deck, directory):
     return run.returncode, used.ru_utime + used.ru_stime
 
 
+def wall(across, rows):
+    """Bricks of 4 x 2, half of one aside in each second row, free to move up and to turn; the lowest row is held."""
+    deck, below, first, contact = Deck(2.1e5, 0.3), [], 1, 0
+    for row in range(rows):
+        ends = [4.0*k for k in range(across + 1)] if row % 2 == 0 else [0.0, *(4.0*k + 2.0 for k in range(across)), 4.0*across]
+        here = []
+        for left, right in zip(ends, ends[1:]):
+            nodes = deck.block(1, [left + 0.01 + (right - left - 0.02)*k/4 for k in range(5)], [2.0*row, 2.0*row + 1.0, 2.0*row + 2.0], first)
+            first += 15
+            here.append((left, right, nodes))
+            if row == 0:
+                deck.hold(12, *nodes[0])
+                continue
+            deck.hold(1, nodes[0][2])
+            deck.support(2, nodes[2][0], nodes[2][-1])
+            for low, high, others in below:
+                if min(right, high) > max(left, low):
+                    contact += 1
+                    deck.card("BLSEG", 2*contact - 1, *nodes[0])
+                    deck.card("BLSEG", 2*contact, *reversed(others[-1]))
+                    deck.card("BCONP", contact, 2*contact - 1, 2*contact)
+        below = here
+    for left, right, nodes in below:
+        deck.press(nodes[-1], right - left)
+    return deck
+
+
 class Time(unittest.TestCase):
     def setUp(self):
         place = tempfile.TemporaryDirectory()
@@ -70,6 +97,14 @@ class Time(unittest.TestCase):
         deck.press(nodes[-1], 10.0)
         path = self.place/"large.dat"
         path.write_text(deck.text())
+        ratio = self.ratio(path)
+        self.assertGreaterEqual(ratio, 0.5)
+        self.assertLessEqual(ratio, 2.0)
+
+    def test_a_wall(self):
+        """Each brick on two others: what one bears depends on all below."""
+        path = self.place/"wall.dat"
+        path.write_text(wall(18, 28).text())
         ratio = self.ratio(path)
         self.assertGreaterEqual(ratio, 0.5)
         self.assertLessEqual(ratio, 2.0)
