@@ -9,13 +9,13 @@ module epcont_plan_joining
   private
   public :: joins, many_of
 
-  !> Operations that the flexibility takes, for each node, from which on the bodies are joined. Measured on
-  !! two blocks, 43 000 nodes, level at 1 500 pairs (2E5), .8 of the time at 1 900, and on strips, a third at
-  !! 2 800.
-  real(wp), parameter :: many_of_pairs = 2.0e5_wp
+  !> Operations that the flexibility takes, for each node, from which on the bodies are joined. Measured on a
+  !! dovetail (.89 of the time at 7E4, .74 at 1.3E5), two blocks (1.1 at 7E4, level at 1.2E5, .4 at 4E5) and
+  !! strips (1.07 at 4E4, .8 at 1.3E5).
+  real(wp), parameter :: many_of_pairs = 7.0e4_wp
   !> The same where something yields: F is made in each iteration, and the set of contacts hardly changes then
-  !! (a dovetail, 7E4: two thirds of the time).
-  real(wp), parameter :: many_where_yielding = 5.0e4_wp
+  !! (dovetails .83 at 1.2E4, .72 at 2.4E4, .55 at 4E4, blocks .83 at 1.4E4, .85 at 5E4).
+  real(wp), parameter :: many_where_yielding = 2.0e4_wp
   !> Free motions up to which AUTO joins bodies: what a load along each does is looked at on all of them.
   integer, parameter :: most_motions = 40
 
