@@ -5,7 +5,7 @@ module epcont_app_driver
   use epcont_app_process, only: print_error, print_text
   use epcont_app_progress_display, only: progress_type, timing_text
   use epcont_base_error, only: error_type, status_deck, status_valid
-  use epcont_base_kinds, only: wp
+  use epcont_base_kinds, only: i8, wp
   use epcont_base_text, only: newline, shown
   use epcont_build_build, only: build_model, tell
   use epcont_deck_deck, only: read_deck
@@ -17,6 +17,7 @@ module epcont_app_driver
   use epcont_report_plan_text, only: plan_text
   use epcont_report_results, only: remove_results, write_results
   use epcont_report_run, only: run_results
+  use epcont_system_large_pages, only: heap_step, take_heap
   use epcont_system_memory, only: peak_memory
   use epcont_system_stopwatch, only: stage_model, stage_plan, stage_reading, stage_writing
   implicit none
@@ -107,6 +108,11 @@ contains
 
     !> Read and check.
     subroutine prepare()
+      integer, parameter :: memory_of_deck = 8   ! until it is solved, over its size
+      integer(i8) :: bytes
+
+      inquire (file=path, size=bytes)
+      call take_heap(min(memory_of_deck*bytes, int(heap_step, i8)))
       call read_deck(path, run%deck, run%faults, error)
       call watch%lap(stage_reading)
       if (allocated(error)) return

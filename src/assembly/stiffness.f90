@@ -17,6 +17,7 @@ module epcont_assembly_stiffness
   use epcont_model_controls, only: solver_frontal
   use epcont_plan_numbering, only: most_freedoms
   use epcont_plan_planned_scene, only: planned_scene
+  !$ use omp_lib, only: omp_get_num_threads
   implicit none
   private
   public :: body_stiffness, spring_set
@@ -89,13 +90,16 @@ contains
     subroutine fill_fronts()
       integer :: above, p
       integer, allocatable :: unit(:)   ! nothing but its addresses, of units and of none, counts
+      logical :: deferred   ! one thread would begin with the last, far from where memory has been touched
 
+      deferred = .false.
+      !$ deferred = size(self%schur) == 0 .and. omp_get_num_threads() > 1
       associate (fronts => scene%numbering%body(b)%fronts)
         unit = [fronts%unit, 0]
         do p = 1, size(fronts%unit)
           if (fronts%unit(p) /= p .or. .not. stale(fronts%first(p))) cycle
           above = merge(fronts%parent(p), size(unit), fronts%parent(p) > 0)
-          !$omp task firstprivate(p) depend(in: unit(above)) depend(inout: unit(p)) if(size(self%schur) == 0)
+          !$omp task firstprivate(p) depend(in: unit(above)) depend(inout: unit(p)) if(deferred)
           call fill_below(p)
           !$omp end task
         end do

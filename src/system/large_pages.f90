@@ -2,10 +2,10 @@
 !> sooner. Nothing but speed depends on them.
 module epcont_system_large_pages
   use, intrinsic :: iso_c_binding, only: c_int, c_intptr_t, c_loc, c_size_t
-  use epcont_base_kinds, only: wp
+  use epcont_base_kinds, only: i8, wp
   implicit none
   private
-  public :: use_large_pages, use_small_pages, prepare_heap
+  public :: use_large_pages, use_small_pages, prepare_heap, take_heap
 
   integer(c_intptr_t), parameter :: page = 4096            !! where advice may begin [bytes]
   integer(c_intptr_t), parameter :: large_page = 2097152   !! [bytes]
@@ -14,8 +14,8 @@ module epcont_system_large_pages
 
   !> Parameters of glibc's `mallopt`.
   integer(c_int), parameter :: trim_threshold = -1, top_pad = -2, mmap_threshold = -3, arena_max = -8
-  !> by which the heap grows; memory is taken when touched [bytes]
-  integer(c_int), parameter :: heap_step = 67108864
+  !> by which the heap grows; memory is taken when touched; the first of them in large pages [bytes]
+  integer(c_int), parameter, public :: heap_step = 67108864
   !> arrays up to here are in the heap: glibc's own limit [bytes]
   integer(c_int), parameter :: largest_in_heap = 33554432
 
@@ -78,6 +78,31 @@ contains
       ignored = mallopt(top_pad, 0_c_int)   ! memory is short: ask for no more than is needed
     end if
   end subroutine prepare_heap
+
+  !> Take memory of the heap that will be needed soon, in large pages while these come fast: from the first
+  !! on that does not, in small ones.
+  recursive subroutine take_heap(bytes)
+    integer(i8), intent(in) :: bytes
+    real(wp), parameter :: slow = 1.0e-3_wp   ! of one page, five times the usual [s]
+    real(wp), allocatable, target, volatile :: array(:)
+    integer(i8) :: begun, ended, most, rate
+    integer(c_intptr_t) :: from
+    integer :: i, status
+
+    most = min(bytes, int(largest_in_heap - large_page, i8))
+    allocate (array(most*8/storage_size(array)), stat=status)
+    if (status /= 0) return
+    do i = 1, size(array), int(large_page*8/storage_size(array))
+      call system_clock(begun, rate)
+      array(i) = 0.0_wp
+      call system_clock(ended)
+      if (ended - begun <= slow*rate) cycle
+      from = transfer(c_loc(array(i)), from)
+      call advise(from, sbrk(0_c_intptr_t) - from, advice_small_pages)
+      return
+    end do
+    if (bytes > most) call take_heap(bytes - most)
+  end subroutine take_heap
 
   !> Advise the system of memory that begins at an address.
   subroutine advise(first, bytes, advice)
