@@ -25,8 +25,8 @@ module epcont_plan_run_time
   real(wp), parameter :: of_files = 1.5e-3_wp, of_row = 1.2e-5_wp
   !> Each two free motions: the rigid start, and what loads along the one do to the other (stacks of 100 to
   !! 3 000 bodies: .8 to 1.2 of the time). Where bodies bear each other in many ways, as in walls, more is
-  !! there of what loads do [s].
-  real(wp), parameter :: of_motions = 6.0e-8_wp, of_looped = 5.5e-7_wp
+  !! there of what loads do, and the rigid start takes each three (walls of 30 to 900 bodies: .8 to 1.3) [s].
+  real(wp), parameter :: of_motions = 6.0e-8_wp, of_looped = 5.5e-7_wp, of_start = 5.5e-10_wp
   !> Solves at each load: the middle of all decks of `input` and `tests` that yield, most of which take four
   !! to nine by NEWTON to 1E-8, and by SECANT to 1E-2; of initial stresses, where each is quick, more.
   integer, parameter :: usual_solves = 7, elastic_solves = 13
@@ -53,14 +53,16 @@ contains
     real(wp), intent(in) :: begun                  !! what it has taken so far [s]
     real(wp), intent(in) :: rate                   !! of products of matrices [1/s]
     type(run_time) :: time
-    real(wp) :: motions, looped   ! all; those that depend on many
+    real(wp) :: motions, looped, start   ! all; those that depend on many; the rigid start [s]
 
     motions = expected%motions
     looped = min(motions, 2.0_wp*expected%loops)
+    start = of_start*motions**2*looped
     time%begun = begun
     time%solve = (expected%operations + contact_more*expected%contact)/rate + &
-                 of_entry*expected%entries + solve_part*begun
-    time%next = expected%operations_again/rate + of_entry*expected%entries_again + solve_part*begun
+                 of_entry*expected%entries + solve_part*begun + start
+    time%next = expected%operations_again/rate + of_entry*expected%entries_again + solve_part*begun + &
+                merge(0.0_wp, start, plan%joined)
     time%finish = end_part*begun + of_files + of_row*rows + of_motions*motions**2 + of_looped*motions*looped
     if (plan%yields) time%solves = plan%load_steps*solves_at_a_load(plan)
   end function foresee
