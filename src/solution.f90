@@ -15,7 +15,7 @@ module epcont_solution
   use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_plan_planned_scene, only: planned_scene
   use epcont_plan_side_by_side, only: plan_threads
-  use epcont_plasticity_iteration, only: follow_loads
+  use epcont_plasticity_iteration, only: follow_loads, use_tangent
   use epcont_plasticity_observer, only: observer
   use epcont_result_answer, only: answer_type
   use epcont_result_body_force, only: find_body_forces
@@ -111,6 +111,7 @@ contains
       if (is_without_displacements()) return
       call evaluate_refined()
     end if
+    call use_tangent(scene, linear, answer, watch)
     call assess(scene, linear, line, answer, accuracy)
     ! An open pair does not press.
     where (.not. answer%contact%touching .and. answer%pressure > 0.0_wp) answer%pressure = -1.0_wp
