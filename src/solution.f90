@@ -26,7 +26,7 @@ module epcont_solution
   use epcont_result_pressures, only: pair_pressures
   use epcont_result_stresses, only: recover_stresses
   use epcont_result_zones, only: find_zones
-  use epcont_system_stopwatch, only: stage_accuracy, stage_certificate, stage_stresses
+  use epcont_system_stopwatch, only: stage_accuracy, stage_certificate, stage_contact, stage_stresses
   use epcont_system_threads, only: granted_threads
   implicit none
   private
@@ -100,6 +100,7 @@ contains
              scene%numbering%joined .and. answer%failed_body > 0 .and. .not. answer%lacks_memory
     if (failed .or. is_without_displacements()) return
     if (scene%numbering%joined) failed = .not. linear%joined%are_unique(scene, linear%factored_bodies)
+    call watch%lap(stage_contact)
     if (failed) return
     line = find_contact_line(scene%model)
     call evaluate_refined()
