@@ -111,8 +111,8 @@ contains
   end subroutine prescribe
 
   !> Estimate of the condition of the stiffness in the 1-norm: the largest of the bodies. What has yielded is
-  !! not as stiff as it was when it was assembled first. Bodies that have been solved for fields have theirs, or
-  !! half of it.
+  !! not as stiff as it was when it was assembled first. Bodies that have been solved for fields have
+  !! theirs, or half of it.
   subroutine estimate_condition(self, scene, condition)
     class(factored_bodies), intent(inout) :: self
     type(planned_scene), intent(in) :: scene   !! with the numbers of its equations

@@ -13,15 +13,15 @@ module epcont_plasticity_iteration
   use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_plan_planned_scene, only: planned_scene
   use epcont_plasticity_initial_stress, only: initial_stress_method
+  use epcont_plasticity_law_of_state, only: factor_law, linearise
   use epcont_plasticity_newton, only: newton_method
   use epcont_plasticity_observer, only: iteration_record, observer
   use epcont_plasticity_secant, only: secant_method
   use epcont_plasticity_unloading, only: find_unloaded
   use epcont_system_stopwatch, only: stage_accuracy, stage_stiffness, stage_yielding
-  use epcont_system_threads, only: threads_over
   implicit none
   private
-  public :: followed_loads, follow_loads, use_tangent
+  public :: followed_loads, follow_loads
 
   !> Displacements so many times those of the first solve, with a flat curve: nothing carries the load.
   real(wp), parameter :: far_away = 1.0e4_wp
@@ -364,60 +364,6 @@ contains
       call watch%lap(stage_accuracy)
     end subroutine estimate_rounding
   end subroutine follow_loads
-
-  !> The law about a state.
-  subroutine linearise(scene, method, about, linear, watch)
-    type(planned_scene), intent(in) :: scene
-    class(secant_method), intent(inout) :: method
-    type(scene_state), intent(in) :: about
-    type(linear_problem), intent(inout) :: linear
-    class(observer), intent(inout) :: watch
-    integer :: p
-
-    !$omp parallel do num_threads(threads_over(scene%model%points))
-    do p = 1, scene%model%points
-      if (linear%materials%can_yield(p)) call method%linearise(p, about, linear)
-    end do
-    !$omp end parallel do
-    call watch%lap(stage_yielding)
-  end subroutine linearise
-
-  !> The stiffness for that law, made stiffer as long as it cannot be factored.
-  subroutine factor_law(scene, method, about, linear, failed_body, watch)
-    type(planned_scene), intent(in) :: scene
-    class(secant_method), intent(inout) :: method
-    type(scene_state), intent(in) :: about
-    type(linear_problem), intent(inout) :: linear
-    integer, intent(out) :: failed_body   !! has none that can be factored
-    class(observer), intent(inout) :: watch
-    logical :: possible
-
-    do
-      call linear%set_stiffness(scene, failed_body, watch)
-      if (failed_body == 0 .or. any(linear%body%lacks_memory)) return
-      call method%stiffen(possible)
-      if (.not. possible) return
-      call linearise(scene, method, about, linear, watch)
-    end do
-  end subroutine factor_law
-
-  !> The stiffness that tells what errors do to an answer: its tangent, by whatever method and step it was
-  !! found.
-  subroutine use_tangent(scene, linear, answer, watch)
-    type(planned_scene), intent(in) :: scene              !! what is loaded
-    type(linear_problem), intent(inout) :: linear         !! as the last solve left it
-    class(followed_loads), intent(inout) :: answer        !! its points are known, where something yields
-    class(observer), intent(inout) :: watch               !! takes the time
-    type(newton_method) :: tangent
-    integer :: failed_body
-
-    if (.not. answer%converged .or. .not. allocated(answer%point) .or. scene%model%controls%paper_ratio) return
-    if (scene%iteration%method == method_newton .or. answer%history(size(answer%history))%by_tangent .or. &
-        .not. any(answer%point%yielded)) return
-    call linearise(scene, tangent, answer%scene_state, linear, watch)
-    call factor_law(scene, tangent, answer%scene_state, linear, failed_body, watch)
-    if (failed_body > 0) answer%condition = huge(1.0_wp)
-  end subroutine use_tangent
 
   !> a/b, 0 where both are 0; finite.
   pure real(wp) function ratio(a, b)
