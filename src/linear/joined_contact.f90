@@ -363,9 +363,8 @@ contains
       integer :: c, i, n
 
       do n = 1, scene%motions%count
-        associate (c => scene%motions%component(n), node => scene%motions%node(n))
-          loads%force(c, :, n) = load(n, :) + self%hold(n)*u(c, :, node)
-        end associate
+        c = scene%motions%component(n)
+        loads%force(c, :, n) = load(n, :) + self%hold(n)*u(c, :, scene%motions%node(n))
       end do
       n = scene%motions%count
       do k = 1, size(pair)
@@ -392,12 +391,11 @@ contains
 
     are_unique = .true.
     do j = 1, 2
-      force = [(merge(cos(k*sqrt(real(j, wp))), 0.0_wp, self%closed(k)), k=1, size(force))]
-      if (allocated(half)) deallocate (half)
+      force = merge(cos([(k*sqrt(real(j, wp)), k=1, size(force))]), 0.0_wp, self%closed)
+      if (j > 1) deallocate (half)
       call bodies%add_forces(scene, pair_forces(scene%model, force), 0.0_wp, half)
-      force = force - merge(self%gamma, 0.0_wp, self%closed)* &
-              gap_opening(scene%model, bodies%finish(scene, half, 0.0_wp, at_contact=.true.))
-      are_unique = are_unique .and. all(abs(force) <= most_left)
+      force = force - self%gamma*gap_opening(scene%model, bodies%finish(scene, half, 0.0_wp, .true.))
+      are_unique = are_unique .and. all(abs(force) <= most_left .or. .not. self%closed)
     end do
   end function are_unique
 end module epcont_linear_joined_contact
