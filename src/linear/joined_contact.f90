@@ -358,7 +358,6 @@ contains
 
   contains
 
-    !> The loads, and forces with those of the springs.
     subroutine put_loads()
       integer :: c, i, n
 
