@@ -10,12 +10,14 @@ module epcont_solution
   use epcont_contact_problem, only: contact_solved
   use epcont_flexibility_flexibility, only: pair_forces
   use epcont_linear_linear_problem, only: linear_problem
-  use epcont_model_controls, only: precision_double
+  use epcont_model_controls, only: method_newton, precision_double
   use epcont_plan_forecast, only: check_memory
   use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_plan_planned_scene, only: planned_scene
   use epcont_plan_side_by_side, only: plan_threads
   use epcont_plasticity_iteration, only: follow_loads
+  use epcont_plasticity_law_of_state, only: factor_law, linearise
+  use epcont_plasticity_newton, only: newton_method
   use epcont_plasticity_observer, only: observer
   use epcont_result_answer, only: answer_type
   use epcont_result_body_force, only: find_body_forces
@@ -26,7 +28,7 @@ module epcont_solution
   use epcont_result_pressures, only: pair_pressures
   use epcont_result_stresses, only: recover_stresses
   use epcont_result_zones, only: find_zones
-  use epcont_system_stopwatch, only: stage_accuracy, stage_certificate, stage_stresses
+  use epcont_system_stopwatch, only: stage_accuracy, stage_certificate, stage_contact, stage_stresses
   use epcont_system_threads, only: granted_threads
   implicit none
   private
@@ -100,6 +102,7 @@ contains
              scene%numbering%joined .and. answer%failed_body > 0 .and. .not. answer%lacks_memory
     if (failed .or. is_without_displacements()) return
     if (scene%numbering%joined) failed = .not. linear%joined%are_unique(scene, linear%factored_bodies)
+    call watch%lap(stage_contact)
     if (failed) return
     line = find_contact_line(scene%model)
     call evaluate_refined()
@@ -111,6 +114,7 @@ contains
       if (is_without_displacements()) return
       call evaluate_refined()
     end if
+    call use_tangent()
     call assess(scene, linear, line, answer, accuracy)
     ! An open pair does not press.
     where (.not. answer%contact%touching .and. answer%pressure > 0.0_wp) answer%pressure = -1.0_wp
@@ -123,6 +127,19 @@ contains
       without = answer%failed_body > 0 .or. allocated(answer%against_double) .or. &
                 answer%contact%state /= contact_solved
     end function is_without_displacements
+
+    !> The stiffness that tells what errors do to an answer: its tangent, by whatever method and step it was
+    !! found.
+    subroutine use_tangent()
+      type(newton_method) :: tangent
+      integer :: failed_body
+
+      if (.not. answer%converged .or. scene%model%controls%paper_ratio .or. .not. any(answer%plastic)) return
+      if (scene%iteration%method == method_newton .or. answer%history(size(answer%history))%by_tangent) return
+      call linearise(scene, tangent, answer%scene_state, linear, watch)
+      call factor_law(scene, tangent, answer%scene_state, linear, failed_body, watch)
+      if (failed_body > 0) answer%condition = huge(1.0_wp)
+    end subroutine use_tangent
 
     !> What was found, refined where rounding has left too much, and its certificate.
     subroutine evaluate_refined()

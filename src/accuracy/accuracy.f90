@@ -67,7 +67,8 @@ contains
     integer :: motions
 
     pressed = any(answer%contact%force > 0.0_wp)
-    carried = pressed .and. answer%converged   ! else the scene is that of a load that was not carried
+    ! Else the scene is that of a load that was not carried, or nothing tells what its stiffness is.
+    carried = pressed .and. answer%converged .and. answer%condition < huge(1.0_wp)
     if (carried) then
       call find_unit_loads(scene, linear, answer, loads)
     else

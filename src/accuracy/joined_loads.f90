@@ -35,8 +35,9 @@ contains
     real(wp) :: load(scene%motions%count, scene%motions%count + size(share, 2) + 2)
     real(wp), dimension(scene%model%pairs, size(load, 2)) :: force, opening
     real(wp) :: u(directions, size(load, 2), scene%model%nodes)
-    !> Sums that the gaps come from, and what rounding leaves of these [length] [pairs]
-    real(wp) :: sums(scene%model%pairs, 2)
+    !> Sums that the gaps come from, of deformations and of travels; what these change of a force, if they are
+    !! as much off, of the largest [length] [pairs, 2], [2]
+    real(wp) :: sums(scene%model%pairs, 2), change(2), condition
     integer, allocatable :: pressed(:)
     integer :: j, k, loads
 
@@ -52,15 +53,13 @@ contains
     opening(:, scene%motions%count + 1:loads) = -share
     call begin_probes(opening(:, loads + 1:))
     call linear%joined%respond(scene, linear%factored_bodies, load, opening, force, u)
-    call find_sums()
     call turn_probes(opening(:, loads + 1:), force(:, loads + 1:))
     u(:, loads + 1:, :) = 0.0_wp
     call linear%joined%respond(scene, linear%factored_bodies, load, opening, force, u)
-    associate (found => maxval(abs(force(pressed, loads + 1:)), dim=1)/maxval(answer%contact%force))
-      sensitivity%known = .true.
-      sensitivity%amplification = max(sensitivity%amplification, found(1))
-      sensitivity%rounding = min(1.0_wp, max(sensitivity%rounding, found(2)))
-    end associate
+    change = max(change, maxval(abs(force(pressed, loads + 1:)), dim=1)/maxval(answer%contact%force))
+    call linear%estimate_condition(scene, condition)
+    sensitivity = contact_sensitivity(.true., change(1), min(1.0_wp, epsilon(1.0_wp)* &
+                                                             (condition*change(1) + change(2))))
     do j = scene%motions%count + 1, loads
       if (give_way(opening(:, j))) force(:, j) = 0.0_wp
     end do
@@ -84,29 +83,19 @@ contains
     subroutine turn_probes(x, product)
       real(wp), intent(out) :: x(:, :)
       real(wp), intent(inout) :: product(:, :)   !! M x, then zero
-      real(wp) :: change(2, 2)   ! of all forces, by sums and columns
+      real(wp) :: of_column(2, 2)   ! by sums and columns
 
-      change = matmul(transpose(sums), abs(product))/maxval(answer%contact%force)
-      sensitivity%amplification = maxval(change(1, :))
-      sensitivity%rounding = maxval(change(2, :))
+      sums(:, 1) = terms_of_openings(scene%model, answer%deformation)
+      sums(:, 2) = abs(linear%problem%initial_gap) + &
+                   linear%problem%motion%times(answer%contact%approach, magnitudes=.true.)
+      where (spread(answer%contact%force <= 0.0_wp, 2, 2)) sums = 0.0_wp
+      of_column = matmul(transpose(sums), abs(product))/maxval(answer%contact%force)
+      change = maxval(of_column, dim=2)
       do k = 1, 2
-        x(:, k) = sums(:, k)*sign(1.0_wp, product(:, maxloc(change(k, :), dim=1)))
+        x(:, k) = sums(:, k)*sign(1.0_wp, product(:, maxloc(of_column(k, :), dim=1)))
       end do
       product = 0.0_wp
     end subroutine turn_probes
-
-    subroutine find_sums()
-      real(wp) :: condition
-
-      call linear%estimate_condition(scene, condition)
-      sums = 0.0_wp
-      associate (terms => terms_of_openings(scene%model, answer%deformation), &
-                 travel => linear%problem%motion%times(answer%contact%approach, magnitudes=.true.))
-        sums(pressed, 1) = terms(pressed)
-        sums(pressed, 2) = epsilon(1.0_wp)*(condition*terms(pressed) + travel(pressed) + &
-                                            abs(linear%problem%initial_gap(pressed)))
-      end associate
-    end subroutine find_sums
 
     !> Do motions open the gaps of the pressed pairs so? Then no forces come of it. The motions' part is taken
     !! off by Gram and Schmidt's way, twice, against rounding.

@@ -111,7 +111,8 @@ contains
   end subroutine prescribe
 
   !> Estimate of the condition of the stiffness in the 1-norm: the largest of the bodies. What has yielded is
-  !! not as stiff as it was when it was assembled first. Bodies that have been solved have theirs.
+  !! not as stiff as it was when it was assembled first. Bodies that have been solved for fields have
+  !! theirs, or half of it.
   subroutine estimate_condition(self, scene, condition)
     class(factored_bodies), intent(inout) :: self
     type(planned_scene), intent(in) :: scene   !! with the numbers of its equations
@@ -123,7 +124,9 @@ contains
     condition = 1.0_wp
     allocate (nothing%node(0), nothing%force(directions, 0, 0))
     do b = 1, size(self%body)
-      if (self%body(b)%condition <= 0.0_wp) call self%body_displacements(scene, b, nothing, [integer ::], u)
+      do while (self%body(b)%condition <= 0.0_wp)
+        call self%body_displacements(scene, b, nothing, [integer ::], u)
+      end do
       condition = max(condition, self%body(b)%condition)
     end do
     if (scene%numbering%joined) condition = condition*self%spring%norm/self%body(1)%matrix%norm

@@ -38,10 +38,9 @@ module epcont_linalg_assembled
     procedure :: factor
     procedure(first_half), deferred :: solve_lower
     procedure(second_half), deferred :: solve_upper
-    procedure(columns_of_factor), deferred :: half_solved_probes
+    procedure(first_columns), deferred :: begin_estimate
     procedure(last_of_factor), deferred :: get_trailing_factor
     procedure :: solve
-    procedure :: begin_estimate
     procedure :: find_compliance
   end type assembled_matrix
 
@@ -88,13 +87,13 @@ module epcont_linalg_assembled
       integer, intent(in) :: first
     end subroutine second_half
 
-    !> `probes` with the first half of the solve behind them; they were taken along when the factor was made,
-    !! perhaps.
-    function columns_of_factor(self) result(x)
+    !> `probes`; where they were taken along when the factor was made, solved for by half a solve.
+    subroutine first_columns(self, x, solved)
       import :: assembled_matrix, wp
       class(assembled_matrix), intent(in) :: self
-      real(wp), allocatable :: x(:, :)
-    end function columns_of_factor
+      real(wp), contiguous, intent(out) :: x(:, :)   !! [order, 2]
+      logical, intent(out) :: solved                 !! they have the solve behind them
+    end subroutine first_columns
 
     !> L22, the last rows and columns of the factor. (A function would hand back a copy.)
     pure subroutine last_of_factor(self, x)
@@ -146,28 +145,8 @@ contains
     call self%solve_upper(x, 1)
   end subroutine solve
 
-  !> Begin an estimate of the condition in the 1-norm, from the factor: of the inverse's norm a lower bound,
-  !! seldom under a third of it. Two columns at a time (Higham and Tisseur, SIAM J. Matrix Anal. Appl. 21
-  !! (2000) 1185) in two solves, since a factor takes longer to read than to use: `dlacn2`, one column in
-  !! each of five solves, takes two and a half times as long for the same figure; the alternating column
-  !! alone takes three quarters, but its figure depends on the order of the equations (0.6 to 1 of this
-  !! one). (Begun with a solution already known it would take one, but where that has ties or zeros the
-  !! figure would be a matter of rounding: 0.4 to 1 of this one.) The second solve is left to whoever reads
-  !! the factor anyway: the largest entry of what comes of these columns is a bound, too, since the inverse
-  !! is symmetric.
-  subroutine begin_estimate(self, x, inverse_norm)
-    class(assembled_matrix), intent(in) :: self
-    real(wp), contiguous, intent(out) :: x(:, :)   !! columns to be solved with [order, 2]
-    real(wp), intent(out) :: inverse_norm          !! as far as the first solve tells
-
-    x = self%half_solved_probes()
-    call self%solve_upper(x, 1)
-    inverse_norm = maxval(sum(abs(x), dim=1))
-    x = sign(1.0_wp, x)
-  end subroutine begin_estimate
-
-  !> What the estimate begins with, of 1-norm 1: equal parts, and the alternating column that finds what they
-  !! cancel (Higham's).
+  !> What an estimate of the condition begins with, of 1-norm 1: equal parts, and the alternating column that
+  !! finds what they cancel (Higham's).
   pure function probes(order) result(x)
     integer, intent(in) :: order           !! of the matrix
     real(wp) :: x(order, 2)

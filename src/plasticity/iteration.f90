@@ -13,12 +13,12 @@ module epcont_plasticity_iteration
   use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_plan_planned_scene, only: planned_scene
   use epcont_plasticity_initial_stress, only: initial_stress_method
+  use epcont_plasticity_law_of_state, only: factor_law, linearise
   use epcont_plasticity_newton, only: newton_method
   use epcont_plasticity_observer, only: iteration_record, observer
   use epcont_plasticity_secant, only: secant_method
   use epcont_plasticity_unloading, only: find_unloaded
   use epcont_system_stopwatch, only: stage_accuracy, stage_stiffness, stage_yielding
-  use epcont_system_threads, only: threads_over
   implicit none
   private
   public :: followed_loads, follow_loads
@@ -198,27 +198,14 @@ contains
     subroutine set_law(method, failed_body)
       class(secant_method), intent(inout) :: method
       integer, intent(out) :: failed_body
-      logical :: possible
-      integer :: p
 
       failed_body = 0
       method%blend = 0.0_wp
-      do
-        !$omp parallel do num_threads(threads_over(scene%model%points))
-        do p = 1, scene%model%points
-          if (linear%materials%can_yield(p)) call method%linearise(p, about, linear)
-        end do
-        !$omp end parallel do
-        call watch%lap(stage_yielding)
-        if (failed_body == 0 .and. stiff .and. &
-            (plan%method == method_inistr .or. elastic .and. yielded == 0)) return
-        elastic = yielded == 0
-        call linear%set_stiffness(scene, failed_body, watch)
-        stiff = .true.
-        if (failed_body == 0 .or. any(linear%body%lacks_memory)) return
-        call method%stiffen(possible)
-        if (.not. possible) return
-      end do
+      call linearise(scene, method, about, linear, watch)
+      if (stiff .and. (plan%method == method_inistr .or. elastic .and. yielded == 0)) return
+      elastic = yielded == 0
+      call factor_law(scene, method, about, linear, failed_body, watch)
+      stiff = .true.
     end subroutine set_law
 
     !> Add a solve to the history, what it has changed and left. Was it the last, or a further one by tangent?

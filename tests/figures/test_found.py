@@ -65,6 +65,13 @@ class Found(scene.Extremes):
             self.near(on_edge + on_top, 50.0, 1e-9)
             self.near(on_edge, 17.278, 1e-4)
 
+    def test_errors_whatever_the_last_step_was(self):
+        """What a figure is worth is asked of the tangent at the answer, by whichever method and step that was found."""
+        text = (FOLDER.parent.parent / "input/hertz/hertz44.dat").read_text()
+        errors = [self.valid(re.sub("METHOD  SECANT", f"METHOD  {method}", text)).summary["mesh_error_approach_41_2"]
+                  for method in ("NEWTON", "SECANT", "MODSEC", "INISTR")]
+        self.assertLess(max(errors), 1.2 * min(errors))   # by the secants 1.6
+
     def test_slides_that_nothing_drives(self):
         """Blocks pressed straight on each other stay above each other, however the scene is turned."""
         text = turned(deck("slide_rot0p001"), -1e-3)

@@ -1,0 +1,51 @@
+!> The linear law about a state, by any method, and the stiffness that it gives.
+module epcont_plasticity_law_of_state
+  use epcont_linear_linear_problem, only: linear_problem
+  use epcont_linear_scene_state, only: scene_state
+  use epcont_plan_planned_scene, only: planned_scene
+  use epcont_plasticity_observer, only: observer
+  use epcont_plasticity_secant, only: secant_method
+  use epcont_system_stopwatch, only: stage_yielding
+  use epcont_system_threads, only: threads_over
+  implicit none
+  private
+  public :: factor_law, linearise
+
+contains
+
+  !> The law about a state.
+  subroutine linearise(scene, method, about, linear, watch)
+    type(planned_scene), intent(in) :: scene           !! what is loaded
+    class(secant_method), intent(inout) :: method      !! how its law is made a linear one
+    type(scene_state), intent(in) :: about             !! its strains, and its points
+    type(linear_problem), intent(inout) :: linear      !! its law is set
+    class(observer), intent(inout) :: watch            !! takes the time
+    integer :: p
+
+    !$omp parallel do num_threads(threads_over(scene%model%points))
+    do p = 1, scene%model%points
+      if (linear%materials%can_yield(p)) call method%linearise(p, about, linear)
+    end do
+    !$omp end parallel do
+    call watch%lap(stage_yielding)
+  end subroutine linearise
+
+  !> The stiffness for that law, made stiffer as long as it cannot be factored.
+  subroutine factor_law(scene, method, about, linear, failed_body, watch)
+    type(planned_scene), intent(in) :: scene           !! what is loaded
+    class(secant_method), intent(inout) :: method      !! how its law was made a linear one
+    type(scene_state), intent(in) :: about             !! its strains, and its points
+    type(linear_problem), intent(inout) :: linear      !! with that law
+    integer, intent(out) :: failed_body                !! has none that can be factored; 0: none
+    class(observer), intent(inout) :: watch            !! takes the time
+    logical :: possible
+
+    do
+      call linear%set_stiffness(scene, failed_body, watch)
+      if (failed_body == 0 .or. any(linear%body%lacks_memory)) return
+      call method%stiffen(possible)
+      if (.not. possible) return
+      call linearise(scene, method, about, linear, watch)
+    end do
+  end subroutine factor_law
+end module epcont_plasticity_law_of_state
