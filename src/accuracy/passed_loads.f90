@@ -84,7 +84,7 @@ contains
       passed%level(l)%pair = basis%level(l)%pair
     end do
     allocate (passed%entry(2, motions + size(known, 2)), source=0)
-    least = least_difference/maxval([motion_size, 0.0_wp])
+    least = least_difference/maxval([motion_size, tiny(1.0_wp)])
     call pass_forward(basis, motion_size, least, passed%level, passed%entry)
     call pass_back(basis, least, passed%level)
     call complete(passed, known)
@@ -106,8 +106,8 @@ contains
       associate (factor => basis%level(l)%factor, motion => basis%level(l)%motion)
         allocate (level(l)%force(rows(l) + rows(l + 1), k + size(motion)), source=0.0_wp)
         level(l)%from = [spread(-1, 1, k), 0*motion]
-        associate (x => level(l)%force)
-          if (l > 1) x(:rows(l), :k) = level(l - 1)%force(rows(l - 1) + 1:, chosen)
+        associate (x => level(l)%force, before => max(l - 1, 1))
+          if (l > 1) x(:rows(l), :k) = level(before)%force(rows(before) + 1:, chosen)
           do i = 1, size(motion)
             x(size(basis%level(l)%pair) + i, k + i) = -1.0_wp/motion_size(motion(i))
             entry(:, basis%kept(motion(i))) = [l, k + i]

@@ -141,15 +141,15 @@ contains
     wanted = threads*memory_of_blas + memory_beside
     if (.not. has_memory(wanted)) call stop_now(status_usage, &
       'less memory is free or allowed (ulimit -v) than OpenBLAS takes for OMP_NUM_THREADS: '// &
-      digits(wanted/1000000)//' MB beside the program')
+      figures(wanted/1000000)//' MB beside the program')
     if (c_getrlimit(stack_size, stack) /= 0) return
     if (stack(1) >= 0 .and. stack(1) < least_stack) call stop_now(status_usage, &
-      'a stack of '//digits(stack(1)/1024_i8)//' kB is allowed (ulimit -s): '// &
-      digits(least_stack/1024_i8)//' kB are wanted')
+      'a stack of '//figures(stack(1)/1024_i8)//' kB is allowed (ulimit -s): '// &
+      figures(least_stack/1024_i8)//' kB are wanted')
   end subroutine prepare_start
 
   !> A number of up to nine digits, without WRITE.
-  pure function digits(number) result(text)
+  pure function figures(number) result(text)
     integer(i8), intent(in) :: number
     character(len=:), allocatable :: text
     integer(i8) :: left
@@ -161,7 +161,7 @@ contains
       left = left/10
       if (left == 0) return
     end do
-  end function digits
+  end function figures
 
   !> From here on the program ends by `c_exit`, or else with the exit status of its fault: the Fortran
   !! runtime and OpenBLAS have statuses of their own, which here would mean that there is an answer. A closed

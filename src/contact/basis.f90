@@ -134,10 +134,11 @@ contains
     do l = 1, size(basis%level)
       own = scaled%flexibility%level(l)%pair
       basis%level(l)%pair = pack(own, chosen(own))
-      if (.not. present(held)) cycle
-      if (held) basis%level(l)%motion = [integer ::]
+      if (present(held)) basis%level(l)%motion = pack(basis%level(l)%motion, .not. held)
     end do
-    if (present(held)) basis%motions = merge(0, basis%motions, held)
+    if (.not. present(held)) return
+    basis%gamma = pack(basis%gamma, .not. held)
+    basis%motions = size(basis%gamma)
   end subroutine choose_pairs
 
   !> Go over to another set. Without unique forces the basis is not sound, and nothing is kept of its factor.

@@ -103,7 +103,10 @@ contains
 
       n = size(level(l)%pair)
       unit = sqrt(scaled%softness(level(l)%pair))
-      copy = level(l)%factor(:n, :n)/(spread(unit, 1, n)*spread(unit, 2, n))
+      allocate (copy(n, n), source=0.0_wp)
+      do k = 1, n
+        copy(k:, k) = level(l)%factor(k:n, k)/(unit(k:)*unit(k))
+      end do
       call pivoted_cholesky(copy, rank_tolerance, order, rank)
       level(l)%pair = level(l)%pair(order(:rank))
       if (l == 1) return

@@ -236,6 +236,7 @@ contains
     integer, intent(in) :: bodies
     type(partition) :: heaps
     integer :: low(size(body, 2)), high(size(body, 2)), order(size(body, 2)), count, i
+    integer :: couple(2), before(2)   ! of bodies, and the one before
     integer, allocatable :: heap(:)   ! of each body
 
     loops = 0
@@ -246,13 +247,13 @@ contains
     order = order(sorted_order(high(order)))
     heaps = new_partition(bodies)
     loops = -bodies
+    before = 0
     do i = 1, size(order)
-      if (low(order(i)) == 0) cycle
-      if (i > 1) then
-        if (low(order(i - 1)) == low(order(i)) .and. high(order(i - 1)) == high(order(i))) cycle
-      end if
+      couple = [low(order(i)), high(order(i))]
+      if (couple(1) == 0 .or. all(couple == before)) cycle
+      before = couple
       loops = loops + 1
-      call heaps%join(low(order(i)), high(order(i)))
+      call heaps%join(couple(1), couple(2))
     end do
     call heaps%numbers(heap, count)
     loops = loops + count
