@@ -134,17 +134,17 @@ contains
     integer, intent(in) :: fields                !! how many
     real(wp), intent(in) :: u(directions, fields, *)   !! displacements [length]
     real(wp), intent(inout) :: strain(components, 0:fields)   !! the first stays as it is
-    real(wp) :: b(components, directions*most_nodes), part
+    real(wp) :: b(components, directions*most_nodes), volume
     integer :: c, i, p
 
     if (fields == 0) return
     b = 0.0_wp
     associate (first => model%first_point(element), last => model%first_point(element + 1) - 1)
+      volume = sum(self%volume(first:last))
       do p = first, last
         c = self%column(p)
-        part = self%volume(p)/sum(self%volume(first:last))
         do i = 1, directions*model%node_count(element)
-          b(:, i) = b(:, i) + part*self%b(:, c + i)
+          b(:, i) = b(:, i) + self%volume(p)/volume*self%b(:, c + i)
         end do
       end do
     end associate

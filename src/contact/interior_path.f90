@@ -72,17 +72,24 @@ contains
       barrier%own_flexibility = scaled%own_flexibility + maxval(scaled%softness)
       call factor_all(basis, barrier)
       if (.not. basis%sound) return
-      call answer(gaps_under(scaled, scaled%gap, at%force - scaled%known_force, at%approach), load, at)
-      at%gap = gaps_under(scaled, scaled%gap, at%force - scaled%known_force, at%approach)
+      call answer(gaps_there(), load, at)
+      at%gap = gaps_there()
       at%force = at%force + above_zero(at%force)
       at%gap = at%gap + above_zero(at%gap)
     end subroutine begin
+
+    !> What gaps are under the forces and motions there.
+    pure function gaps_there() result(gap)
+      real(wp) :: gap(size(closed))
+
+      gap = gaps_under(scaled, scaled%gap, at%force - scaled%known_force, at%approach)
+    end function gaps_there
 
     !> Of no products at all the step tells how far they can fall; they are asked for what it leaves of them.
     subroutine advance()
       real(wp) :: ahead, length
 
-      open = gaps_under(scaled, scaled%gap, at%force - scaled%known_force, at%approach) - at%gap
+      open = gaps_there() - at%gap
       product = 0.0_wp
       call find_step()
       length = length_of_step(1.0_wp)
