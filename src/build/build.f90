@@ -5,10 +5,11 @@ module epcont_build_build
   use epcont_base_sorting, only: sorted_order
   use epcont_base_text, only: text_of
   use epcont_build_choices, only: check_once, read_controls
-  use epcont_build_conditions, only: build_conditions
   use epcont_build_contacts, only: build_contacts
+  use epcont_build_loads, only: build_loads
   use epcont_build_mesh, only: build_mesh, element_cards
   use epcont_build_reference, only: card_index, check_unique, chosen_set, index_of
+  use epcont_build_supports, only: build_supports
   use epcont_contact_geometry_complete, only: check_controls, finish_model
   use epcont_contact_geometry_line_contacts, only: find_contacts
   use epcont_deck_card_kinds, only: card_bconp, card_blseg, card_cgap, card_cord2r, card_grid, card_mat1, &
@@ -50,7 +51,8 @@ contains
     nodes = index_of(deck, card_grid)
     call build_mesh(deck, nodes, model, faults)
     model%controls = read_controls(deck)
-    call build_conditions(deck, nodes, model, faults)
+    call build_supports(deck, nodes, model, faults)
+    call build_loads(deck, nodes, model, faults)
     call check_axis(model, faults)
     ! What iterations of a mesher leave of zero. Sides are longer by far, but what it makes of gaps would load
     ! the scene.
