@@ -144,8 +144,8 @@ contains
 
       associate (tables1 => deck%card(card_tables1))
         first = tables1%list_start(t)
-        curve%strain = tables1%list(first:tables1%list_start(t + 1) - 1)%point(1)
-        curve%stress = tables1%list(first:tables1%list_start(t + 1) - 1)%point(2)
+        curve%strain = tables1%list(first:tables1%list_start(t + 1) - 1)%number(1)
+        curve%stress = tables1%list(first:tables1%list_start(t + 1) - 1)%number(2)
         call straighten(curve, young, fault)
         if (fault%point > 0) then
           call found%add_error(card_tables1, t, merge(1 - first - fault%point, 0, &

@@ -49,7 +49,7 @@ contains
     allocate (table(card_kinds))
     do k = 1, card_kinds
       call table(k)%begin(entry(k), begun%of(k))
-      if (k /= card_param .and. .not. allocated(entry(k)%list_name)) call read_plain(table(k))
+      if (k /= card_param .and. entry(k)%list_slot == huge(1)) call read_plain(table(k))
     end do
     next = 1
     do line = first, lines%count

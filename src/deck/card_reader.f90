@@ -1,5 +1,5 @@
 !> One card, field by field, into its table. Behind its fields there may be a list: of ids, `G1 G2 ..`, with
-!> `G1 THRU G2` and `G1 THRU G2 BY step` where the card allows it; or of points, `X1 Y1 X2 Y2 .. ENDT`.
+!> `G1 THRU G2` and `G1 THRU G2 BY step` where the card allows it; or of records, `X1 Y1 X2 Y2 ..`.
 module epcont_deck_card_reader
   use epcont_base_diagnostic, only: diagnostics
   use epcont_base_kinds, only: i8, wp
@@ -14,10 +14,9 @@ module epcont_deck_card_reader
   private
   public :: read_card
 
-  !> What lists hold.
+  !> What lists of ids hold.
   type(field_entry), parameter :: &
-    id = field_entry(kind=kind_integer, lowest=1.0_wp, highest=real(largest_id, wp)), &
-    coordinate = field_entry(kind=kind_real)
+    id = field_entry(kind=kind_integer, lowest=1.0_wp, highest=real(largest_id, wp))
 
   !> Faults that are not of form, beside the outcomes of a scan.
   integer, parameter :: out_of_range = -1, out_of_reach = -2
@@ -53,8 +52,8 @@ contains
         end if
       end associate
     end do
-    if (table%entry%has_points) then
-      call read_points()
+    if (allocated(table%entry%record)) then
+      call read_records()
     else if (allocated(table%entry%list_name)) then
       call read_ids()
     else
@@ -79,7 +78,7 @@ contains
       character(len=:), allocatable :: remedy
 
       remedy = 'blank'
-      if (.not. allocated(table%entry%list_name)) remedy = 'blank; '//trim(table%entry%name)// &
+      if (table%entry%list_slot == huge(1)) remedy = 'blank; '//trim(table%entry%name)// &
         ' ends with field '//text_of(number_of(size(table%entry%field)))
       call refuse(slot, 'must be blank', remedy)
     end subroutine refuse_surplus
@@ -270,31 +269,65 @@ contains
       end if
     end subroutine read_step
 
-    !> Points. A fault in one of them ends the list: what follows it would be taken for the wrong number.
-    subroutine read_points()
-      character(len=*), parameter :: end_word = 'ENDT'
-      type(field_value) :: value(2)
-      integer :: k, slot
+    !> Records, one at least. A fault in one of them ends the list: what follows it would be taken for the
+    !! wrong field.
+    subroutine read_records()
+      type(list_item) :: item
+      integer :: first, k
+      logical :: sound
 
-      slot = table%entry%list_slot
-      do while (.not. is_word(slot, end_word))
-        do k = 1, 2
-          if (.not. card%filled(slot + k - 1)) then
-            call refuse(slot + k - 1, 'is blank', 'a real, or '//end_word//' behind the last point')
-            return
-          end if
-          call read_slot(slot + k - 1, coordinate, value(k))
-          if (value(k)%outcome /= scan_sound) return
+      first = table%entry%list_slot
+      do while (.not. at_end(first))
+        item%place = card%place(first)
+        do k = 1, size(table%entry%record)
+          call read_part(first + k - 1, table%entry%record(k), item%number(k), sound)
+          if (.not. sound) return
         end do
-        call table%add_item(row, list_item(point=value%number, place=card%place(slot)))
-        slot = slot + 2
+        call table%add_item(row, item)
+        first = first + size(table%entry%record)
       end do
-      do slot = slot + 1, card%count
+      if (table%entry%end_word == '') return
+      do slot = first + 1, card%count
         if (card%filled(slot)) &
           call faults%add_error(card%place(slot), table%identity(row)//': field '// &
                                 text_of(number_of(slot))//' must be blank', &
-                                'blank: '//end_word//' ends the card')
+                                'blank: '//table%entry%end_word//' ends the card')
       end do
-    end subroutine read_points
+    end subroutine read_records
+
+    !> Does no record begin at a slot?
+    logical function at_end(slot)
+      integer, intent(in) :: slot
+      integer :: k
+
+      if (table%entry%end_word /= '') then
+        at_end = is_word(slot, table%entry%end_word)
+      else
+        at_end = slot > table%entry%list_slot .and. .not. any([(card%filled(k), k=slot, card%count)])
+      end if
+    end function at_end
+
+    !> Read a field of a record.
+    subroutine read_part(slot, entry, number, sound)
+      integer, intent(in) :: slot
+      type(field_entry), intent(in) :: entry   !! what it may hold
+      real(wp), intent(out) :: number
+      logical, intent(out) :: sound            !! it could be read
+      character(len=:), allocatable :: remedy
+      type(field_value) :: value
+
+      number = entry%default
+      sound = card%filled(slot) .or. .not. entry%required
+      if (card%filled(slot)) then
+        call read_slot(slot, entry, value)
+        number = value%number
+        sound = value%outcome == scan_sound
+      else if (entry%required) then
+        remedy = entry%allowed()
+        if (table%entry%end_word /= '') &
+          remedy = 'a real, or '//table%entry%end_word//' behind the last point'
+        call refuse(slot, 'is blank', remedy)
+      end if
+    end subroutine read_part
   end subroutine read_card
 end module epcont_deck_card_reader

@@ -10,7 +10,7 @@ module epcont_deck_catalogue
   !> All cards, in the order of `epcont_deck_card_kinds`: name and meaning of each, and under it its fields in
   !! their order, fields 2 to 9, then 12 to 19, and so on, each as `new_field` takes it; the first so many may
   !! be `like` those of a card before. Behind them there may be a list, of `ids`, some of which are `ranges`,
-  !! with `steps`, or of `points`.
+  !! with `steps`, or of records, whose fields are there for `each`; ENDT stands behind the last.
   character(len=*), parameter :: cards(*) = [character(len=140) :: &
     'GRID: node', &
     '  ID; id; node', &
@@ -141,7 +141,8 @@ module epcont_deck_catalogue
     'TABLES1: uniaxial curve of stress over total strain', &
     '  TID; id; table', &
     '  ; blank times=7;', &
-    '  ; points; strain and stress of each point: 0.0 0.0, the yield point, and on; ENDT behind the last', &
+    '  X; real needed each; strain: 0.0, that of the yield point, and on', &
+    '  Y; real needed each ENDT; stress: 0.0, the yield stress, and on; ENDT behind the last [stress]', &
     'CTRIA6: six-node triangle', &
     '  like 2 CTRIA3', &
     '  G1; id; first corner, in either turning sense', &
@@ -246,13 +247,17 @@ contains
         card(k)%field = card(findloc(card%name == line(10:17), .true., dim=1))%field(:at)
       else
         field = new_field(trim(line))
-        if (index(line(:12), '; ids') + index(line(:12), '; points') > 0) then
+        if (index(line(:12), '; ids') > 0) then
           card(k)%list_slot = size(card(k)%field) + 1
           card(k)%list_name = trim(field%name)
           card(k)%list_meaning = trim(field%meaning)
           card(k)%has_ranges = index(line, 'ids ranges') > 0
           card(k)%has_steps = index(line, 'ranges steps') > 0
-          card(k)%has_points = index(line, '; points') > 0
+        else if (index(line, ' each') > 0) then
+          if (.not. allocated(card(k)%record)) allocate (card(k)%record(0))
+          card(k)%list_slot = size(card(k)%field) + 1
+          card(k)%record = [card(k)%record, field]
+          if (index(line, ' each ENDT') > 0) card(k)%end_word = 'ENDT'
         else
           card(k)%field = [card(k)%field, spread(field, 1, field%times)]
         end if

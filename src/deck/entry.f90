@@ -46,7 +46,7 @@ module epcont_deck_entry
     procedure :: allowed
   end type field_entry
 
-  !> A card: its fields, and after them perhaps a list, of ids or of points, that is open at the end.
+  !> A card: its fields, and after them perhaps a list, of ids or of records, that is open at the end.
   type :: card_entry
     character(len=8) :: name = ''
     character(len=:), allocatable :: meaning
@@ -54,8 +54,10 @@ module epcont_deck_entry
     integer :: list_slot = huge(1)               !! where the list begins; beyond all slots: there is none
     logical :: has_ranges = .false.              !! the list may hold `G1 THRU G2`
     logical :: has_steps = .false.               !! ranges may fall, or go on `BY` a step
-    logical :: has_points = .false.              !! the list is of points `X1 Y1 X2 Y2 .. ENDT`, not of ids
-    character(len=:), allocatable :: list_name, list_meaning
+    character(len=:), allocatable :: list_name, list_meaning   !! of a list of ids
+    !> Or the list is of records, such as `X1 Y1 X2 Y2 ..`: their fields, and the word behind the last record
+    type(field_entry), allocatable :: record(:)
+    character(len=4) :: end_word = ''            !! blank: the end of the card
   contains
     procedure :: field_name
     procedure :: field_text
@@ -80,8 +82,8 @@ contains
 
     name = ''
     k = slot - self%list_slot
-    if (k >= 0 .and. self%has_points) then
-      name = merge('X', 'Y', mod(k, 2) == 0)//text_of(k/2 + 1)
+    if (k >= 0 .and. allocated(self%record)) then
+      name = trim(self%record(1 + mod(k, size(self%record)))%name)//text_of(k/size(self%record) + 1)
     else if (k >= 0) then
       name = self%list_name//text_of(k + 1)
     else if (slot <= size(self%field)) then
@@ -107,7 +109,7 @@ contains
   !! or so above `heard_to=`, `point_optional`; what a blank means: `zero`, `default=`, or `as_last`, its
   !! neighbour; and whether it may be blank: ids and digits may if they are `optional`, or where their
   !! neighbour (`with_next`, `with_last`) is, numbers if they are not `needed`. So many like it follow each
-  !! other as `times=` says.
+  !! other as `times=` says. Fields that are there for `each` record of a list are told by the catalogue.
   type(field_entry) function new_field(line) result(field)
     character(len=*), intent(in) :: line   !! as above
     character(len=48) :: form   ! its words that are still to be read

@@ -39,29 +39,41 @@ contains
     type(card_entry), intent(in) :: entry
     character(len=:), allocatable :: text
     type(field_entry), allocatable :: field(:)
-    integer :: slot
+    integer :: k, slot
 
     text = trim(entry%name)//': '//entry%meaning//newline//newline// &
            'field  columns  name   kind     default  use    meaning [unit], range'//newline
     field = entry%field
-    if (.not. allocated(entry%list_name)) &   ! the rest of its last line must be blank
+    if (entry%list_slot == huge(1)) &   ! the rest of its last line must be blank
       field = [field, (field_entry(), slot=1, modulo(-size(field), fields_a_line))]
     do slot = 1, size(field)
       if (field(slot)%kind == kind_blank) then
         call add_row('', '', '', '', 'blank', 'must be blank')
       else
-        call add_row('', field(slot)%name, kind_name(field(slot)%kind), default_text(), &
-                     merge('used ', 'noted', field(slot)%used), meaning_text())
+        call add_field('', field(slot)%name, field(slot))
       end if
     end do
-    if (entry%has_points) then
-      call add_row('..', 'X1 ..', 'real', 'none', 'used', entry%list_meaning)
+    if (allocated(entry%record)) then
+      do k = 1, size(entry%record)
+        call add_field('..', trim(entry%record(k)%name)//'1 ..', entry%record(k))
+        slot = slot + 1
+      end do
     else if (allocated(entry%list_name)) then
       call add_row('..', entry%list_name//'1..', 'integer', 'none', 'used', &
                    entry%list_meaning//', as many as needed: each a whole number from 1 to 99999999')
     end if
 
   contains
+
+    !> The line of a field that may be filled.
+    subroutine add_field(more, name, field)
+      character(len=*), intent(in) :: more   !! behind the number of the field
+      character(len=*), intent(in) :: name
+      type(field_entry), intent(in) :: field
+
+      call add_row(more, name, kind_name(field%kind), default_text(field), &
+                   merge('used ', 'noted', field%used), meaning_text(field))
+    end subroutine add_field
 
     !> The line of a slot. Columns are those of a small field, on a continuation line counted from its start.
     subroutine add_row(more, name, kind, default, use, meaning)
@@ -78,22 +90,24 @@ contains
 
     !> What a blank means: a value, another field, nothing that would do, or `blank` where it has a meaning of
     !! its own.
-    pure function default_text() result(text)
+    pure function default_text(field) result(text)
+      type(field_entry), intent(in) :: field
       character(len=:), allocatable :: text
 
       text = 'blank'
-      if (field(slot)%has_default) &
-        text = text_of(nint(field(slot)%default))//merge('.0', '  ', field(slot)%kind == kind_real)
-      if (field(slot)%same_as /= 0) text = entry%field_name(slot + field(slot)%same_as)
-      if (field(slot)%required) text = 'none'
+      if (field%has_default) &
+        text = text_of(nint(field%default))//merge('.0', '  ', field%kind == kind_real)
+      if (field%same_as /= 0) text = entry%field_name(slot + field%same_as)
+      if (field%required) text = 'none'
     end function default_text
 
-    pure function meaning_text() result(text)
+    pure function meaning_text(field) result(text)
+      type(field_entry), intent(in) :: field
       character(len=:), allocatable :: text
 
-      text = trim(field(slot)%meaning)
-      if (field(slot)%unit /= '') text = text//' ['//trim(field(slot)%unit)//']'
-      if (field(slot)%kind /= kind_any) text = text//'; '//field(slot)%allowed()
+      text = trim(field%meaning)
+      if (field%unit /= '') text = text//' ['//trim(field%unit)//']'
+      if (field%kind /= kind_any) text = text//'; '//field%allowed()
     end function meaning_text
   end function card_text
 

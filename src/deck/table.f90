@@ -8,10 +8,10 @@ module epcont_deck_table
   private
   public :: card_table, list_item
 
-  !> One item of the open list of a card: the ids from one to another, or a point.
+  !> One item of the open list of a card: the ids from one to another, or a record of numbers.
   type :: list_item
     integer :: from = 0, to = 0, step = 1   !! ids
-    real(wp) :: point(2) = 0.0_wp
+    real(wp) :: number(3) = 0.0_wp          !! those of a record, which may be fewer; integers are exact
     type(place_type) :: place               !! where it begins
   end type list_item
 
@@ -125,7 +125,7 @@ contains
   pure subroutine add_item(self, card, item)
     class(card_table), intent(inout) :: self
     integer, intent(in) :: card           !! the one that was begun last
-    type(list_item), intent(in) :: item   !! ids or a point
+    type(list_item), intent(in) :: item   !! ids or a record
 
     if (self%items == size(self%list)) self%list = [self%list, self%list]
     self%items = self%items + 1
