@@ -116,7 +116,7 @@ contains
       call read_deck(path, run%deck, run%faults, error)
       call watch%lap(stage_reading)
       if (allocated(error)) return
-      call build_model(run%deck, run%model, run%faults)
+      call build_model(run%deck, run%model, run%cases, run%faults)
       call watch%lap(stage_model)
       if (run%faults%errors > 0) return
       call run%find_motions(run%faults)

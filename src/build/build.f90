@@ -4,11 +4,11 @@ module epcont_build_build
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: sorted_order
   use epcont_base_text, only: text_of
+  use epcont_build_cases, only: build_cases
   use epcont_build_choices, only: check_once, read_controls
   use epcont_build_contacts, only: build_contacts
-  use epcont_build_loads, only: build_loads
   use epcont_build_mesh, only: build_mesh, element_cards
-  use epcont_build_reference, only: card_index, check_unique, chosen_set, index_of
+  use epcont_build_reference, only: card_index, check_unique, chosen_sets, index_of
   use epcont_build_supports, only: build_supports
   use epcont_contact_geometry_complete, only: check_controls, finish_model
   use epcont_contact_geometry_line_contacts, only: find_contacts
@@ -22,6 +22,7 @@ module epcont_build_build
   use epcont_model_element_shapes, only: check_axis
   use epcont_model_finding, only: findings, of_body, of_couple, of_element, of_line, of_node, of_pair, &
       of_paper_ratio, of_scene
+  use epcont_model_load_cases, only: load_cases, put_case
   use epcont_model_model, only: model_type
   implicit none
   private
@@ -35,9 +36,10 @@ contains
 
   !> Build the scene; whatever is wrong with it is added to `faults`, and the model serves only without
   !! errors.
-  subroutine build_model(deck, model, faults)
+  subroutine build_model(deck, model, cases, faults)
     type(deck_type), intent(in) :: deck          !! its cards
-    type(model_type), intent(out) :: model       !! the scene
+    type(model_type), intent(out) :: model       !! the scene, with the first load case
+    type(load_cases), intent(out) :: cases       !! all of them
     type(diagnostics), intent(inout) :: faults   !! of the deck; they are added to
     type(card_index) :: nodes
     integer :: k
@@ -51,8 +53,8 @@ contains
     nodes = index_of(deck, card_grid)
     call build_mesh(deck, nodes, model, faults)
     model%controls = read_controls(deck)
-    call build_supports(deck, nodes, model, faults)
-    call build_loads(deck, nodes, model, faults)
+    call build_cases(deck, nodes, model, cases, faults)
+    call build_supports(deck, nodes, cases%case(1)%supports, model, faults)
     call check_axis(model, faults)
     ! What iterations of a mesher leave of zero. Sides are longer by far, but what it makes of gaps would load
     ! the scene.
@@ -63,7 +65,10 @@ contains
     call check_controls(model, faults)
     if (model%elements == 0 .and. faults%errors == 0) &
       call faults%add_error(of_scene, 0, 0, 'the deck has no elements', 'CTRIA3 cards')
-    if (faults%errors == 0) call finish_model(model, faults)
+    if (faults%errors == 0) then
+      call finish_model(model, faults)
+      call put_case(cases, 1, model)
+    end if
     call tell(deck, model%kinds, faults)
   end subroutine build_model
 
@@ -77,7 +82,7 @@ contains
 
     elements = element_cards(deck, kinds)
     do i = 1, faults%count
-      if (faults%list(i)%of /= of_scene .or. faults%list(i)%which > 0) call name_card(faults%list(i))
+      if (faults%list(i)%of /= of_scene) call name_card(faults%list(i))
     end do
 
   contains
@@ -89,14 +94,9 @@ contains
 
       if (allocated(one%node)) &
         one%remedy = one%remedy//': '//holding_cards(deck, nint(deck%card(card_grid)%value(1, one%node)))
-      if (one%of /= of_scene) then
-        card = card_of(one)
-        one%place = deck%place(card(1), card(2), card(3))
-        if (one%of /= of_body) one%what = deck%card(card(1))%identity(card(2))//one%what
-      else
-        one%place = deck%load_place
-        if (one%which == card_spc) one%place = deck%spc_place
-      end if
+      card = card_of(one)
+      one%place = deck%place(card(1), card(2), card(3))
+      if (one%of /= of_body) one%what = deck%card(card(1))%identity(card(2))//one%what
       one%of = of_scene
       one%which = 0
     end subroutine name_card
@@ -154,10 +154,10 @@ contains
     character(len=:), allocatable :: text
     integer, parameter :: most_fields = 6   ! of a line with SPC1, its set and directions
     integer, allocatable :: id(:)
-    integer :: fields, from, item, set, to
+    integer :: fields, from, item, set(size(deck%subcase)), to
     type(findings) :: unheard
 
-    call chosen_set(deck, [card_spc1, card_spc], deck%spc, '', unheard, set)
+    call chosen_sets(deck, [card_spc1, card_spc], deck%subcase%spc, 'SPC', unheard, set)
     id = ids(sorted_order(ids))
     text = ''
     fields = most_fields
@@ -170,7 +170,7 @@ contains
       item = merge(3, 1, to > from)
       if (fields + item > most_fields) then
         if (len(text) > 0) text = text//' and '
-        text = text//'SPC1,'//text_of(max(set, 1))//',1'
+        text = text//'SPC1,'//text_of(max(set(1), 1))//',1'
         fields = 0
       end if
       fields = fields + item

@@ -5,12 +5,13 @@ module epcont_build_reference
   use epcont_base_sorting, only: id_index, new_id_index, sorted_order
   use epcont_base_text, only: text_of
   use epcont_deck_card_kinds, only: card_blseg
+  use epcont_deck_case_control, only: set_choice
   use epcont_deck_deck, only: deck_type
-  use epcont_model_finding, only: findings, of_scene
+  use epcont_model_finding, only: findings
   use epcont_system_threads, only: threads_over
   implicit none
   private
-  public :: card_index, index_of, check_unique, resolve, chosen_set
+  public :: card_index, index_of, check_unique, resolve, chosen_sets, note_unused
 
   !> The ids that fields may name, and what they are of.
   type, extends(id_index) :: card_index
@@ -83,41 +84,56 @@ contains
     end associate
   end subroutine resolve
 
-  !> The set that SPC = or LOAD = names; without it the only set there is.
-  pure subroutine chosen_set(deck, cards, choice, word, found, set)
+  !> The set that SPC = or LOAD = names in each load case; where none does, the only set there is, of loads if
+  !! the deck has no more than one case.
+  pure subroutine chosen_sets(deck, cards, choice, word, found, set)
     type(deck_type), intent(in) :: deck      !! its cards
     integer, intent(in) :: cards(:)          !! tables whose first field is the set
-    integer, intent(in) :: choice            !! 0: none
+    type(set_choice), intent(in) :: choice(:)   !! [cases]
     character(len=*), intent(in) :: word     !! SPC or LOAD
     type(findings), intent(inout) :: found   !! what is wrong with it is added
-    integer, intent(out) :: set              !! 0: there is none
-    logical :: used
-    integer :: c, i, id
+    integer, intent(out) :: set(:)           !! 0: there is none [cases]
+    integer, allocatable :: id(:), row(:), table(:)   ! of all cards, as far as they are given
+    integer :: c, i, k
 
-    set = choice
-    used = .not. deck%whole
+    id = [(nint(deck%card(cards(c))%value(1, :)), c=1, size(cards))]
+    table = [(spread(cards(c), 1, deck%card(cards(c))%count), c=1, size(cards))]
+    row = [((i, i=1, deck%card(cards(c))%count), c=1, size(cards))]
+    id = merge(id, 0, [(deck%card(table(i))%given(1, row(i)), i=1, size(row))])
+    set = choice%id
+    if (all(choice%id == 0) .and. (size(choice) == 1 .or. word == 'SPC') .and. any(id > 0)) then
+      set = id(findloc(id > 0, .true., dim=1))
+      i = findloc(id > 0 .and. id /= set(1), .true., dim=1)
+      if (i > 0) then
+        call found%add_error(table(i), row(i), 1, ': the deck has several sets, '//text_of(set(1))//' and '// &
+                             text_of(id(i))//', and chooses none', &
+                             word//' = '//text_of(set(1))//' before BEGIN BULK')
+        return
+      end if
+    end if
+    do k = 1, size(set)
+      if (set(k) == 0 .or. any(id == set(k)) .or. .not. deck%whole .or. any(id == 0)) cycle
+      call found%add_error(choice(k)%place, word//' = '//text_of(set(k))// &
+                           ': the deck has no such set', 'the set of the cards in the deck')
+    end do
+  end subroutine chosen_sets
+
+  !> A note for each card whose set no load case uses.
+  pure subroutine note_unused(deck, cards, used, found)
+    type(deck_type), intent(in) :: deck      !! its cards
+    integer, intent(in) :: cards(:)          !! tables whose first field is the set
+    integer, intent(in) :: used(:)           !! ids of sets
+    type(findings), intent(inout) :: found   !! what is noted is added
+    integer :: c, i
+
     do c = 1, size(cards)
       associate (table => deck%card(cards(c)))
         do i = 1, table%count
-          used = used .or. .not. table%given(1, i)
-          if (.not. table%given(1, i)) cycle
-          id = nint(table%value(1, i))
-          if (set == 0) set = id
-          used = used .or. id == set
-          if (id == set) cycle
-          if (choice == 0) then
-            call found%add_error(cards(c), i, 1, ': the deck has several sets, '//text_of(set)//' and '// &
-                                 text_of(id)//', and chooses none', &
-                                 word//' = '//text_of(set)//' before BEGIN BULK')
-            return
-          end if
+          if (.not. table%given(1, i) .or. any(used == nint(table%value(1, i)))) cycle
           call found%add(diagnostic(severity_note, of=cards(c), which=i, item=1, &
                                     what=': set not used', remedy=''))
         end do
       end associate
     end do
-    if (choice > 0 .and. .not. used) &
-      call found%add_error(of_scene, cards(1), 0, word//' = '//text_of(choice)// &
-                           ': the deck has no such set', 'the set of the cards in the deck')
-  end subroutine chosen_set
+  end subroutine note_unused
 end module epcont_build_reference

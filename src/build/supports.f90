@@ -2,7 +2,7 @@
 module epcont_build_supports
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of
-  use epcont_build_reference, only: card_index, chosen_set, resolve
+  use epcont_build_reference, only: card_index, resolve
   use epcont_deck_card_kinds, only: card_grid, card_rbe2, card_spc, card_spc1, card_suport
   use epcont_deck_deck, only: deck_type
   use epcont_model_finding, only: findings
@@ -14,16 +14,16 @@ module epcont_build_supports
 
 contains
 
-  !> Supports of the chosen set; then ties, of which chains are followed to their end; then the reference
+  !> Supports of a set; then ties, of which chains are followed to their end; then the reference
   !! freedoms, which must be free of both.
-  subroutine build_supports(deck, nodes, model, found)
+  subroutine build_supports(deck, nodes, support_set, model, found)
     type(deck_type), intent(in) :: deck        !! its cards
     type(card_index), intent(in) :: nodes      !! ids of GRID
+    integer, intent(in) :: support_set         !! of SPC and SPC1; 0: none
     type(model_type), intent(inout) :: model   !! the scene
     type(findings), intent(inout) :: found     !! what is wrong with it is added
-    integer :: i, leader(deck%card(card_rbe2)%count), ps, support_set
+    integer :: i, leader(deck%card(card_rbe2)%count), ps
 
-    call chosen_set(deck, [card_spc, card_spc1], deck%spc, 'SPC', found, support_set)
     associate (grid => deck%card(card_grid))
       ps = grid%column('PS')
       do i = 1, grid%count

@@ -16,7 +16,7 @@ module epcont_contact_geometry_complete
   use epcont_model_freedoms, only: find_travels, follow_to_the_end, set_reference, tie
   use epcont_model_given, only: check_given, number_parts
   use epcont_model_model, only: model_type
-  use epcont_model_pressure, only: add_pressure
+  use epcont_model_pressure, only: add_pressure, find_side
   use epcont_model_single_pairs, only: complete_pairs
   implicit none
   private
@@ -30,7 +30,7 @@ contains
     type(model_type), intent(out) :: model     !! what comes of it
     type(findings), intent(out) :: found       !! all that is wrong with it, or looks so
     integer, allocatable :: leader(:, :)       ! that is given
-    integer :: behind, i
+    integer :: behind, ends(3), i
 
     call check_given(given, model%scene_type, found)
     if (found%errors > 0) return
@@ -39,10 +39,13 @@ contains
     call complete_elements(model, found)
     if (found%errors == 0) then
       do i = 1, size(model%pressure)   ! loads of the nodes beside them
-        call add_pressure(model, model%pressure(i), behind)
-        if (behind /= 0) &
+        call find_side(model, model%pressure(i), ends, behind)
+        if (ends(1) > 0 .and. behind == 0) then
+          call add_pressure(model, model%pressure(i), 1.0_wp)
+        else
           call found%add_error(of_scene, 0, 0, 'pressure('//text_of(i)//')%corner is of no side of the'// &
                                ' boundary', 'two neighbouring corners of a side that its element alone has')
+        end if
       end do
     end if
     call complete_freedoms()

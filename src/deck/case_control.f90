@@ -1,4 +1,5 @@
-!> The statements before BEGIN BULK: which sets are used, titles, and what output is wanted.
+!> The statements before BEGIN BULK: which load cases there are, which sets each uses, titles, and what output
+!> is wanted. What stands before the first SUBCASE is said for all of them.
 module epcont_deck_case_control
   use epcont_base_diagnostic, only: diagnostics, place_type
   use epcont_base_kinds, only: i8
@@ -9,24 +10,44 @@ module epcont_deck_case_control
   use epcont_deck_spelling, only: suggestion
   implicit none
   private
-  public :: case_control, read_case_control
+  public :: case_control, set_choice, subcase_control, read_case_control
+
+  !> The contacts of a load case, beside the id of its one BCONP.
+  integer, parameter, public :: contact_all = 0, contact_none = -1
+
+  !> The set that a statement chooses; 0: no choice.
+  type :: set_choice
+    integer :: id = 0
+    type(place_type) :: place
+  end type set_choice
+
+  !> What the statements say of a load case.
+  type :: subcase_control
+    integer :: id = 0                                        !! 0: the deck has no SUBCASE
+    type(place_type) :: place                                !! of its SUBCASE
+    character(len=:), allocatable :: subtitle, label         !! empty where not given
+    type(set_choice) :: spc, load
+    type(set_choice) :: contact                              !! contact_all, contact_none or a BCONP
+    logical :: displacement = .false., stress = .false., spcforces = .false.  !! tables wanted
+  end type subcase_control
 
   !> What the statements say.
   type :: case_control
-    character(len=:), allocatable :: title, subtitle, label  !! empty where not given
-    integer :: spc = 0, load = 0     !! the sets chosen; 0: no choice
-    type(place_type) :: spc_place, load_place
+    character(len=:), allocatable :: title                   !! empty where not given
+    type(subcase_control), allocatable :: subcase(:)         !! one at least
     logical :: echo_unsorted = .false., echo_sorted = .false.   !! cards listed as they stand, by their names
-    logical :: displacement = .false., stress = .false., spcforces = .false.  !! tables wanted
   end type case_control
 
-  !> Their words.
-  character(len=*), parameter, public :: keyword(13) = [character(len=12) :: &
-    'SOL', 'CEND', 'TITLE', 'SUBTITLE', 'LABEL', 'SPC', 'LOAD', 'ECHO', 'DISPLACEMENT', 'STRESS', &
-    'SPCFORCES', 'SUBCASE', 'NLPARM']
+  !> Their words. From the first on that a load case may have for itself, all are its own.
+  character(len=*), parameter, public :: keyword(15) = [character(len=12) :: &
+    'SOL', 'CEND', 'TITLE', 'ECHO', 'CNTNLSUB', 'SUBCASE', 'SUBTITLE', 'LABEL', 'SPC', 'LOAD', 'BCONTACT', &
+    'DISPLACEMENT', 'STRESS', 'SPCFORCES', 'NLPARM']
+  integer, parameter :: first_own = 7
   !> Those of SOL that are static, linear or not.
   character(len=*), parameter :: static = &
     '  1 24 66 101 106 400 401 402 600 601 SESTATIC NLSTATIC '
+  !> Of these, those whose load cases are a sequence where CNTNLSUB does not say.
+  character(len=*), parameter :: sequential = ' 66 106 NLSTATIC '
 
   !> One statement, cut into its parts. Columns count from the first of the line.
   type :: statement
@@ -46,10 +67,16 @@ contains
     type(diagnostics), intent(inout) :: faults   !! what is wrong is added to them
     logical :: stated(size(keyword))
     type(statement) :: parts
-    integer :: line
+    type(subcase_control) :: common, now   ! what is said before the first, and of that which lines are about
+    type(place_type) :: sequence     ! what makes a sequence of them; of line 0: nothing
+    integer :: cases, line
 
-    control = case_control(title='', subtitle='', label='')
     bulk = behind_begin_bulk(lines)
+    allocate (control%subcase(max(1, count([(is_subcase(line), line=1, bulk - 2)]))))
+    control%title = ''
+    now%subtitle = ''
+    now%label = ''
+    cases = 0
     stated = .false.
     do line = 1, bulk - 2
       if (lines%blank(line)) cycle
@@ -57,6 +84,10 @@ contains
       call check_word()
       call take_statement()
     end do
+    control%subcase(max(1, cases)) = now
+    if (sequence%line > 0 .and. size(control%subcase) > 1) call faults%add_error( &
+      sequence, 'the SUBCASEs are a sequence, each from the end of the one before: that is not here', &
+      'CNTNLSUB = NO: each from the unloaded state')
 
   contains
 
@@ -69,13 +100,14 @@ contains
       if (k == 0) then
         call faults%add_error(parts%word_place, 'unknown case control statement '//parts%word, &
           suggestion(parts%word, keyword, &
-                     'SOL, CEND, TITLE, SUBTITLE, LABEL, SPC, LOAD, ECHO, DISPLACEMENT, STRESS or SPCFORCES'))
+                     'SOL, CEND, TITLE, SUBTITLE, LABEL, SUBCASE, SPC, LOAD, BCONTACT, ECHO, '// &
+                     'DISPLACEMENT, STRESS or SPCFORCES'))
         return
       end if
       if (stated(k)) &
-        call faults%add_error(parts%word_place, parts%word//' is stated twice', &
-                              'one '//parts%word//trim(merge(' a deck', '       ', parts%word == 'SUBCASE')))
-      stated(k) = .true.
+        call faults%add_error(parts%word_place, parts%word//' is stated twice', 'one '//parts%word// &
+                              trim(merge(' a SUBCASE', '          ', now%id > 0 .and. k >= first_own)))
+      stated(k) = keyword(k) /= 'SUBCASE'
       parts%word = trim(keyword(k))
       if (parts%option_place%line > 0) &
         call faults%add_note(parts%option_place, parts%word//': options have no effect')
@@ -88,23 +120,38 @@ contains
 
       select case (parts%word)
       case ('SOL')
-        if (index(static, ' '//upper(parts%value(:scan(parts%value//' ', ' ,') - 1))//' ') == 0) &
+        words = ' '//upper(parts%value(:scan(parts%value//' ', ' ,') - 1))//' '
+        if (index(static, words) == 0) &
           call faults%add_note(parts%value_place, 'SOL: not static, as the loads here are')
+        if (index(sequential, words) > 0 .and. .not. any(stated .and. keyword == 'CNTNLSUB')) &
+          sequence = parts%value_place
       case ('CEND')
         if (len(parts%value) > 0) &
           call faults%add_error(parts%value_place, 'CEND takes no value', 'nothing here')
+      case ('CNTNLSUB')
+        sequence = place_type()
+        if (len(parts%value) == 0 .or. upper(parts%value) == 'YES') then
+          sequence = parts%word_place
+        else if (upper(parts%value) /= 'NO') then
+          call refuse('a word', ' known here', 'NO or YES: the SUBCASEs of a list (SID) are not here')
+        end if
+      case ('SUBCASE')
+        call begin_subcase()
       case ('TITLE')
         control%title = parts%value
       case ('SUBTITLE')
-        control%subtitle = parts%value
+        now%subtitle = parts%value
       case ('LABEL')
-        control%label = parts%value
+        now%label = parts%value
       case ('SPC')
-        control%spc_place = parts%value_place
-        call take_number(control%spc)
+        call take_set(now%spc)
       case ('LOAD')
-        control%load_place = parts%value_place
-        call take_number(control%load)
+        call take_set(now%load)
+      case ('BCONTACT')
+        now%contact%place = parts%value_place
+        if (all(upper(parts%value) /= ['ALL ', 'NONE'])) call take_set(now%contact)
+        if (upper(parts%value) == 'ALL') now%contact%id = contact_all
+        if (upper(parts%value) == 'NONE') now%contact%id = contact_none
       case ('ECHO')
         ! Words with commas between, some with options: `SORT(EXCEPT GRID), PUNCH`.
         words = ' '//upper(parts%value)
@@ -113,18 +160,49 @@ contains
         if (all(words /= [' UNSORT', ' SORT  ', ' BOTH  ', ' NONE  '])) &
           call faults%add_note(parts%value_place, 'ECHO: only UNSORT, SORT and BOTH have an effect')
       case ('DISPLACEMENT')
-        control%displacement = says_all()
+        now%displacement = says_all()
       case ('STRESS')
-        control%stress = says_all()
+        now%stress = says_all()
       case ('SPCFORCES')
-        control%spcforces = says_all()
-      case ('SUBCASE', 'NLPARM')
+        now%spcforces = says_all()
+      case ('NLPARM')
         call take_number(unused)
-        if (parts%word == 'NLPARM') call faults%add_note(parts%word_place, 'NLPARM has no effect')
+        call faults%add_note(parts%word_place, 'NLPARM has no effect')
       end select
     end subroutine take_statement
 
-    !> The number of a statement such as `SPC = 1`.
+    !> Does a load case begin on a line?
+    logical function is_subcase(line)
+      integer, intent(in) :: line
+
+      is_subcase = .false.
+      if (lines%blank(line)) return
+      parts = cut(lines%text_of_line(line), line)
+      is_subcase = len(parts%word) > 3 .and. index('SUBCASE', parts%word) == 1
+    end function is_subcase
+
+    !> A load case: what was said before the first of all holds for it, too.
+    subroutine begin_subcase()
+      if (cases == 0) common = now
+      if (cases > 0) control%subcase(cases) = now
+      now = common
+      cases = cases + 1
+      call take_number(now%id)
+      now%place = parts%word_place
+      if (now%id > 0 .and. any(control%subcase(:cases - 1)%id == now%id)) call faults%add_error( &
+        parts%value_place, 'SUBCASE '//text_of(now%id)//' is there twice', 'a number of its own')
+      stated(first_own:) = .false.
+    end subroutine begin_subcase
+
+    !> The set of a statement such as `SPC = 1`.
+    subroutine take_set(set)
+      type(set_choice), intent(inout) :: set
+
+      set%place = parts%value_place
+      call take_number(set%id)
+    end subroutine take_set
+
+    !> The number that a statement says.
     subroutine take_number(number)
       integer, intent(inout) :: number
       integer(i8) :: value
@@ -161,7 +239,7 @@ contains
   pure integer function behind_begin_bulk(lines) result(bulk)
     type(source), intent(in) :: lines
     character(len=:), allocatable :: text
-    integer :: line
+    integer :: cases, line
 
     bulk = 1
     do line = 1, lines%count

@@ -190,7 +190,20 @@ module epcont_deck_catalogue
     '  G5; id; between the first and the second', &
     '  G6; id; between the second and the third', &
     '  G7; id; between the third and the fourth', &
-    '  G8; id; between the fourth and the first']
+    '  G8; id; between the fourth and the first', &
+    'LOAD: sets of loads, each times a factor, under one id', &
+    '  SID; id; set', &
+    '  S; real needed; factor of all', &
+    '  S; real needed each; factor of a set', &
+    '  L; id each; the set', &
+    'SPCD: displacements of a load case, in place of those of SPC', &
+    '  SID; id; set of loads', &
+    '  G1; id; node', &
+    '  C1; digits; directions', &
+    '  D1; real zero cause; displacement [length]', &
+    '  G2; id with_next; second node', &
+    '  C2; digits with_last; directions', &
+    '  D2; real zero cause; displacement [length]']
 
   !> All PARAMs: the field VALUE for each NAME.
   character(len=*), parameter :: choices(*) = [character(len=180) :: &

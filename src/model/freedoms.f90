@@ -115,7 +115,7 @@ contains
     logical :: moved(model%bodies)
     integer :: b, i
 
-    allocate (model%travel(directions, model%nodes), source=0.0_wp)
+    model%travel = spread(spread(0.0_wp, 1, directions), 2, model%nodes)
     model%beyond_travel = model%prescribed
     moved = .false.
     moved(pack(model%body, any(model%prescribed /= 0.0_wp, dim=1))) = .true.

@@ -8,28 +8,40 @@ module epcont_model_pressure
   use epcont_model_model, only: model_type
   implicit none
   private
-  public :: add_pressure
+  public :: add_pressure, find_side
 
 contains
 
-  !> Add the nodal forces of a pressure along a side.
-  pure subroutine add_pressure(model, given, behind)
-    type(model_type), intent(inout) :: model   !! the scene
-    type(side_pressure), intent(in) :: given   !! the pressure; no forces where its element has no section
-    integer, intent(out) :: behind   !! the element that has the side too; 0: none; -1: there is no such side
-    type(edge_point) :: point(edge_point_count)
-    real(wp) :: depth, direction(directions), at_ends(2), value
+  !> The side of a pressure.
+  pure subroutine find_side(model, given, ends, behind)
+    type(model_type), intent(in) :: model      !! the scene
+    type(side_pressure), intent(in) :: given   !! the pressure
+    !> Nodes of the side, counter-clockwise, and its middle, 0 where it has none; 0: there is no such side
+    integer, intent(out) :: ends(3)
+    integer, intent(out) :: behind   !! the element that has the side too; 0: none
     integer, allocatable :: beside(:)
-    integer :: ends(3), k, p
+    integer :: k
 
     ends = model%edge_between(given%element, given%corner(1), given%corner(2))
-    behind = merge(-1, 0, ends(1) == 0)
+    behind = 0
     if (ends(1) == 0 .or. model%section(given%element) == 0) return
     beside = model%with_side(ends(1), ends(2))
     do k = size(beside), 1, -1   ! the element behind goes the other way along the side
       if (all(model%edge_between(beside(k), ends(1), ends(2)) == ends([2, 1, 3]))) behind = beside(k)
     end do
-    at_ends = merge(given%pressure, given%pressure([2, 1]), ends(1) == given%corner(1))
+  end subroutine find_side
+
+  !> Add the nodal forces of a pressure along a side.
+  pure subroutine add_pressure(model, given, share)
+    type(model_type), intent(inout) :: model   !! the scene
+    type(side_pressure), intent(in) :: given   !! the pressure; its element has a section, and the side
+    real(wp), intent(in) :: share              !! factor of the pressure
+    type(edge_point) :: point(edge_point_count)
+    real(wp) :: depth, direction(directions), at_ends(2), value
+    integer :: ends(3), k, p
+
+    ends = model%edge_between(given%element, given%corner(1), given%corner(2))
+    at_ends = share*merge(given%pressure, given%pressure([2, 1]), ends(1) == given%corner(1))
     point = edge_points(model%edge_coordinates(ends))
     do p = 1, edge_point_count
       ! From inward: the element lies to the left

@@ -186,8 +186,8 @@ contains
                         '   elastoplastic contact of plane bodies and rings')
       call listing%line('')
       if (len(run%deck%title) > 0) call say(printable(run%deck%title))
-      if (len(run%deck%subtitle) > 0) call say(printable(run%deck%subtitle))
-      if (len(run%deck%label) > 0) call say(printable(run%deck%label))
+      if (len(run%deck%subcase(1)%subtitle) > 0) call say(printable(run%deck%subcase(1)%subtitle))
+      if (len(run%deck%subcase(1)%label) > 0) call say(printable(run%deck%subcase(1)%label))
       units = run%deck%parameter_word('UNITS')
       if (units == '') units = 'as the deck has them'
       call say('units: '//units)

@@ -2,6 +2,7 @@
 module epcont_report_run
   use epcont_base_diagnostic, only: diagnostics
   use epcont_deck_deck, only: deck_type
+  use epcont_model_load_cases, only: load_cases
   use epcont_report_outcome, only: outcome_type
   use epcont_solution, only: solution_type
   implicit none
@@ -11,6 +12,8 @@ module epcont_report_run
   !> One deck's way, from its cards to its answer.
   type, extends(solution_type) :: run_results
     type(deck_type) :: deck
+    type(load_cases) :: cases
+    integer :: case = 1                           !! the one that is at hand
     type(diagnostics) :: faults
     character(len=:), allocatable :: deck_notes   !! its warnings and notes, in lines
     type(outcome_type) :: outcome
@@ -27,7 +30,8 @@ contains
     class(run_results), intent(in) :: self
     logical, intent(in) :: all_tables   !! on the command line
 
-    wants_nodes = all_tables .or. self%deck%displacement .or. self%deck%spcforces
+    wants_nodes = all_tables .or. self%deck%subcase(self%case)%displacement .or. &
+                  self%deck%subcase(self%case)%spcforces
   end function wants_nodes
 
   !> The table of elements is asked for.
@@ -35,7 +39,7 @@ contains
     class(run_results), intent(in) :: self
     logical, intent(in) :: all_tables   !! on the command line
 
-    wants_elements = all_tables .or. self%deck%stress
+    wants_elements = all_tables .or. self%deck%subcase(self%case)%stress
   end function wants_elements
 
   !> Rows of the tables that grow with a scene.

@@ -1,0 +1,198 @@
+!> Load cases from case control, and what the sets say that they have: FORCE, PLOADX1, LOAD, SPC and SPCD.
+module epcont_build_cases
+  use epcont_base_kinds, only: wp
+  use epcont_base_sorting, only: new_id_index
+  use epcont_base_text, only: short_real, text_of
+  use epcont_build_reference, only: card_index, chosen_sets, note_unused, resolve
+  use epcont_deck_card_kinds, only: card_force, card_load, card_ploadx1, card_spc, card_spc1, card_spcd
+  use epcont_deck_deck, only: deck_type
+  use epcont_deck_entry, only: farthest, least_cause
+  use epcont_model_arrays, only: side_pressure
+  use epcont_model_finding, only: and_more, findings, of_element
+  use epcont_model_load_cases, only: load_case, load_cases, nodal_force, set_displacement, set_pressure
+  use epcont_model_model, only: model_type
+  use epcont_model_pressure, only: find_side
+  implicit none
+  private
+  public :: build_cases
+
+  !> Cards whose first field is a set of loads, which LOAD may combine; and of supports.
+  integer, parameter :: load_cards(*) = [card_force, card_ploadx1, card_spcd]
+  integer, parameter :: support_cards(*) = [card_spc, card_spc1]
+
+contains
+
+  !> The load cases of a deck, and what their sets say.
+  subroutine build_cases(deck, nodes, model, cases, found)
+    type(deck_type), intent(in) :: deck        !! its cards
+    type(card_index), intent(in) :: nodes      !! ids of GRID
+    type(model_type), intent(in) :: model      !! the scene: its mesh
+    type(load_cases), intent(out) :: cases     !! of the scene
+    type(findings), intent(inout) :: found     !! what is wrong with it is added
+    integer, dimension(size(deck%subcase)) :: loads, supports
+    integer, allocatable :: used(:)            ! sets of loads
+    integer :: k
+
+    call chosen_sets(deck, support_cards, deck%subcase%spc, 'SPC', found, supports)
+    call note_unused(deck, support_cards, supports, found)
+    call chosen_sets(deck, [load_cards, card_load], deck%subcase%load, 'LOAD', found, loads)
+    allocate (cases%case(size(loads)))
+    used = [integer ::]
+    do k = 1, size(loads)
+      cases%case(k)%id = deck%subcase(k)%id
+      cases%case(k)%supports = supports(k)
+      call combine(loads(k), cases%case(k))
+      used = [used, cases%case(k)%set]
+    end do
+    call check_combinations()
+    call note_unused(deck, load_cards, used, found)
+    call note_unused(deck, [card_load], loads, found)
+    call add_forces()
+    call add_pressures()
+    call add_displacements(card_spc, supports, cases%held_at)
+    call add_displacements(card_spcd, used, cases%moved)
+
+  contains
+
+    !> The sets that a case has: the one that it chooses, or those that a LOAD combines under that id.
+    subroutine combine(chosen, case)
+      integer, intent(in) :: chosen   !! 0: none
+      type(load_case), intent(inout) :: case
+      integer :: row
+
+      associate (combined => deck%card(card_load))
+        row = findloc(nint(combined%value(1, :)), chosen, dim=1)
+        if (chosen == 0 .or. row == 0) then
+          case%set = pack([chosen], [chosen > 0])
+          case%factor = pack([1.0_wp], [chosen > 0])
+        else
+          associate (item => combined%list(combined%list_start(row):combined%list_start(row + 1) - 1))
+            case%set = nint(item%number(2))
+            case%factor = combined%number('S', row)*item%number(1)
+          end associate
+        end if
+      end associate
+    end subroutine combine
+
+    !> LOAD combines sets of other cards, by an id that is none of theirs.
+    subroutine check_combinations()
+      integer, allocatable :: id(:)   ! sets of loads
+      integer :: i, item, set
+
+      associate (combined => deck%card(card_load))
+        id = [(nint(deck%card(load_cards(i))%value(1, :)), i=1, size(load_cards))]
+        do i = 1, combined%count
+          if (.not. (combined%sound(i) .and. deck%whole)) cycle
+          if (any(id == nint(combined%value(1, i)))) &
+            call found%add_error(card_load, i, 1, ': the id is that of a set of loads', 'an id of its own')
+          do item = combined%list_start(i), combined%list_start(i + 1) - 1
+            set = nint(combined%list(item)%number(2))
+            if (any(id == set)) cycle
+            call found%add_error(card_load, i, -item, ': there is no set '//text_of(set)//' of loads', &
+                                 'the set of FORCE, PLOADX1 or SPCD cards')
+          end do
+        end do
+      end associate
+    end subroutine check_combinations
+
+    !> FORCE.
+    subroutine add_forces()
+      integer :: i, node(deck%card(card_force)%count)
+      real(wp) :: direction(2), factor, largest
+
+      call resolve(deck, card_force, 2, nodes, found, node)
+      associate (force => deck%card(card_force))
+        node = merge(node, 0, [(any(used == nint(force%value(1, i))), i=1, size(node))])
+        allocate (cases%force(count(node > 0)))
+        cases%force%set = pack(nint(force%value(1, :)), node > 0)
+        cases%force%node = pack(node, node > 0)
+        do i = 1, force%count
+          if (node(i) == 0) cycle
+          factor = force%number('F', i)
+          direction = [force%number('N1', i), force%number('N2', i)]
+          largest = maxval(abs(direction))
+          if (force%number('N3', i) /= 0.0_wp) &
+            call found%add_error(card_force, i, force%column('N3'), ': field 8 (N3) points off the plane', &
+                                 '0.0: scenes lie in the x-y plane')
+          ! Not zero, but of a size that no field may give it.
+          if (factor /= 0.0_wp .and. largest > 0.0_wp .and. &
+              (abs(factor)*largest < least_cause .or. abs(factor)*largest > farthest)) &
+            call found%add_error(card_force, i, force%column('F'), &
+                                 ': field 5 (F) times the vector of N1 and N2 is too far from 1.0', &
+                                 'other units: forces from '//short_real(least_cause)//' to '// &
+                                 short_real(farthest)//', or 0.0')
+          ! What rounding has left of a right angle, such as the cosine of 90 degrees, is no direction.
+          where (abs(direction) < epsilon(1.0_wp)*largest) direction = 0.0_wp
+          cases%force(count(node(:i) > 0))%force = factor*direction
+        end do
+      end associate
+    end subroutine add_forces
+
+    !> PLOADX1; one warning for all that press inside a body.
+    subroutine add_pressures()
+      integer, dimension(deck%card(card_ploadx1)%count) :: a, b, behind, element
+      type(card_index) :: elements
+      type(set_pressure) :: all_of_them(size(a))
+      logical :: acts(size(a))
+      integer :: ends(3), ga, i
+
+      elements = card_index(new_id_index(model%element_id), 'element', found%errors == 0)
+      behind = 0
+      acts = .false.
+      associate (pressure => deck%card(card_ploadx1))
+        ga = pressure%column('GA')
+        call resolve(deck, card_ploadx1, 2, elements, found, element)
+        call resolve(deck, card_ploadx1, ga, nodes, found, a)
+        call resolve(deck, card_ploadx1, ga + 1, nodes, found, b)
+        do i = 1, pressure%count
+          if (element(i) == 0 .or. a(i) == 0 .or. b(i) == 0) cycle
+          if (all(used /= nint(pressure%value(1, i)))) cycle
+          if (any(model%connectivity(:model%node_count(element(i)), element(i)) == 0)) cycle
+          all_of_them(i)%set = nint(pressure%value(1, i))
+          all_of_them(i)%given = side_pressure(element(i), [a(i), b(i)], pressure%value(3:4, i), &
+                                               pressure%number('THETA', i))
+          call find_side(model, all_of_them(i)%given, ends, behind(i))
+          acts(i) = model%section(element(i)) > 0
+          if (ends(1) == 0) &
+            call found%add_error(card_ploadx1, i, ga, ': GA and GB are not the ends of a side of '// &
+                                 model%name_of(of_element, element(i)), &
+                                 'two neighbouring corners of the element')
+        end do
+      end associate
+      cases%pressure = pack(all_of_them, acts)
+      if (all(behind == 0)) return
+      i = findloc(behind > 0, .true., dim=1)
+      call found%add_warning(card_ploadx1, i, ga, ': presses inside a body, between '// &
+                             model%name_of(of_element, element(i))//' and '// &
+                             model%name_of(of_element, behind(i))// &
+                             and_more(count(behind > 0), '; so do ', ' more'), &
+                             'a side that one element alone has')
+    end subroutine add_pressures
+
+    !> SPC and SPCD: nodes, directions and displacements, of the sets that are used.
+    subroutine add_displacements(card, sets, displacements)
+      integer, intent(in) :: card, sets(:)
+      type(set_displacement), allocatable, intent(out) :: displacements(:)
+      type(findings) :: unheard   ! of SPC all is told by the supports
+      integer :: c, i, k, last, node(deck%card(card)%count)
+
+      last = 0
+      allocate (displacements(4*size(node)))   ! two nodes a card, in two directions
+      do k = 2, 5, 3
+        if (card == card_spc) call resolve(deck, card, k, nodes, unheard, node)
+        if (card == card_spcd) call resolve(deck, card, k, nodes, found, node)
+        do i = 1, size(node)
+          associate (value => deck%card(card)%value(:, i))
+            if (node(i) == 0 .or. all(sets /= nint(value(1)))) cycle
+            do c = 1, 2
+              if (all(mod(nint(value(k + 1))/10**[0, 1, 2, 3, 4, 5], 10) /= c)) cycle
+              last = last + 1
+              displacements(last) = set_displacement(nint(value(1)), c, node(i), value(k + 2))
+            end do
+          end associate
+        end do
+      end do
+      displacements = displacements(:last)
+    end subroutine add_displacements
+  end subroutine build_cases
+end module epcont_build_cases

@@ -1,0 +1,115 @@
+!> The load cases of a scene: what sets of loads and supports say, and which of them each case has. A scene
+!> bears one case at a time (`put_case`).
+module epcont_model_load_cases
+  use epcont_base_kinds, only: wp
+  use epcont_element_kinematics, only: directions
+  use epcont_model_arrays, only: side_pressure
+  use epcont_model_freedoms, only: find_travels
+  use epcont_model_model, only: model_type
+  use epcont_model_pressure, only: add_pressure
+  implicit none
+  private
+  public :: load_case, load_cases, put_case
+
+  !> A force at a node.
+  type, public :: nodal_force
+    integer :: set = 0                          !! by its id
+    integer :: node = 0
+    real(wp) :: force(directions) = 0.0_wp      !! [force]
+  end type nodal_force
+
+  !> A pressure along a side of an element.
+  type, public :: set_pressure
+    integer :: set = 0                          !! by its id
+    type(side_pressure) :: given
+  end type set_pressure
+
+  !> A displacement of a freedom that supports hold.
+  type, public :: set_displacement
+    integer :: set = 0                          !! by its id
+    integer :: c = 0, node = 0                  !! direction and node
+    real(wp) :: displacement = 0.0_wp           !! [length]
+  end type set_displacement
+
+  !> Which sets a case has.
+  type :: load_case
+    integer :: id = 0                           !! of its SUBCASE; 0: the deck has none
+    integer, allocatable :: set(:)              !! of loads, by their ids
+    real(wp), allocatable :: factor(:)          !! of each
+    integer :: supports = 0                     !! set of supports, by its id; 0: none
+  end type load_case
+
+  !> All cases, and what their sets say.
+  type :: load_cases
+    type(load_case), allocatable :: case(:)
+    type(nodal_force), allocatable :: force(:)             !! FORCE
+    type(set_pressure), allocatable :: pressure(:)         !! PLOADX1
+    type(set_displacement), allocatable :: held_at(:)      !! SPC, of sets of supports; others are held at 0
+    type(set_displacement), allocatable :: moved(:)        !! SPCD, of sets of loads: instead of those
+  end type load_cases
+
+contains
+
+  !> Put a load case on a scene, in place of the one before.
+  pure subroutine put_case(cases, k, model)
+    type(load_cases), intent(in) :: cases      !! all of them
+    integer, intent(in) :: k                   !! which
+    type(model_type), intent(inout) :: model   !! the scene
+    real(wp) :: share
+    integer :: i
+
+    associate (case => cases%case(k))
+      model%load = 0.0_wp
+      do i = 1, size(cases%force)
+        share = share_of(case, cases%force(i)%set)
+        associate (load => model%load(:, cases%force(i)%node))
+          if (share /= 0.0_wp) load = load + share*cases%force(i)%force
+        end associate
+      end do
+      do i = 1, size(cases%pressure)
+        share = share_of(case, cases%pressure(i)%set)
+        if (share /= 0.0_wp) call add_pressure(model, cases%pressure(i)%given, share)
+      end do
+    end associate
+    call put_displacements(cases, cases%case(k), model%prescribed)
+    call find_travels(model)
+
+  end subroutine put_case
+
+  !> What supports prescribe in a case.
+  pure subroutine put_displacements(cases, case, prescribed)
+    type(load_cases), intent(in) :: cases
+    type(load_case), intent(in) :: case
+    real(wp), intent(out) :: prescribed(:, :)   !! [length] [2, nodes]
+    integer :: i
+
+    prescribed = 0.0_wp
+    do i = 1, size(cases%held_at)
+      associate (at => cases%held_at(i))
+        if (at%set == case%supports) prescribed(at%c, at%node) = at%displacement
+      end associate
+    end do
+    do i = 1, size(cases%moved)   ! SPCD stands in place of SPC
+      associate (at => cases%moved(i))
+        if (share_of(case, at%set) /= 0.0_wp) prescribed(at%c, at%node) = 0.0_wp
+      end associate
+    end do
+    do i = 1, size(cases%moved)
+      associate (at => cases%moved(i))
+        prescribed(at%c, at%node) = prescribed(at%c, at%node) + share_of(case, at%set)*at%displacement
+      end associate
+    end do
+  end subroutine put_displacements
+
+  !> The factor of a set of loads in a case; 0 where it is none of it.
+  pure real(wp) function share_of(case, set) result(share)
+    type(load_case), intent(in) :: case
+    integer, intent(in) :: set
+    integer :: i
+
+    share = 0.0_wp
+    do i = 1, size(case%set)
+      if (case%set(i) == set) share = share + case%factor(i)
+    end do
+  end function share_of
+end module epcont_model_load_cases
