@@ -42,6 +42,15 @@ module epcont_solution
   !> So many times the load steps, where those asked for did not lead to an answer.
   integer, parameter :: more_steps = 5
 
+  !> What load cases hand on, where another follows (`follow_loads`).
+  type :: kept_factors
+    logical :: another = .false.         !! case follows
+    integer :: precision = precision_double   !! of the factors
+    type(linear_problem), allocatable :: linear, virgin
+  contains
+    procedure :: forget
+  end type kept_factors
+
   !> A scene with its answer, and what that is worth. Where a body's stiffness could not be factored
   !! (`answer%failed_body`), or without contact equilibrium (`answer%contact%state`), there are no
   !! displacements.
@@ -49,6 +58,8 @@ module epcont_solution
     type(answer_type) :: answer
     type(certificate_type) :: certificate
     type(accuracy_type) :: accuracy
+    type(kept_factors) :: kept           !! from load case to load case
+    logical :: replanned = .false.       !! the last solve has changed pairs or plan
   contains
     procedure :: solve
   end type solution_type
@@ -65,6 +76,7 @@ contains
     integer :: count
     logical :: entered, failed
 
+    self%replanned = .false.
     do count = 1, most_solves + 1   ! one more, should joined bodies have to be solved apart
       call check_memory(self%expected%bytes, limit, error)
       if (allocated(error)) return
@@ -72,36 +84,48 @@ contains
       if (allocated(in_double)) self%iteration%against_double = in_double%message
       self%iteration%threads = plan_threads(self%numbering, self%expected%bytes, granted_threads())
       call watch%expect(self%iteration, self%model%controls%most_iterations, self%expected)
-      call analyse(self%planned_scene, self%answer, self%certificate, self%accuracy, watch, failed)
+      call analyse(self%planned_scene, self%kept, self%answer, self%certificate, self%accuracy, watch, &
+                   failed)
       if (failed) then
         self%apart = .true.
-        call self%make_plan(watch)
-        cycle
+      else
+        if (self%answer%failed_body > 0 .or. count >= most_solves) exit
+        call enter_nodes_that_came_near(self%model, self%answer%displacement, &
+            self%answer%contact%touching, entered)
+        if (.not. entered) exit
       end if
-      if (self%answer%failed_body > 0 .or. count >= most_solves) exit
-      call enter_nodes_that_came_near(self%model, self%answer%displacement, &
-          self%answer%contact%touching, entered)
-      if (.not. entered) exit
+      self%replanned = .true.
+      call self%kept%forget()
       call self%make_plan(watch)
     end do
+    if (.not. self%kept%another) call self%kept%forget()
   end subroutine solve
 
+  !> Factors are made anew for the next solve, or are no longer wanted.
+  pure subroutine forget(self)
+    class(kept_factors), intent(inout) :: self
+
+    if (allocated(self%linear)) deallocate (self%linear)
+    if (allocated(self%virgin)) deallocate (self%virgin)
+  end subroutine forget
+
   !> Solve the scene as it is.
-  subroutine analyse(scene, answer, certificate, accuracy, watch, failed)
+  subroutine analyse(scene, kept, answer, certificate, accuracy, watch, failed)
     type(planned_scene), intent(in) :: scene
+    type(kept_factors), intent(inout) :: kept
     type(answer_type), intent(out) :: answer
     type(certificate_type), intent(out) :: certificate
     type(accuracy_type), intent(out) :: accuracy
     class(observer), intent(inout) :: watch
     logical, intent(out) :: failed      !! joined bodies are to be solved apart
-    type(linear_problem), allocatable :: linear
     type(contact_line) :: line
 
     call solve_as_planned()
-    failed = linear%joined%failed .or. &
+    failed = kept%linear%joined%failed .or. &
              scene%numbering%joined .and. answer%failed_body > 0 .and. .not. answer%lacks_memory
     if (failed .or. is_without_displacements()) return
-    if (scene%numbering%joined) failed = .not. linear%joined%are_unique(scene, linear%factored_bodies)
+    if (scene%numbering%joined) &
+      failed = .not. kept%linear%joined%are_unique(scene, kept%linear%factored_bodies)
     call watch%lap(stage_contact)
     if (failed) return
     line = find_contact_line(scene%model)
@@ -115,7 +139,7 @@ contains
       call evaluate_refined()
     end if
     call use_tangent()
-    call assess(scene, linear, line, answer, accuracy)
+    call assess(scene, kept%linear, line, answer, accuracy)
     ! An open pair does not press.
     where (.not. answer%contact%touching .and. answer%pressure > 0.0_wp) answer%pressure = -1.0_wp
     call watch%lap(stage_accuracy)
@@ -136,8 +160,8 @@ contains
 
       if (.not. answer%converged .or. scene%model%controls%paper_ratio .or. .not. any(answer%plastic)) return
       if (scene%iteration%method == method_newton .or. answer%history(size(answer%history))%by_tangent) return
-      call linearise(scene, tangent, answer%scene_state, linear, watch)
-      call factor_law(scene, tangent, answer%scene_state, linear, failed_body, watch)
+      call linearise(scene, tangent, answer%scene_state, kept%linear, watch)
+      call factor_law(scene, tangent, answer%scene_state, kept%linear, failed_body, watch)
       if (failed_body > 0) answer%condition = huge(1.0_wp)
     end subroutine use_tangent
 
@@ -155,7 +179,7 @@ contains
           found = answer
           found_certificate = certificate
         end if
-        call linear%sharpen(scene, answer%load_factor, answer%scene_state, answer%last_correction, watch)
+        call kept%linear%sharpen(scene, answer%load_factor, answer%scene_state, answer%last_correction, watch)
         call evaluate()
       end do
       ! Gaps far below a travel are rounding, and contact found from them is out of balance.
@@ -169,10 +193,10 @@ contains
     subroutine evaluate()
       logical, allocatable :: touching(:)
 
-      if (linear%materials%yields .and. .not. allocated(answer%point)) &
-        answer%point = linear%materials%states(answer%strain)
-      associate (model => scene%model, force => answer%contact%force, volume => linear%operator%volume)
-        call recover_stresses(model, linear, answer%load_factor*model%load + pair_forces(model, force), &
+      if (kept%linear%materials%yields .and. .not. allocated(answer%point)) &
+        answer%point = kept%linear%materials%states(answer%strain)
+      associate (model => scene%model, force => answer%contact%force, volume => kept%linear%operator%volume)
+        call recover_stresses(model, kept%linear, answer%load_factor*model%load + pair_forces(model, force), &
                               answer)
         answer%locking = find_locking(model, volume, answer%stress, answer%equivalent_stress, &
             answer%secant_modulus)
@@ -218,13 +242,16 @@ contains
 
       plan = scene%iteration
       plan%precision = precision
-      call follow_loads(scene, plan, linear, answer%followed_loads, watch)
+      if (kept%precision /= precision) call kept%forget()
+      kept%precision = precision
+      call follow_loads(scene, plan, kept%another, kept%linear, kept%virgin, answer%followed_loads, watch)
       ! What the first solve does not find, steps do not; single precision is followed by double.
       if (plan%chosen_here .and. plan%yields .and. precision == precision_double .and. &
           size(answer%history) > 1 .and. &
           .not. (answer%converged .or. answer%runs_away .or. answer%lacks_memory)) then
         plan%load_steps = more_steps*plan%load_steps
-        call follow_loads(scene, plan, linear, answer%followed_loads, watch)
+        deallocate (kept%linear)
+        call follow_loads(scene, plan, kept%another, kept%linear, kept%virgin, answer%followed_loads, watch)
       end if
       answer%precision = precision
       answer%load_steps = plan%load_steps

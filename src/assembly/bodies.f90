@@ -87,6 +87,7 @@ contains
     type(planned_scene), intent(in) :: scene   !! that they are of
     real(wp), allocatable :: prescribed(:, :)
 
+    self%settlement = 0.0_wp
     if (all(scene%model%beyond_travel == 0.0_wp)) return
     allocate (prescribed(directions, scene%model%nodes), source=0.0_wp)
     call prescribe(scene, 1.0_wp, prescribed)

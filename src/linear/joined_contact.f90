@@ -51,6 +51,7 @@ module epcont_linear_joined_contact
     type(motion_matrix), private :: motion         !! A, closing of the gaps by the motions [length]
     type(rigid_start), private :: rigid            !! whether rigid bodies can carry the loads
   contains
+    procedure :: take_case
     procedure :: factor
     procedure :: solve
     procedure :: respond
@@ -69,17 +70,35 @@ contains
     integer, intent(in) :: threads                     !! that share the fronts
     class(factored_bodies), intent(inout) :: bodies    !! with a law; their springs are made
     type(joined_contact), intent(out) :: joined
-    type(motion_matrix) :: scaled
 
     joined%threads = threads
     joined%motion = motion
-    scaled = motion%over(motion%units())
-    call find_rigid_start(scaled, resultant/motion%units(), spread(0.0_wp, 1, motion%pairs), joined%rigid)
-    if (.not. joined%rigid%balanced) return
-    call find_springs(scene, bodies, joined%rigid%redundant, joined%gamma, joined%hold)
-    joined%compliance = half_plane*of_pairs/joined%gamma
-    allocate (joined%closed(scene%model%pairs), source=.true.)
+    call joined%take_case(scene, resultant, bodies)
   end subroutine new_joined
+
+  !> A load case: whether rigid bodies can carry it, and the springs of motions that it does not need held.
+  subroutine take_case(self, scene, resultant, bodies)
+    class(joined_contact), intent(inout) :: self
+    type(planned_scene), intent(in) :: scene           !! numbered as one system
+    real(wp), intent(in) :: resultant(:)               !! P, loads along the motions [force] [motions]
+    class(factored_bodies), intent(inout) :: bodies    !! with a law; their springs are made
+    logical, allocatable :: redundant(:)               ! of the case before
+
+    self%failed = .false.
+    if (allocated(self%gamma)) redundant = self%rigid%redundant
+    associate (unit => self%motion%units())
+      call find_rigid_start(self%motion%over(unit), resultant/unit, spread(0.0_wp, 1, self%motion%pairs), &
+                            self%rigid)
+    end associate
+    if (.not. self%rigid%balanced) return
+    if (allocated(redundant)) then
+      if (all(redundant .eqv. self%rigid%redundant)) return
+    end if
+    if (allocated(self%last)) deallocate (self%last)
+    call find_springs(scene, bodies, self%rigid%redundant, self%gamma, self%hold)
+    self%compliance = half_plane*of_pairs/self%gamma
+    self%closed = spread(.true., 1, scene%model%pairs)
+  end subroutine take_case
 
   !> Factor the bodies with the springs of the set of contacts, as far as law or springs have changed.
   subroutine factor(self, scene, bodies, sound, watch)

@@ -38,8 +38,8 @@ contains
     gamma = [(of_pairs*softer_side(k), k=1, scene%model%pairs)]
     softest = stiffness_of_softest()
     springs = size(scene%numbering%body(1)%spring%start) - 1
-    allocate (bodies%spring%stiffness(springs), source=0.0_wp)
-    allocate (bodies%spring%changed(springs), source=.true.)
+    bodies%spring%stiffness = spread(0.0_wp, 1, springs)
+    bodies%spring%changed = spread(.true., 1, springs)
     associate (own => stiffness(scene%motions%node))
       hold = merge(own, max(of_suport*softest, least_pivot*own), redundant)
     end associate

@@ -37,10 +37,12 @@ module epcont_linear_linear_problem
     type(flexibility_matrix), private :: lasting_flexibility   !! of bodies that cannot yield, if others can
     type(scene_state), allocatable, private :: last  !! found by refinement, from which the next begins
     type(contact_basis) :: basis   !! of the last contact with this flexibility
+    logical, allocatable :: touching(:)      !! pairs in contact then: the next begins with them [pairs]
     type(joined_contact) :: joined   !! instead, where bodies are one system
     real(wp), allocatable, private :: travel_gap(:)  !! opened by what supports travel [length] [pairs]
     real(wp), allocatable, private :: resultant(:)   !! of all loads along the free motions [motions]
   contains
+    procedure :: take_case
     procedure :: set_stiffness
     procedure :: solve
     procedure :: sharpen
@@ -59,11 +61,33 @@ contains
     call find_materials(scene%model, linear%materials)
     linear%factored_bodies = new_bodies(scene, plan%precision /= precision_double)
     linear%problem%initial_gap = scene%model%initial_gap
-    linear%travel_gap = gap_opening(scene%model, scene%model%travel)
-    call see_motions(scene%model, scene%motions, linear%problem%motion, linear%resultant)
     linear%problem%travel = scene%motions%travels(scene%model)
     linear%problem%body = scene%motions%body
+    call see_case(linear, scene)
   end subroutine new_linear_problem
+
+  !> What loads and supports of the scene's load case do to gaps and motions.
+  subroutine see_case(self, scene)
+    class(linear_problem), intent(inout) :: self
+    type(planned_scene), intent(in) :: scene
+
+    self%travel_gap = gap_opening(scene%model, scene%model%travel)
+    call see_motions(scene%model, scene%motions, self%problem%motion, self%resultant)
+  end subroutine see_case
+
+  !> Another load case of the scene, with the factors that there are: those of the elastic bodies.
+  subroutine take_case(self, scene)
+    class(linear_problem), intent(inout) :: self
+    type(planned_scene), intent(in) :: scene    !! that it was made for, with that case
+
+    call see_case(self, scene)
+    if (allocated(self%last)) deallocate (self%last)
+    if (scene%numbering%joined) then
+      call self%joined%take_case(scene, self%resultant, self%factored_bodies)
+    else
+      call self%settle(scene)
+    end if
+  end subroutine take_case
 
   !> Factor the bodies and invert for the flexibility; after the first time only bodies that can yield, as far
   !! as the law of their elements has changed.

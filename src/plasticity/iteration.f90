@@ -60,18 +60,22 @@ module epcont_plasticity_iteration
 
 contains
 
-  !> Load by load to the answer.
-  subroutine follow_loads(scene, plan, linear, answer, watch)
+  !> Load by load to the answer. Of several load cases the first is one without `linear`; the others have it
+  !! from the one before, and the factors of the unloaded state.
+  subroutine follow_loads(scene, plan, keeps, linear, virgin, answer, watch)
     type(planned_scene), intent(in) :: scene                   !! what is loaded
     type(iteration_plan), intent(in) :: plan                   !! how; it may differ from the scene's
-    type(linear_problem), allocatable, intent(out) :: linear   !! as the last solve left it
+    logical, intent(in) :: keeps                               !! another load case may follow
+    type(linear_problem), allocatable, intent(inout) :: linear   !! as the last solve left it
+    !> With factors of the unloaded state, where these will be wanted and the bodies yield
+    type(linear_problem), allocatable, intent(inout) :: virgin
     type(followed_loads), intent(out) :: answer                !! what came of it
     class(observer), intent(inout) :: watch                    !! takes the time, and is told of each solve
     class(secant_method), allocatable :: method
     type(scene_state) :: about                ! that the law is about
     type(scene_state), allocatable :: state   ! found at this load
     type(iteration_record) :: now             ! of the last solve
-    logical, allocatable :: touching(:)       ! the last contact set: the next simplex starts from it [pairs]
+    logical, allocatable :: touching(:)       ! the last contact set: the next contact starts from it [pairs]
     real(wp), allocatable :: force(:)         ! the last contact forces [force] [pairs]
     ! The last displacements, g of x, and g - x; by how much both had changed: |dg|/|d(g - x)| of the steps at
     ! this load, the contact forces' [force/length].
@@ -83,14 +87,14 @@ contains
     logical :: stiff                          ! the scene has been factored
     logical :: elastic                        ! with the law of a state that has not yielded
     logical :: converged
-    integer :: failed_body, step
+    integer :: failed_body, factored_before, step
 
     call begin()
     call watch%lap(stage_stiffness)
     do step = 1, plan%load_steps
       load_factor = real(step, wp)/plan%load_steps
       call iterate()
-      answer%factorizations = linear%factorizations
+      answer%factorizations = linear%factorizations - factored_before
       answer%lacks_memory = any(linear%body%lacks_memory)
       if (answer%failed_body > 0) return
       ! Of a load that was not carried nothing is kept, if one was before.
@@ -111,21 +115,29 @@ contains
       call watch%lap(stage_yielding)
     end do
     answer%converged = converged
+    call move_alloc(touching, linear%touching)
 
   contains
 
     !> The state without loads.
     subroutine begin()
-      allocate (linear)
-      call new_linear_problem(scene, plan, linear)
+      if (allocated(virgin)) linear = virgin
+      stiff = allocated(linear)
+      elastic = stiff
+      if (stiff) then
+        call linear%take_case(scene)
+        call move_alloc(linear%touching, touching)
+      else
+        allocate (linear)
+        call new_linear_problem(scene, plan, linear)
+      end if
+      factored_before = linear%factorizations
       allocate (about%displacement(directions, scene%model%nodes), source=0.0_wp)
       allocate (about%strain(components, scene%model%points), source=0.0_wp)
       allocate (force(scene%model%pairs), strained(scene%model%points), source=0.0_wp)
       if (linear%materials%yields) about%point = linear%materials%states(about%strain)
       allocate (answer%history(0), answer%pivot(0))
       yielded = 0
-      stiff = .false.
-      elastic = .false.
     end subroutine begin
 
     !> The method, which knows nothing yet: so it begins at each load.
@@ -206,6 +218,7 @@ contains
       elastic = yielded == 0
       call factor_law(scene, method, about, linear, failed_body, watch)
       stiff = .true.
+      if (keeps .and. elastic .and. linear%materials%yields .and. .not. allocated(virgin)) virgin = linear
     end subroutine set_law
 
     !> Add a solve to the history, what it has changed and left. Was it the last, or a further one by tangent?

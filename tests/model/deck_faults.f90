@@ -4,6 +4,7 @@ module deck_faults
   use epcont_deck_deck, only: deck_type
   use epcont_base_diagnostic, only: diagnostics
   use epcont_deck_render, only: render
+  use epcont_model_load_cases, only: load_cases
   use epcont_build_build, only: build_model, tell
   use epcont_model_model, only: model_type
   use epcont_plan_planned_scene, only: planned_scene
@@ -40,10 +41,11 @@ contains
     character(len=:), allocatable :: words
     type(deck_type) :: deck
     type(diagnostics) :: faults
+    type(load_cases) :: cases
     type(planned_scene) :: scene
 
     call read_lines(cards//'ENDDATA|', deck, faults)
-    call build_model(deck, scene%model, faults)
+    call build_model(deck, scene%model, cases, faults)
     if (faults%errors == 0) call scene%find_motions(faults)
     call tell(deck, scene%model%kinds, faults)
     words = bars(render(faults, deck%source))
@@ -55,9 +57,10 @@ contains
     type(model_type) :: model
     type(deck_type) :: deck
     type(diagnostics) :: faults
+    type(load_cases) :: cases
 
     call read_lines(cards//'ENDDATA|', deck, faults)
-    call build_model(deck, model, faults)
+    call build_model(deck, model, cases, faults)
     if (faults%errors > 0) error stop 'deck_faults: the deck is not sound'
   end function model_of
 end module deck_faults
