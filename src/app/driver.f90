@@ -6,16 +6,17 @@ module epcont_app_driver
   use epcont_app_progress_display, only: progress_type, timing_text
   use epcont_base_error, only: error_type, status_deck, status_valid
   use epcont_base_kinds, only: i8, wp
-  use epcont_base_text, only: newline, shown
+  use epcont_base_text, only: newline, shown, text_of
   use epcont_build_build, only: build_model, tell
   use epcont_deck_deck, only: read_deck
   use epcont_deck_render, only: render, render_notes
   use epcont_linalg_rate, only: measured_rate
+  use epcont_model_load_cases, only: put_case
   use epcont_report_columns, only: known, listed_number, number, right
   use epcont_report_file, only: file_lock, lock_files, unlock_files
   use epcont_report_outcome, only: judge, limit_of_pressure, reason_of, remark_lines
   use epcont_report_plan_text, only: plan_text
-  use epcont_report_results, only: remove_results, write_results
+  use epcont_report_results, only: remove_results, results_type
   use epcont_report_run, only: run_results
   use epcont_system_large_pages, only: heap_step, take_heap
   use epcont_system_memory, only: peak_memory
@@ -34,6 +35,7 @@ contains
     character(len=:), allocatable :: name, stem   ! of the deck, shown; of the results, with folder
     type(progress_type) :: watch
     type(run_results) :: run
+    type(results_type) :: results
     type(error_type), allocatable :: error
     type(file_lock) :: lock
     logical :: writes, written   ! results are wanted; they are written, as far as that could be done
@@ -82,15 +84,49 @@ contains
       end if
       run%deck_notes = render_notes(run%faults, run%deck%source)
       call run%deck%forget_text()
-      call run%solve(arguments%memory, watch, error)
-      if (allocated(error)) then
-        error%message = path//': '//error%message
-        return
-      end if
+      call solve_cases()
+    end subroutine solve_deck
+
+    !> All load cases, one after the other; from the first again where one has changed the pairs of the scene.
+    subroutine solve_cases()
+      integer :: worst
+
+      results%stem = stem
+      results%all_tables = arguments%asks('--tables')
+      results%brief = arguments%asks('--brief')
+      results%vtk = arguments%asks('--vtk')
+      call results%begin()
+      worst = status_valid
+      run%case = 1
+      do while (run%case <= size(run%cases%case))
+        if (run%has_cases()) call put_case(run%cases, run%case, run%model)
+        run%kept%another = run%case < size(run%cases%case)
+        call run%solve(arguments%memory, watch, error)
+        if (allocated(error)) then
+          error%message = path//': '//error%message
+          return
+        end if
+        if (run%replanned .and. run%case > 1) then
+          call results%begin()
+          worst = status_valid
+          run%case = 1
+          cycle
+        end if
+        call take_case()
+        if (allocated(error)) return
+        worst = max(worst, status)
+        run%case = run%case + 1
+      end do
+      call results%finish(run, error)
+      call watch%lap(stage_writing)
+      status = worst
+    end subroutine solve_cases
+
+    !> Judge a load case, and say and write what came of it.
+    subroutine take_case()
       run%outcome = judge(run)
       status = run%outcome%status
-      call write_results(run, stem, arguments%asks('--tables'), arguments%asks('--brief'), &
-                         arguments%asks('--vtk'), error)
+      call results%add_case(run, error)
       written = .true.
       call watch%lap(stage_writing)
       call watch%erase()
@@ -98,7 +134,7 @@ contains
       call say_lines(remark_lines(run%outcome%found, .false.))
       if (len(run%outcome%sentence) > 0) call say_lines(run%outcome%sentence//newline)
       call say(one_line())
-    end subroutine solve_deck
+    end subroutine take_case
 
     !> What the run would take on this machine: on standard error, since plans are compared.
     subroutine say_forecast()
@@ -132,7 +168,7 @@ contains
       from = 1
       do while (from <= len(text))
         to = from + index(text(from:), newline) - 2
-        call print_error(shown(path)//': '//text(from:to + 1))
+        call print_error(shown(path)//case_name()//': '//text(from:to + 1))
         from = to + 2
       end do
     end subroutine say_lines
@@ -144,12 +180,20 @@ contains
       if (.not. arguments%asks('--quiet')) call print_text(text, status)
     end subroutine say
 
+    !> Which load case is meant, where there are several.
+    pure function case_name() result(text)
+      character(len=:), allocatable :: text
+
+      text = ''
+      if (run%has_cases()) text = ' SUBCASE '//text_of(run%deck%subcase(run%case)%id)
+    end function case_name
+
     !> Stem, status, largest pressure, first approach; of a pressure that has no limit, or none that the mesh
     !! shows, that too.
     pure function one_line() result(text)
       character(len=:), allocatable :: limit, text
 
-      text = name//'  '//run%outcome%word
+      text = name//case_name()//'  '//run%outcome%word
       if (.not. run%outcome%has_answer) return
       if (run%model%pairs > 0) then
         text = text//'  p_max'//right(listed_number(known, run%answer%largest_pressure(), 0.0_wp), 13)

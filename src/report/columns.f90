@@ -45,12 +45,15 @@ module epcont_report_columns
   !> A table that is being written, to the listing or to a file of its own.
   type, extends(text_file) :: table_type
     logical :: listed = .true.                       !! in the listing
+    integer :: subcase = 0                           !! of the rows of a file that has several; 0: it has not
     type(column), allocatable, private :: column(:)
     integer, allocatable, private :: nth(:)          !! which value of its sort each of them has in a row
     real(wp), allocatable, private :: scale(:)       !! of each number in a row
   contains
     procedure :: begin
     procedure :: row
+    procedure :: head
+    procedure :: csv
     procedure, private :: write_cells
   end type table_type
 
@@ -91,8 +94,45 @@ contains
     self%scale = spread(0.0_wp, 1, size(columns))
     if (present(scale)) self%scale = scale
     if (self%listed .and. title /= '') call self%heading(title)
-    call self%write_cells(merge(columns%head, columns%name, self%listed .and. columns%head /= ''))
+    if (self%listed) then
+      call self%write_cells(merge(columns%head, columns%name, columns%head /= ''))
+    else
+      call self%head(names_of(columns))
+    end if
+
+  contains
+
+    !> Their names in a file.
+    pure function names_of(columns) result(text)
+      type(column), intent(in) :: columns(:)
+      character(len=:), allocatable :: text
+      integer :: k
+
+      text = ''
+      do k = 1, size(columns)
+        if (columns(k)%name /= '') text = text//','//trim(columns(k)%name)
+      end do
+      text = text(2:)
+    end function names_of
   end subroutine begin
+
+  !> The names of the columns of a file, before the rows of its first load case.
+  subroutine head(self, names)
+    class(table_type), intent(inout) :: self
+    character(len=*), intent(in) :: names   !! commas between them
+
+    if (self%subcase == 0) call self%line(names)
+    if (self%subcase > 0 .and. self%is_empty()) call self%line('subcase,'//names)
+  end subroutine head
+
+  !> A row of a file.
+  subroutine csv(self, cells)
+    class(table_type), intent(inout) :: self
+    character(len=*), intent(in) :: cells   !! commas between them
+
+    if (self%subcase == 0) call self%line(cells)
+    if (self%subcase > 0) call self%line(text_of(self%subcase)//','//cells)
+  end subroutine csv
 
   !> Write a row.
   subroutine row(self, wholes, numbers, words)
@@ -140,7 +180,8 @@ contains
         end if
       end associate
     end do
-    call self%line(text(merge(1, 2, self%listed):))
+    if (self%listed) call self%line(text)
+    if (.not. self%listed) call self%csv(text(2:))
   end subroutine write_cells
 
   !> Text at the right of `width` columns; wider text is kept whole.

@@ -14,13 +14,17 @@ module epcont_report_file
 
   !> Between `new_text_file` and `finish` the program is not to be stopped, lest half a file stay behind.
   type :: text_file
-    character(len=:), allocatable :: text   !! of one in memory
+    character(len=:), allocatable :: text   !! of one in memory, and room for more
+    integer, private :: used = 0            !! of that
     character(len=40) :: mark = ''          !! stands behind each heading; empty where the answer is valid
     type(c_ptr), private :: stream = c_null_ptr
     character(len=:), allocatable, private :: path
   contains
     procedure :: line
     procedure :: heading
+    procedure :: add
+    procedure :: is_empty
+    procedure :: lines
     procedure :: finish
   end type text_file
 
@@ -189,15 +193,53 @@ contains
   subroutine line(self, text)
     class(text_file), intent(inout) :: self
     character(len=*), intent(in) :: text   !! of the line
+
+    call put(self, trim(text))
+    call put(self, newline)
+  end subroutine line
+
+  !> Add characters.
+  subroutine put(self, text)
+    class(text_file), intent(inout) :: self
+    character(len=*), intent(in) :: text
+    character(len=:), allocatable :: longer
     integer(c_size_t) :: ignored
 
-    if (allocated(self%text)) then
-      self%text = self%text//trim(text)//newline
-    else
-      ignored = c_fwrite(text, 1_c_size_t, len_trim(text, kind=c_size_t), self%stream)
-      ignored = c_fwrite(newline, 1_c_size_t, 1_c_size_t, self%stream)
+    if (.not. allocated(self%text)) then
+      ignored = c_fwrite(text, 1_c_size_t, len(text, kind=c_size_t), self%stream)
+      return
     end if
-  end subroutine line
+    if (self%used + len(text) > len(self%text)) then   ! room doubles
+      allocate (character(len=2*(self%used + len(text))) :: longer)
+      longer(:self%used) = self%text(:self%used)
+      call move_alloc(longer, self%text)
+    end if
+    self%text(self%used + 1:self%used + len(text)) = text
+    self%used = self%used + len(text)
+  end subroutine put
+
+  !> Add what another holds in memory.
+  subroutine add(self, other)
+    class(text_file), intent(inout) :: self
+    class(text_file), intent(in) :: other
+
+    call put(self, other%text(:other%used))
+  end subroutine add
+
+  !> Is there nothing in memory?
+  pure logical function is_empty(self)
+    class(text_file), intent(in) :: self
+
+    is_empty = self%used == 0
+  end function is_empty
+
+  !> The lines in memory.
+  pure function lines(self) result(text)
+    class(text_file), intent(in) :: self
+    character(len=:), allocatable :: text
+
+    text = self%text(:self%used)
+  end function lines
 
   !> Add a blank line and a heading, marked where the answer is not valid.
   subroutine heading(self, text)

@@ -71,7 +71,7 @@ contains
              when(iteration%joined, ' (up to '//megabytes(scene%expected%apart_bytes)// &
                   ' should bodies have to be solved apart)')// &
              ', operations '//short_real(scene%expected%operations)//when(iteration%yields, ' a solve'))
-    text = plan%text
+    text = plan%lines()
 
   contains
 

@@ -1,28 +1,19 @@
 !> All that a run writes: the listing for people, ASCII, at most 132 columns, with nothing in it that varies
-!> from run to run; and the tables beside it.
+!> from run to run; and the tables beside it. Of several load cases each is added once it is solved, and
+!> nothing is written before the last.
 module epcont_report_results
   use epcont_base_error, only: error_type
-  use epcont_base_kinds, only: wp
-  use epcont_base_text, only: newline, plural, short_real, text_of
-  use epcont_base_version, only: program_name, program_version
-  use epcont_certificate_scene, only: little, overlap_place
-  use epcont_deck_render, only: printable
-  use epcont_model_controls, only: precision_single
-  use epcont_report_columns, only: estimate_number, listed_number, number, part, percent, right, &
-      rounding_number, table_type
-  use epcont_report_echo, only: list_cards
-  use epcont_report_file, only: new_text_file, remove_file
-  use epcont_report_names, only: centre_name, joined, point_name, when
-  use epcont_report_outcome, only: limit_of_pressure, most_pairs, poisson_text, remark_lines, unbounded
-  use epcont_report_plan_text, only: plan_text
+  use epcont_report_case_table, only: case_row, put_cases, row_of_case
+  use epcont_report_columns, only: table_type
+  use epcont_report_file, only: new_text_file, remove_file, text_file
+  use epcont_report_listing, only: list_case, list_scene
   use epcont_report_run, only: run_results
-  use epcont_report_scene_text, only: deeper
   use epcont_report_summary, only: figure_type, summarise
   use epcont_report_tables, only: put_table
-  use epcont_report_vtk, only: write_vtk
+  use epcont_report_vtk, only: write_collection, write_vtk
   implicit none
   private
-  public :: write_results, remove_results
+  public :: results_type, remove_results
 
   !> A file of results: what stands behind the name of the deck, and what it holds.
   type :: result_file
@@ -41,352 +32,182 @@ module epcont_report_results
     result_file('.pivots.csv', 'the pivots of each iteration by RULE CONRY, with --tables all'), &
     result_file('.nodes.csv', 'the nodes, where the deck or --tables all asks for it'), &
     result_file('.elements.csv', 'the elements, where the deck or --tables all asks for it'), &
+    result_file('.cases.csv', 'the load cases, where the deck has more than one'), &
     result_file('.vtu', 'the bodies, for ParaView, with --vtk: displacements, stresses, states'), &
     result_file('.contact.vtu', 'the boundary in contact, for ParaView, with --vtk: pressures, gaps')]
 
+  !> The tables that are files, and have rows of each load case.
+  character(len=8), parameter :: table_name(*) = [character(len=8) :: &
+    'summary', 'contact', 'zones', 'bodies', 'history', 'pivots', 'nodes', 'elements']
+
+  !> What a run writes, and what of several load cases is written already, in memory.
+  type :: results_type
+    character(len=:), allocatable :: stem             !! path of the files, without their suffixes
+    !> Asked for on the command line: tables of nodes and elements though the deck does not, the listing alone,
+    !! of tables the summary alone, and files for ParaView
+    logical :: all_tables = .false., brief = .false., vtk = .false.
+    type(table_type), private :: listing
+    type(table_type), private :: table(size(table_name))
+    type(case_row), allocatable, private :: case(:)
+  contains
+    procedure :: begin
+    procedure :: add_case
+    procedure :: finish
+  end type results_type
+
 contains
 
-  !> The listing and the tables; those of nodes and elements where the deck, or `all_tables`, asks for them.
-  !! `brief`: in the listing alone, and of tables the summary alone. With `vtk` also files for ParaView.
-  subroutine write_results(run, stem, all_tables, brief, vtk, error)
-    type(run_results), intent(in) :: run                  !! what is known of the run
-    character(len=*), intent(in) :: stem                  !! path of the files, without their suffixes
-    logical, intent(in) :: all_tables, brief, vtk         !! asked for on the command line
-    type(error_type), allocatable, intent(out) :: error   !! the file cannot be written
-    type(figure_type), allocatable :: figures(:)
-    type(table_type) :: listing
-    logical :: nodes, elements
+  !> Nothing is taken yet, or load cases are to be solved again.
+  subroutine begin(self)
+    class(results_type), intent(inout) :: self
     integer :: k
 
-    call remove_results(stem)
-    nodes = run%wants_nodes(all_tables)
-    elements = run%wants_elements(all_tables)
+    self%listing = table_type(text='')
+    do k = 1, size(table_name)
+      self%table(k) = table_type(text='', listed=.false.)
+    end do
+    self%case = [case_row ::]
+  end subroutine begin
+
+  !> Take what came of a load case; that of the only one is written.
+  subroutine add_case(self, run, error)
+    class(results_type), intent(inout) :: self
+    type(run_results), intent(in) :: run                  !! what is known of the run, with that case
+    type(error_type), allocatable, intent(out) :: error   !! a file cannot be written
+    type(figure_type), allocatable :: figures(:)
+    integer :: k
+
+    if (run%case == 1) call remove_results(self%stem)
     figures = summarise(run)
-    call write_listing()
-    call write_table('summary')
-    if (.not. run%outcome%has_answer) return
-    if (.not. brief) call write_tables()
-    if (vtk .and. .not. allocated(error)) call write_vtk(run, stem, error)
+    if (run%has_cases()) then
+      call list_case(run, figures, self%all_tables, self%listing)
+      self%case = [self%case, row_of_case(run)]
+    else
+      call write_listing()
+    end if
+    do k = 1, size(table_name)
+      if (is_wanted(trim(table_name(k)))) call write_table(trim(table_name(k)), self%table(k))
+    end do
+    if (self%vtk .and. run%outcome%has_answer .and. .not. allocated(error)) &
+      call write_vtk(run, self%stem//run%case_suffix(), error)
 
   contains
 
-    !> All tables but the summary.
-    subroutine write_tables()
-      call write_table('contact')
-      call write_table('zones')
-      if (run%model%pairs > 0) call write_table('bodies')
-      call write_table('history')
-      if (all_tables .and. size(run%answer%pivot) > 0) call write_table('pivots')
-      if (nodes) call write_table('nodes')
-      if (elements) call write_table('elements')
-    end subroutine write_tables
-
-    !> A table in a file of its own, where all has gone well so far.
-    subroutine write_table(name)
+    !> Has the case such a table, and is it asked for?
+    pure logical function is_wanted(name)
       character(len=*), intent(in) :: name
-      type(table_type) :: table
 
-      if (allocated(error)) return
-      call new_text_file(stem//'.'//name//'.csv', table, error)
-      if (allocated(error)) return
-      table%listed = .false.
-      if (name == 'summary') then
-        call table%line('key,value,unit')
-        do k = 1, size(figures)
-          call table%line(trim(figures(k)%key)//','//trim(figures(k)%value)//','//figures(k)%unit)
-        end do
-      else
-        call put_table(run, name, table)
-      end if
-      call table%finish(error)
-    end subroutine write_table
+      is_wanted = run%outcome%has_answer .and. .not. self%brief
+      select case (name)
+      case ('summary')
+        is_wanted = .true.
+      case ('bodies')
+        is_wanted = is_wanted .and. run%model%pairs > 0
+      case ('pivots')
+        is_wanted = is_wanted .and. self%all_tables
+        if (is_wanted) is_wanted = size(run%answer%pivot) > 0
+      case ('nodes')
+        is_wanted = is_wanted .and. run%wants_nodes(self%all_tables)
+      case ('elements')
+        is_wanted = is_wanted .and. run%wants_elements(self%all_tables)
+      end select
+    end function is_wanted
 
-    !> The listing.
+    !> The listing of the only case.
     subroutine write_listing()
-      character(len=:), allocatable :: plan
+      type(table_type) :: listing
 
-      call new_text_file(stem//'.lst', listing, error)
+      call new_text_file(self%stem//'.lst', listing, error)
       if (allocated(error)) return
-      call list_deck()
-      call list_cards(listing, run%deck)
-      call list_remarks()
-      plan = plan_text(run%planned_scene)
-      call listing%line(plan(:len(plan) - 1))
-      if (len(run%outcome%sentence) > 0) then   ! not valid: the headings that follow say so too
-        listing%mark = '  *NOT VALID: '//run%outcome%word//'*'
-        call listing%line('')
-        call wrap('  *NOT VALID*  '//run%outcome%word//': '//run%outcome%sentence)
-      end if
-      if (run%outcome%has_answer) then
-        if (run%iteration%yields) call list_iterations()
-        if (run%model%pairs > 0) call list_contact()
-        if (nodes) call put_table(run, 'nodes', listing)
-        if (elements) call put_table(run, 'elements', listing)
-        call list_summary()
-        if (run%certificate%scene%looked_through) call list_scene()
-        call listing%heading('ACCURACY')
-        call list_rounding()
-        call list_mesh()
-        call list_doubtful_elements()
-        if (run%model%controls%accuracy > 0.0_wp) call list_wanted()
-      end if
+      call list_scene(run, listing)
+      call list_case(run, figures, self%all_tables, listing)
       call listing%finish(error)
     end subroutine write_listing
 
-    !> Add a line, two blanks from the margin.
-    subroutine say(text)
-      character(len=*), intent(in) :: text
-
-      call listing%line('  '//text)
-    end subroutine say
-
-    !> Add a named figure: its value at the right of 13 columns, and what is to be said of it.
-    subroutine list_figure(name, value, note)
-      character(len=*), intent(in) :: name, value, note   ! the name in at most 44 characters
-      character(len=44) :: label
-
-      label = name
-      call say(label//right(value, 13)//note)
-    end subroutine list_figure
-
-    !> Add text, on lines of at most 132 columns.
-    subroutine wrap(text)
-      character(len=*), intent(in) :: text
-      integer, parameter :: columns = 132
-      integer :: from, to
-
-      from = 1
-      do while (len(text) - from >= columns - 4)
-        to = from + index(text(from:from + columns - 4), ' ', back=.true.) - 1
-        if (to <= from) to = from + columns - 4
-        call listing%line(repeat(' ', merge(4, 0, from > 1))//text(from:to))
-        from = to + 1
-      end do
-      call listing%line(repeat(' ', merge(4, 0, from > 1))//text(from:))
-    end subroutine wrap
-
-    !> Figures of the summary that have a name, and whose keys begin so; a key that ends in `|` is one alone.
-    subroutine list_figures(keys)
-      character(len=*), intent(in) :: keys(:)
-      integer :: i
-
-      do k = 1, size(keys)
-        do i = 1, size(figures)
-          if (figures(i)%name /= '' .and. index(trim(figures(i)%key)//'|', trim(keys(k))) == 1) &
-            call list_figure(figures(i)%name, trim(figures(i)%listed), trim(figures(i)%note))
-        end do
-      end do
-    end subroutine list_figures
-
-    !> Title, and what the deck holds.
-    subroutine list_deck()
-      character(len=20) :: units
-
-      call listing%line(program_name//' '//program_version// &
-                        '   elastoplastic contact of plane bodies and rings')
-      call listing%line('')
-      if (len(run%deck%title) > 0) call say(printable(run%deck%title))
-      if (len(run%deck%subcase(1)%subtitle) > 0) call say(printable(run%deck%subcase(1)%subtitle))
-      if (len(run%deck%subcase(1)%label) > 0) call say(printable(run%deck%subcase(1)%label))
-      units = run%deck%parameter_word('UNITS')
-      if (units == '') units = 'as the deck has them'
-      call say('units: '//units)
-      call listing%heading('DECK')
-      do k = 1, size(run%deck%card)
-        if (run%deck%card(k)%count > 0) &
-          call say(run%deck%card(k)%entry%name//'  '//right(text_of(run%deck%card(k)%count), 9))
-      end do
-    end subroutine list_deck
-
-    !> Warnings and notes of the deck and its answer.
-    subroutine list_remarks()
-      character(len=:), allocatable :: text
-      integer :: from, to
-
-      text = run%deck_notes//remark_lines(run%outcome%found, .true.)
-      if (len(text) == 0) return
-      call listing%heading('WARNINGS AND NOTES  ('// &
-                           plural(run%faults%warnings + run%outcome%found%warnings, 'warning')//', '// &
-                           plural(run%faults%notes + run%outcome%found%notes, 'note')//')')
-      from = 1
-      do while (from <= len(text))
-        to = from + index(text(from:), newline) - 1
-        call wrap('  '//text(from:to - 1))
-        from = to + 1
-      end do
-    end subroutine list_remarks
-
-    !> One line a solve, and what is to be known of the yielding.
-    subroutine list_iterations()
-      call put_table(run, 'history', listing)
-      call listing%line('')
-      if (run%answer%load_steps > run%iteration%load_steps) &
-        call say('in '//plural(run%iteration%load_steps, 'load step')// &
-                 ' no answer was found; tried again in '//text_of(run%answer%load_steps)//' (AUTO)')
-      if (any(run%answer%history%by_tangent)) call say( &
-        'the last step is one by the tangent: its change is what the others have left')
-      call say(plural(count(run%answer%plastic), 'element')//' of '// &
-               text_of(run%model%elements)//' beyond the yield point')
-      call list_elements('beyond the last point of its table, whose last slope goes on', &
-                         count(run%answer%beyond), findloc(run%answer%beyond, .true., dim=1))
-      call list_elements('the strain fell as the load grew, and went back along the curve (elastic '// &
-                         'unloading is not modelled)', run%answer%unloaded, run%answer%first_unloaded)
-    end subroutine list_iterations
-
-    !> A number of elements, and one of them.
-    subroutine list_elements(what, count, first)
-      character(len=*), intent(in) :: what
-      integer, intent(in) :: count, first
-
-      if (count > 0) call say(what//': element '//text_of(run%model%element_id(first))// &
-                              when(count > 1, ' and '//text_of(count - 1)//' more'))
-    end subroutine list_elements
-
-    !> The pairs, how the set of contacts was found, and what contact makes of zones, lines and bodies.
-    subroutine list_contact()
-      character(len=:), allocatable :: text
-
-      call put_table(run, 'contact', listing)
-      call listing%line('')
-      associate (contact => run%answer%contact)
-        text = '  '//plural(contact%pivots, 'pivot')//', '//text_of(contact%degenerate_pivots)// &
-               ' degenerate'//when(contact%block_steps > 0, ' (CONRY, after '// &
-                                   plural(contact%block_steps, 'set')//' of block pivoting)')
-        if (contact%by_blocks .or. contact%joined) &
-          text = '  '//when(contact%joined, 'joined bodies: ', 'block pivoting: ')// &
-                 plural(contact%block_steps, 'set')//', '//plural(contact%pivots, 'exchange')//' of pairs'
-        call listing%line(text//when(size(run%answer%history) > 1, ', in the last solve'))
-        if (size(contact%history) > 0) call put_table(run, 'pivots', listing)
-        if (size(contact%history) > 0 .and. contact%pivots > size(contact%history)) &
-          call say('and '//text_of(contact%pivots - size(contact%history))//' more')
-      end associate
-      call put_table(run, 'zones', listing)
-      if (size(run%answer%lines) > 0) call put_table(run, 'lines', listing)
-      call put_table(run, 'bodies', listing)
-    end subroutine list_contact
-
-    !> Summary and certificate.
-    subroutine list_summary()
-      call listing%heading('SUMMARY')
-      call list_figures([character(len=21) :: 'max_pressure', 'total_contact_force', &
-        'pairs_in_contact', 'approach_', 'plastic_elements', 'max_equivalent_stress', 'max_displacement', &
-        'status'])
-      call listing%heading('CERTIFICATE  (recomputed from displacements and forces alone; tolerance '// &
-                           short_real(run%certificate%tolerance)//')')
-      call list_figures([character(len=25) :: 'equilibrium_residual', 'smallest_', &
-        'largest_force_gap_product', 'stress_off_curve|', 'curve_tolerance', 'stress_off_curve_limit', &
-        'energy_balance'])
-    end subroutine list_summary
-
-    !> Bodies in each other and pairs that press across gaps: the worst, and the deepest where that differs.
-    subroutine list_scene()
-      associate (scene => run%certificate%scene)
-        call list_place('bodies in each other, of what is allowed', scene%inside)
-        if (scene%deepest%ratio >= little .and. scene%deepest%depth > deeper*scene%inside%depth) &
-          call list_place('  at the deepest place, of what is allowed', scene%deepest)
-        if (scene%passed%side > 0) call list_place('  on their way through each other', scene%passed)
-        if (run%model%pairs == 0) return
-        call list_place('pressed across a gap, of what is allowed', scene%apart)
-        if (scene%widest%ratio >= little .and. scene%widest%depth > deeper*scene%apart%depth) &
-          call list_place('  at the widest place, of what is allowed', scene%widest)
-        if (scene%beside%ratio >= little) call list_place('  beside the other body', scene%beside)
-      end associate
-    end subroutine list_scene
-
-    !> A depth, over what is allowed; and where.
-    subroutine list_place(name, place)
+    !> The rows of a table, in a file of its own or added to those of other cases, where all has gone well so
+    !! far.
+    subroutine write_table(name, held)
       character(len=*), intent(in) :: name
-      type(overlap_place), intent(in) :: place
+      type(table_type), intent(inout) :: held   !! the rows of the cases before
+      type(table_type) :: table
 
-      if (place%ratio < little) then
-        call list_figure(name, '< '//short_real(little), '')
+      if (allocated(error)) return
+      if (run%has_cases()) then
+        held%subcase = run%deck%subcase(run%case)%id
+        call put_rows(name, held)
       else
-        call list_figure(name, estimate_number(place%ratio), &
-                         '   '//short_real(place%depth)//' at '//point_name(place%x))
+        call new_text_file(self%stem//'.'//name//'.csv', table, error)
+        if (allocated(error)) return
+        table%listed = .false.
+        call put_rows(name, table)
+        call table%finish(error)
       end if
-    end subroutine list_place
+    end subroutine write_table
 
-    !> What stopping and rounding leave.
-    subroutine list_rounding()
-      logical :: in_single
+    !> The rows.
+    subroutine put_rows(name, table)
+      character(len=*), intent(in) :: name
+      type(table_type), intent(inout) :: table
 
-      in_single = run%answer%precision == precision_single
-      call list_figures(['iteration_error_', 'condition       '])
-      if (in_single) call list_figure('error that single precision leaves', &
-          short_real(run%answer%rounding_error), '')
-      if (run%answer%precision /= run%iteration%precision) call say( &
-        '  (factors in double: in single precision '// &
-        when(run%iteration%precision == precision_single, 'they left an error of more than '// &
-             short_real(run%iteration%rounding_error)//', or no answer)', &
-             'there was no answer that refinement could reach)'))
-      if (.not. in_single) call list_figure('digits that rounding leaves, at least', &
-          text_of(max(0, floor(-log10(run%answer%rounding())))), '')
-      call list_figure('linear residual', rounding_number(run%certificate%equilibrium), '')
-      if (run%accuracy%sensitivity%known .and. .not. in_single) &
-        call list_figure('rounding in the contact forces, at most', &
-                         rounding_number(run%accuracy%sensitivity%rounding), '   of the largest')
-    end subroutine list_rounding
-
-    !> What the mesh leaves, and the pairs that may as well be open, or touch.
-    subroutine list_mesh()
-      call list_figures([character(len=21) :: 'contact_amplification', 'mesh_error_'])
-      if (size(run%accuracy%worst) > 0) &
-        call say('refine first: element '//joined(run%model%element_id(run%accuracy%worst), ' ')// &
-                 ', the first at '//centre_name(run%model, run%accuracy%worst(1))//'; '// &
-                 percent(sum(run%accuracy%element(run%accuracy%worst)), sum(run%accuracy%element))// &
-                 ' of the error')
-      if (.not. any(run%accuracy%weak)) return   ! nor is it known of each pair
-      call list_pairs('contact state uncertain: pressed by less than the error of the force', .true.)
-      call list_pairs('contact state uncertain: open by less than the error of the gap', .false.)
-    end subroutine list_mesh
-
-    !> Pairs that touch, or that do not, but may as well.
-    subroutine list_pairs(what, touching)
-      character(len=*), intent(in) :: what
-      logical, intent(in) :: touching
-      logical, allocatable :: chosen(:)
-
-      chosen = run%accuracy%weak .and. (run%answer%contact%touching .eqv. touching)
-      if (any(chosen)) call say(what//', '//plural(count(chosen), 'pair')//': '// &
-                                joined(pack(run%model%pair_id, chosen), ' ', most_pairs))
-    end subroutine list_pairs
-
-    !> Elements that are too stiff for what their material does, and displacements that are not small.
-    subroutine list_doubtful_elements()
-      if (run%answer%locking%elements > 0) then
-        call list_figure('three-node elements of constant volume', text_of(run%answer%locking%elements), '')
-        call list_figure('scatter of their mean stress / equivalent', &
-                         listed_number(number, run%answer%locking%scatter, 1.0_wp), '')
-        call say('  ('//poisson_text(run%answer)// &
-                 ': they are too stiff there; six-node elements and CQUAD4 are not)')
-      end if
-      if (run%answer%gradient%part > 0.0_wp) then
-        call list_figure('not small: turned, stretched by over 0.1', &
-                         listed_number(part, run%answer%gradient%part, 0.0_wp), '   of the volume')
-        call say('  (most at '//centre_name(run%model, run%answer%gradient%worst)//', '// &
-                 estimate_number(run%answer%gradient%largest)//'; equilibrium and contact are those of '// &
-                 'the undeformed shape: loads, moduli, units?)')
-      end if
-    end subroutine list_doubtful_elements
-
-    !> The wish, and what stands in its way: PARAM ACCURACY sets the solution, but the mesh has the last word.
-    subroutine list_wanted()
-      real(wp) :: left
-
-      call list_figure('wanted error of contact pressures', short_real(run%model%controls%accuracy), '')
-      if (limit_of_pressure(run) == unbounded) then
-        call say('  not to be had: the largest pressure is unbounded: it grows with every finer mesh')
-      else if (run%accuracy%max_pressure < 0.0_wp .or. .not. any(run%answer%contact%force > 0.0_wp)) then
-        call say('  (of the mesh''s error nothing is known: no pressure, or too few pairs in contact)')
+      if (name == 'summary') then
+        call put_summary(figures, table)
       else
-        left = run%accuracy%max_pressure/maxval(run%answer%pressure)
-        call say(when(left > run%model%controls%accuracy, &
-                      '  not reached: the mesh, not the dial, is the limit: its error is estimated at '// &
-                      estimate_number(left)//'; refine the elements named above', &
-                      '  reached: the error of the mesh is estimated at '//estimate_number(left)))
+        call put_table(run, name, table)
       end if
-    end subroutine list_wanted
-  end subroutine write_results
+    end subroutine put_rows
+  end subroutine add_case
+
+  !> Write what several load cases have left.
+  subroutine finish(self, run, error)
+    class(results_type), intent(inout) :: self
+    type(run_results), intent(in) :: run                  !! what is known of the run
+    type(error_type), allocatable, intent(out) :: error   !! a file cannot be written
+    type(table_type) :: file
+    integer :: k
+
+    if (.not. run%has_cases()) return
+    call new_text_file(self%stem//'.lst', file, error)
+    if (allocated(error)) return
+    call list_scene(run, file)
+    call file%add(self%listing)
+    call put_cases(self%case, file)
+    call file%finish(error)
+    do k = 1, size(table_name)
+      if (.not. self%table(k)%is_empty()) call write_table(trim(table_name(k)), self%table(k))
+    end do
+    if (.not. self%brief) then
+      self%listing = table_type(text='', listed=.false.)
+      call put_cases(self%case, self%listing)
+      call write_table('cases', self%listing)
+    end if
+    if (self%vtk .and. .not. allocated(error)) call write_collection(run, self%stem, error)
+
+  contains
+
+    !> The rows of all cases.
+    subroutine write_table(name, held)
+      character(len=*), intent(in) :: name
+      type(table_type), intent(in) :: held
+      type(text_file) :: file
+
+      if (.not. allocated(error)) call new_text_file(self%stem//'.'//name//'.csv', file, error)
+      if (allocated(error)) return
+      call file%add(held)
+      call file%finish(error)
+    end subroutine write_table
+  end subroutine finish
+
+  !> Figures in full.
+  subroutine put_summary(figures, table)
+    type(figure_type), intent(in) :: figures(:)
+    type(table_type), intent(inout) :: table
+    integer :: k
+
+    call table%head('key,value,unit')
+    do k = 1, size(figures)
+      call table%csv(trim(figures(k)%key)//','//trim(figures(k)%value)//','//trim(figures(k)%unit))
+    end do
+  end subroutine put_summary
 
   !> Remove what an earlier run has left, also where this one is stopped, or has nothing to say.
   subroutine remove_results(stem)

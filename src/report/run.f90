@@ -1,6 +1,7 @@
 !> What is known of one deck's run: all that the listing, the tables and the messages are written from.
 module epcont_report_run
   use epcont_base_diagnostic, only: diagnostics
+  use epcont_base_text, only: text_of
   use epcont_deck_deck, only: deck_type
   use epcont_model_load_cases, only: load_cases
   use epcont_report_outcome, only: outcome_type
@@ -18,12 +19,31 @@ module epcont_report_run
     character(len=:), allocatable :: deck_notes   !! its warnings and notes, in lines
     type(outcome_type) :: outcome
   contains
+    procedure :: has_cases
+    procedure :: case_suffix
     procedure :: wants_nodes
     procedure :: wants_elements
     procedure :: rows_of_tables
   end type run_results
 
 contains
+
+  !> Has the deck more than one load case?
+  pure logical function has_cases(self)
+    class(run_results), intent(in) :: self
+
+    has_cases = size(self%deck%subcase) > 1
+  end function has_cases
+
+  !> What stands behind the name of the deck in those of files of one load case: `.case3`; empty where it is
+  !! the only one.
+  pure function case_suffix(self) result(suffix)
+    class(run_results), intent(in) :: self
+    character(len=:), allocatable :: suffix
+
+    suffix = ''
+    if (self%has_cases()) suffix = '.case'//text_of(self%deck%subcase(self%case)%id)
+  end function case_suffix
 
   !> The table of nodes is asked for.
   pure logical function wants_nodes(self, all_tables)

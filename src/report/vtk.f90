@@ -17,7 +17,7 @@ module epcont_report_vtk
   use epcont_result_contact_line, only: contact_line, find_contact_line
   implicit none
   private
-  public :: write_vtk
+  public :: write_collection, write_vtk
 
   !> Kinds of cells (vtkCellType.h).
   integer, parameter :: vtk_vertex = 1, vtk_line = 3
@@ -231,4 +231,28 @@ contains
     cells%last = [(2*k, k=1, segments), (2*segments + k, k=1, size(alone))]
     cells%point = [segment(:, :segments), alone]
   end function cells_along
+
+  !> DECK.pvd: the files of all load cases, which ParaView steps through.
+  subroutine write_collection(run, stem, error)
+    type(run_results), intent(in) :: run                  !! what is known of the run
+    character(len=*), intent(in) :: stem                  !! path of the files, without their suffixes
+    type(error_type), allocatable, intent(out) :: error   !! the file cannot be written
+    type(text_file) :: file
+    integer :: k
+
+    call new_text_file(stem//'.pvd', file, error)
+    if (allocated(error)) return
+    call file%line('<?xml version="1.0"?>')
+    call file%line('<VTKFile type="Collection" version="1.0">')
+    call file%line('<Collection>')
+    do k = 1, size(run%deck%subcase)
+      associate (id => text_of(run%deck%subcase(k)%id))
+        call file%line('<DataSet timestep="'//id//'" file="'//stem(index(stem, '/', back=.true.) + 1:)// &
+                       '.case'//id//'.vtu"/>')
+      end associate
+    end do
+    call file%line('</Collection>')
+    call file%line('</VTKFile>')
+    call file%finish(error)
+  end subroutine write_collection
 end module epcont_report_vtk

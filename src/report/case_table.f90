@@ -1,0 +1,83 @@
+!> The load cases of a deck side by side: what came of each, in a row.
+module epcont_report_case_table
+  use epcont_base_kinds, only: wp
+  use epcont_report_columns, only: column, columns_text, estimate, known, length, number, part, rounding, &
+      stress, table_type, whole, word
+  use epcont_report_outcome, only: limit_of_pressure
+  use epcont_report_run, only: run_results
+  implicit none
+  private
+  public :: case_row, case_columns_text, put_cases, row_of_case
+
+  !> What came of a case. Numbers are those of its summary; negative where they are not known.
+  type :: case_row
+    integer :: subcase = 0                     !! its number
+    character(len=20) :: status = ''           !! in a word
+    character(len=12) :: limit = ''            !! bounded, unbounded or not resolved, of the largest pressure
+    integer :: touching = 0, plastic = 0       !! pairs, elements
+    real(wp) :: pressure = -1.0_wp, pressure_error = -1.0_wp   !! the largest [stress]
+    real(wp) :: half_width = -1.0_wp           !! of the zone that has it [length]
+    real(wp) :: approach = 0.0_wp              !! of the first free motion [length]
+    real(wp) :: residual = -1.0_wp             !! of the certificate's equilibrium, relative
+    real(wp) :: energy_norm = -1.0_wp          !! error of the mesh, relative
+  end type case_row
+
+  type(column), parameter :: case_columns(*) = [ &
+    column(whole, 'subcase', '', 'its number', 'SUBCASE', 10), &
+    column(word, 'status', '', 'what came of it, in a word', width=20), &
+    column(whole, 'pairs_in_contact', '', 'pairs that touch', 'touching', 10), &
+    column(whole, 'plastic_elements', '', 'elements beyond the yield point', 'plastic', 9), &
+    column(known, 'max_pressure', stress, 'empty: no boundary, or no answer', 'max pressure'), &
+    column(estimate, 'mesh_error_max_pressure', stress, 'empty: not known', 'error', 10), &
+    column(word, 'max_pressure_is', '', 'bounded, unbounded or not resolved', width=0), &
+    column(known, 'half_width', length, 'of the zone with that pressure; empty: not known', 'half-width'), &
+    column(number, 'approach', length, 'of the first free motion'), &
+    column(rounding, 'equilibrium_residual', '', 'of the certificate, relative', 'residual', 11), &
+    column(part, 'mesh_error_energy_norm', '', 'relative', 'mesh error', 12)]
+
+contains
+
+  !> The columns in a sentence.
+  pure function case_columns_text() result(text)
+    character(len=:), allocatable :: text
+
+    text = 'Columns: '//columns_text(case_columns)//'.'
+  end function case_columns_text
+
+  !> What came of the load case at hand.
+  pure type(case_row) function row_of_case(run) result(row)
+    type(run_results), intent(in) :: run   !! what is known of the run
+
+    row%subcase = run%deck%subcase(run%case)%id
+    row%status = run%outcome%word
+    if (.not. run%outcome%has_answer) return
+    row%touching = count(run%answer%contact%touching)
+    row%plastic = count(run%answer%plastic)
+    if (run%model%pairs > 0) then
+      row%pressure = run%answer%largest_pressure()
+      row%pressure_error = run%accuracy%max_pressure
+      row%limit = limit_of_pressure(run)
+    end if
+    if (run%accuracy%leading > 0) row%half_width = run%answer%zones(run%accuracy%leading)%half_width
+    if (run%motions%count > 0) row%approach = run%answer%contact%approach(1)
+    row%residual = run%certificate%equilibrium
+    row%energy_norm = run%accuracy%energy_norm
+  end function row_of_case
+
+  !> Write the table.
+  subroutine put_cases(row, table)
+    type(case_row), intent(in) :: row(:)       !! of all cases
+    type(table_type), intent(inout) :: table   !! the listing, or a file
+    integer :: k
+
+    table%mark = ''
+    call table%begin('LOAD CASES', case_columns, &
+                     [maxval(row%pressure), maxval(row%pressure), maxval(row%half_width), &
+                      maxval(abs(row%approach)), 1.0_wp, 1.0_wp])
+    do k = 1, size(row)
+      call table%row([row(k)%subcase, row(k)%touching, row(k)%plastic], &
+                     [row(k)%pressure, row(k)%pressure_error, row(k)%half_width, row(k)%approach, &
+                      row(k)%residual, row(k)%energy_norm], [character(len=20) :: row(k)%status, row(k)%limit])
+    end do
+  end subroutine put_cases
+end module epcont_report_case_table
