@@ -102,21 +102,38 @@ contains
 
   contains
 
-    !> Integration points of a side, cut where nodes of the other line face it. It may be covered where all of
-    !! them face that line, nearly parallel.
+    !> Integration points of a side, cut where it faces another side of the other line than before. (Nodes of
+    !! that line that stand behind what it faces cut nothing.)
     pure type(side_points) function cut_side() result(points)
+      real(wp), allocatable :: cut(:), starts(:), ends(:)
+      integer, allocatable :: faced(:, :)
+      logical, allocatable :: first(:)   ! the piece before faces another side, or there is none
+      integer :: i
+
+      cut = cuts_of_side()
+      associate (wide => cut(2:) - cut(:size(cut) - 1) > beyond)   ! what lies beyond an end by less is not
+        starts = pack(cut(:size(wide)), wide)
+        ends = pack(cut(2:), wide)
+      end associate
+      points = points_of(starts, ends)
+      faced = reshape(points%facing%segment, [gauss_points, size(starts)])
+      first = [.true., (any(faced(:, i - 1:i) /= faced(1, i)), i=2, size(starts))]
+      if (.not. all(first)) points = points_of(pack(starts, first), pack(ends, [first(2:), .true.]))
+    end function cut_side
+
+    !> Integration points of the pieces of a side. It may be covered where all of them face the other line,
+    !! nearly parallel.
+    pure type(side_points) function points_of(starts, ends) result(points)
+      real(wp), intent(in) :: starts(:), ends(:)   !! of each piece, from 0 to 1
       type(looking_point) :: from
       type(facing_type) :: face(2)
-      real(wp), allocatable :: cut(:), width(:)
       real(wp) :: tangent(2)
       integer :: i, k, p
 
-      cut = cuts_of_side()
-      width = cut(2:) - cut(:size(cut) - 1)
-      cut = pack(cut(:size(width)), width > beyond)   ! what lies beyond an end by so little is not beyond it
-      width = pack(width, width > beyond)
-      points%along = [((cut(i) + width(i)*gauss_place(k), k=1, gauss_points), i=1, size(cut))]
-      points%weight = [((gauss_weight(k)*width(i), k=1, gauss_points), i=1, size(cut))]
+      associate (width => ends - starts)
+        points%along = [((starts(i) + width(i)*gauss_place(k), k=1, gauss_points), i=1, size(width))]
+        points%weight = [((gauss_weight(k)*width(i), k=1, gauss_points), i=1, size(width))]
+      end associate
       allocate (points%share(3, size(points%along)), points%facing(size(points%along)))
       from%rise = rise_of(contact%slave, s)
       do p = 1, size(points%along)
@@ -131,7 +148,7 @@ contains
         points%covered = points%covered .and. face(1)%found .and. &
                          dot_product(face(1)%normal, from%outward) < -parallel
       end do
-    end function cut_side
+    end function points_of
 
     !> Places along a side, from 0 to 1, at which the ends of the other line's sides face it, not farther away
     !! than the part of that line lies that it faces: twice as far as its ends say, or its length.
