@@ -153,6 +153,18 @@ class Found(scene.Extremes):
                     result = self.valid(text.replace("BEGIN BULK", f"BEGIN BULK\nPARAM,RULE,{rule}"))
                     self.assertEqual(result.summary["pairs_in_contact"], touching)
 
+    def test_what_stands_behind_the_next_body(self):
+        """However far is looked, two strips of a spiral meet along the same stretches: the next turn behind them does not matter."""
+        spiral = deck("spiral_search")
+        scaled = re.sub(r"(?m)^(GRID,\d+,,)([^,]*)", lambda grid: f"{grid[1]}{1.2 * float(grid[2])!r}", spiral)
+        for name, text in (("spiral", spiral), ("turned", turned(spiral, 37.0)), ("oval", scaled)):
+            for lines in ("1,2", "2,1"):
+                with self.subTest(name=name, lines=lines):
+                    text = text.replace("BCONP,1,1,2", f"BCONP,1,{lines}")
+                    near, *far = (self.valid(text.replace("BEGIN BULK", f"BEGIN BULK\nPARAM,SEARCH,{search}")).table("contact")
+                                  for search in (0.3, 0.8, 20.0))
+                    self.assertTrue(all(table == near for table in far))
+
     def test_estimates_of_another_numbering(self):
         """Nothing resists most motions: what a force does along these says nothing of the errors of forces."""
         one, other = (self.valid(deck(name)) for name in ("toterr_a", "toterr_b"))
