@@ -105,8 +105,8 @@ contains
       set = id(findloc(id > 0, .true., dim=1))
       i = findloc(id > 0 .and. id /= set(1), .true., dim=1)
       if (i > 0) then
-        call found%add_error(table(i), row(i), 1, ': the deck has several sets, '//text_of(set(1))//' and '// &
-                             text_of(id(i))//', and chooses none', &
+        call found%add_error(table(i), row(i), 1, ': the deck has several sets, '//text_of(set(1))// &
+                             ' and '//text_of(id(i))//', and chooses none', &
                              word//' = '//text_of(set(1))//' before BEGIN BULK')
         return
       end if

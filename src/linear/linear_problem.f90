@@ -2,7 +2,6 @@
 !> iteration, and all of an elastic analysis.
 module epcont_linear_linear_problem
   use epcont_assembly_bodies, only: factored_bodies, half_solved_body, new_bodies, prescribe
-  use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: cancelled, negligible, solved_to
   use epcont_contact_basis, only: contact_basis
@@ -10,10 +9,10 @@ module epcont_linear_linear_problem
   use epcont_contact_problem, only: contact_problem, contact_solution, contact_solved, contact_stalled
   use epcont_contact_solver, only: solve_contact
   use epcont_element_kinematics, only: directions
-  use epcont_flexibility_flexibility, only: body_flexibility, find_flexibility, &
-    gap_opening, pair_forces, see_motions, terms_of_openings
+  use epcont_flexibility_flexibility, only: gap_opening, pair_forces, see_motions, terms_of_openings
   use epcont_linear_joined_contact, only: joined_contact, new_joined
   use epcont_linear_scene_state, only: force_change, relative_change, scene_state
+  use epcont_linear_whole_flexibility, only: add_flexibilities
   use epcont_material_scene_materials, only: find_materials, scene_materials
   use epcont_model_controls, only: precision_double, precision_mixed, solver_frontal
   use epcont_plan_iteration_plan, only: iteration_plan
@@ -111,14 +110,14 @@ contains
       call watch%lap(stage_displacements)
       if (first) then
         self%problem%flexibility = new_flexibility(scene%model%bodies_of_pairs(), scene%model%bodies)
-        call add_flexibilities(.not. yields)
+        call add_flexibilities(scene, self%body, .not. yields, self%plan%threads, self%problem%flexibility)
         if (any(yields) .and. .not. all(yields)) self%lasting_flexibility = self%problem%flexibility
       else if (all(yields)) then
         call self%problem%flexibility%clear()
       else if (any(yields)) then
         self%problem%flexibility = self%lasting_flexibility
       end if
-      call add_flexibilities(yields)
+      call add_flexibilities(scene, self%body, yields, self%plan%threads, self%problem%flexibility)
       call self%problem%flexibility%complete()
     end associate
     call watch%lap(stage_flexibility)
@@ -159,28 +158,6 @@ contains
       failed_body = findloc([(chosen(i) .and. .not. self%body(i)%is_sound(), i=1, size(chosen))], &
                             .true., dim=1)
     end subroutine factor_bodies
-
-    !> Add what some bodies give to the flexibility, each found by itself, in their order: so all roundings
-    !! are the same on any number of threads.
-    subroutine add_flexibilities(chosen)
-      logical, intent(in) :: chosen(:)     !! [bodies]
-      type(body_flexibility) :: own
-      type(incidence) :: pair   ! of each body
-      integer :: b, threads
-
-      pair = new_incidence(scene%model%bodies_of_pairs(), scene%model%bodies)
-      threads = threads_for(merge(scene%numbering%body%operations, 0.0_wp, chosen), &
-                            spread(.false., 1, size(chosen)), self%plan%threads)
-      !$omp parallel do num_threads(threads) if (threads > 1) schedule(dynamic) ordered private(own)
-      do b = 1, scene%model%bodies
-        call use_one_thread_each()
-        if (chosen(b)) call find_flexibility(scene%model, scene%numbering, b, pair%of(b), self%body(b), own)
-        !$omp ordered
-        if (chosen(b)) call self%problem%flexibility%add(own%pair, own%matrix)
-        !$omp end ordered
-      end do
-      !$omp end parallel do
-    end subroutine add_flexibilities
   end subroutine set_stiffness
 
   !> Find displacements, stresses and contact under a part of the loads and prescribed displacements. Without

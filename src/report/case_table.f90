@@ -77,7 +77,8 @@ contains
     do k = 1, size(row)
       call table%row([row(k)%subcase, row(k)%touching, row(k)%plastic], &
                      [row(k)%pressure, row(k)%pressure_error, row(k)%half_width, row(k)%approach, &
-                      row(k)%residual, row(k)%energy_norm], [character(len=20) :: row(k)%status, row(k)%limit])
+                      row(k)%residual, row(k)%energy_norm], &
+                     [character(len=20) :: row(k)%status, row(k)%limit])
     end do
   end subroutine put_cases
 end module epcont_report_case_table

@@ -43,8 +43,8 @@ module epcont_report_results
   !> What a run writes, and what of several load cases is written already, in memory.
   type :: results_type
     character(len=:), allocatable :: stem             !! path of the files, without their suffixes
-    !> Asked for on the command line: tables of nodes and elements though the deck does not, the listing alone,
-    !! of tables the summary alone, and files for ParaView
+    !> Asked for on the command line: tables of nodes and elements though the deck does not, the listing and
+    !! the summary alone, and files for ParaView
     logical :: all_tables = .false., brief = .false., vtk = .false.
     type(table_type), private :: listing
     type(table_type), private :: table(size(table_name))

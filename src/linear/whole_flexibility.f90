@@ -1,0 +1,44 @@
+!> F of all bodies, from that of each.
+module epcont_linear_whole_flexibility
+  use epcont_assembly_stiffness, only: body_stiffness
+  use epcont_base_incidence, only: incidence, new_incidence
+  use epcont_base_kinds, only: wp
+  use epcont_contact_flexibility_matrix, only: flexibility_matrix
+  use epcont_flexibility_flexibility, only: body_flexibility, find_flexibility
+  use epcont_plan_planned_scene, only: planned_scene
+  use epcont_plan_side_by_side, only: threads_for
+  use epcont_system_threads, only: use_one_thread_each
+  implicit none
+  private
+  public :: add_flexibilities
+
+contains
+
+  !> Add what some bodies give to the flexibility, each found by itself, in their order: so all roundings are
+  !! the same on any number of threads.
+  subroutine add_flexibilities(scene, body, chosen, threads, flexibility)
+    type(planned_scene), intent(in) :: scene          !! that they are of
+    type(body_stiffness), intent(in) :: body(:)       !! factored
+    logical, intent(in) :: chosen(:)                  !! [bodies]
+    integer, intent(in) :: threads                    !! that share the bodies
+    type(flexibility_matrix), intent(inout) :: flexibility   !! is added to
+    type(body_flexibility) :: own
+    type(incidence) :: pair   ! of each body
+    integer :: b, many
+
+    associate (model => scene%model, numbering => scene%numbering)
+      pair = new_incidence(model%bodies_of_pairs(), model%bodies)
+      many = threads_for(merge(numbering%body%operations, 0.0_wp, chosen), &
+                         spread(.false., 1, size(chosen)), threads)
+      !$omp parallel do num_threads(many) if (many > 1) schedule(dynamic) ordered private(own)
+      do b = 1, model%bodies
+        call use_one_thread_each()
+        if (chosen(b)) call find_flexibility(model, numbering, b, pair%of(b), body(b), own)
+        !$omp ordered
+        if (chosen(b)) call flexibility%add(own%pair, own%matrix)
+        !$omp end ordered
+      end do
+      !$omp end parallel do
+    end associate
+  end subroutine add_flexibilities
+end module epcont_linear_whole_flexibility
