@@ -4,6 +4,7 @@ module epcont_app_driver
   use epcont_app_forecast_text, only: forecast_text
   use epcont_app_process, only: print_error, print_text
   use epcont_app_progress_display, only: progress_type, timing_text
+  use epcont_base_diagnostic, only: diagnostics
   use epcont_base_error, only: error_type, status_deck, status_valid
   use epcont_base_kinds, only: i8, wp
   use epcont_base_text, only: newline, shown, text_of
@@ -11,7 +12,8 @@ module epcont_app_driver
   use epcont_deck_deck, only: read_deck
   use epcont_deck_render, only: render, render_notes
   use epcont_linalg_rate, only: measured_rate
-  use epcont_model_load_cases, only: put_case
+  use epcont_model_load_cases, only: load_cases, put_case
+  use epcont_plan_planned_scene, only: planned_scene
   use epcont_report_columns, only: known, listed_number, number, right
   use epcont_report_file, only: file_lock, lock_files, unlock_files
   use epcont_report_outcome, only: judge, limit_of_pressure, reason_of, remark_lines
@@ -83,44 +85,70 @@ contains
         return
       end if
       run%deck_notes = render_notes(run%faults, run%deck%source)
-      call run%deck%forget_text()
+      if (run%cases%patterns == 1) call run%deck%forget_text()
       call solve_cases()
     end subroutine solve_deck
 
-    !> All load cases, one after the other; from the first again where one has changed the pairs of the scene.
+    !> All load cases: those with the same freedoms held one after the other, since they share factors.
     subroutine solve_cases()
-      integer :: worst
+      integer, allocatable :: cases(:)
+      integer :: k, p, worst
 
       results%stem = stem
       results%all_tables = arguments%asks('--tables')
       results%brief = arguments%asks('--brief')
       results%vtk = arguments%asks('--vtk')
-      call results%begin()
+      call results%begin(run)
       worst = status_valid
-      run%case = 1
-      do while (run%case <= size(run%cases%case))
-        if (run%has_cases()) call put_case(run%cases, run%case, run%model)
-        run%kept%another = run%case < size(run%cases%case)
-        call run%solve(arguments%memory, watch, error)
-        if (allocated(error)) then
-          error%message = path//': '//error%message
-          return
-        end if
-        if (run%replanned .and. run%case > 1) then
-          call results%begin()
-          worst = status_valid
-          run%case = 1
-          cycle
-        end if
-        call take_case()
+      do p = 1, run%cases%patterns
+        if (p > 1) call take_pattern(p)
+        cases = pack([(k, k=1, size(run%cases%case))], run%cases%case%pattern == p)
+        call solve_pattern(cases, worst)
         if (allocated(error)) return
-        worst = max(worst, status)
-        run%case = run%case + 1
+        call results%add_plan(run, cases)
       end do
       call results%finish(run, error)
       call watch%lap(stage_writing)
       status = worst
     end subroutine solve_cases
+
+    !> The scene with other freedoms held.
+    subroutine take_pattern(p)
+      integer, intent(in) :: p
+      type(diagnostics) :: told   ! all of it is known
+
+      call build_model(run%deck, p, run%model, run%cases, told)
+      call run%find_motions(told)
+      call run%make_plan(watch)
+    end subroutine take_pattern
+
+    !> Load cases that share a plan; from the first again where one has changed the pairs of the scene.
+    subroutine solve_pattern(cases, worst)
+      integer, intent(in) :: cases(:)
+      integer, intent(inout) :: worst    !! status so far
+      integer :: k, of_these
+
+      k = 1
+      of_these = status_valid
+      do while (k <= size(cases))
+        run%case = cases(k)
+        if (run%has_cases()) call put_case(run%cases, run%case, run%model)
+        run%kept%another = k < size(cases)
+        call run%solve(arguments%memory, watch, error)
+        if (allocated(error)) error%message = path//': '//error%message
+        if (allocated(error)) return
+        if (run%replanned .and. k > 1) then
+          k = 1
+          of_these = status_valid
+          cycle
+        end if
+        call take_case()
+        if (allocated(error)) return
+        of_these = max(of_these, status)
+        k = k + 1
+      end do
+      worst = max(worst, of_these)
+    end subroutine solve_pattern
 
     !> Judge a load case, and say and write what came of it.
     subroutine take_case()
@@ -152,13 +180,32 @@ contains
       call read_deck(path, run%deck, run%faults, error)
       call watch%lap(stage_reading)
       if (allocated(error)) return
-      call build_model(run%deck, run%model, run%cases, run%faults)
+      call build_model(run%deck, 1, run%model, run%cases, run%faults)
       call watch%lap(stage_model)
       if (run%faults%errors > 0) return
       call run%find_motions(run%faults)
       call tell(run%deck, run%model%kinds, run%faults)
+      call check_patterns()
       call watch%lap(stage_plan)
     end subroutine prepare
+
+    !> What is wrong with the scene where load cases hold other freedoms than the first, and not there too.
+    subroutine check_patterns()
+      type(planned_scene) :: other
+      type(load_cases) :: cases
+      type(diagnostics) :: faults
+      integer :: i, p
+
+      do p = 2, run%cases%patterns
+        faults = diagnostics()
+        call build_model(run%deck, p, other%model, cases, faults)
+        if (faults%errors == 0) call other%find_motions(faults)
+        call tell(run%deck, other%model%kinds, faults)
+        do i = 1, faults%count
+          if (.not. run%faults%has(faults%list(i))) call run%faults%add(faults%list(i))
+        end do
+      end do
+    end subroutine check_patterns
 
     !> Lines on standard error, each behind the name of the deck.
     subroutine say_lines(text)

@@ -42,6 +42,7 @@ module epcont_base_diagnostic
     procedure :: add_warning
     procedure :: add_note
     procedure :: add
+    procedure :: has
     procedure :: in_deck_order
   end type diagnostics
 
@@ -119,4 +120,19 @@ contains
     order = sorted_order(self%list(:self%count)%place%first)
     order = order(sorted_order(line(order)))
   end function in_deck_order
+
+  !> Is one said already, of the same place?
+  pure logical function has(self, fault)
+    class(diagnostics), intent(in) :: self
+    type(diagnostic), intent(in) :: fault   !! of a deck, with its place
+    integer :: i
+
+    has = .false.
+    do i = 1, self%count
+      associate (one => self%list(i))
+        has = has .or. one%place%line == fault%place%line .and. one%place%first == fault%place%first .and. &
+              one%what == fault%what
+      end associate
+    end do
+  end function has
 end module epcont_base_diagnostic

@@ -9,7 +9,7 @@ module epcont_build_build
   use epcont_build_contacts, only: build_contacts
   use epcont_build_mesh, only: build_mesh, element_cards
   use epcont_build_reference, only: card_index, check_unique, chosen_sets, index_of
-  use epcont_build_supports, only: build_supports
+  use epcont_build_supports, only: build_ties, hold_nodes
   use epcont_contact_geometry_complete, only: check_controls, finish_model
   use epcont_contact_geometry_line_contacts, only: find_contacts
   use epcont_deck_card_kinds, only: card_bconp, card_blseg, card_cgap, card_cord2r, card_grid, card_mat1, &
@@ -19,6 +19,7 @@ module epcont_build_build
   use epcont_deck_entry, only: least_cause
   use epcont_element_element_kind, only: element_kind
   use epcont_element_element_kinds, only: element_kinds
+  use epcont_element_kinematics, only: directions
   use epcont_model_element_shapes, only: check_axis
   use epcont_model_finding, only: findings, of_body, of_couple, of_element, of_line, of_node, of_pair, &
       of_paper_ratio, of_scene
@@ -36,9 +37,10 @@ contains
 
   !> Build the scene; whatever is wrong with it is added to `faults`, and the model serves only without
   !! errors.
-  subroutine build_model(deck, model, cases, faults)
+  subroutine build_model(deck, pattern, model, cases, faults)
     type(deck_type), intent(in) :: deck          !! its cards
-    type(model_type), intent(out) :: model       !! the scene, with the first load case
+    integer, intent(in) :: pattern               !! of the freedoms that supports hold; 1: of the first case
+    type(model_type), intent(out) :: model       !! the scene, with the first load case of that pattern
     type(load_cases), intent(out) :: cases       !! all of them
     type(diagnostics), intent(inout) :: faults   !! of the deck; they are added to
     type(card_index) :: nodes
@@ -54,7 +56,8 @@ contains
     call build_mesh(deck, nodes, model, faults)
     model%controls = read_controls(deck)
     call build_cases(deck, nodes, model, cases, faults)
-    call build_supports(deck, nodes, cases%case(1)%supports, model, faults)
+    call hold_patterns()
+    call build_ties(deck, nodes, cases%patterns == 1, model, faults)
     call check_axis(model, faults)
     ! What iterations of a mesher leave of zero. Sides are longer by far, but what it makes of gaps would load
     ! the scene.
@@ -66,10 +69,45 @@ contains
     if (model%elements == 0 .and. faults%errors == 0) &
       call faults%add_error(of_scene, 0, 0, 'the deck has no elements', 'CTRIA3 cards')
     if (faults%errors == 0) then
+      call put_case(cases, findloc(cases%case%pattern, pattern, dim=1), model)
       call finish_model(model, faults)
-      call put_case(cases, 1, model)
     end if
     call tell(deck, model%kinds, faults)
+
+  contains
+
+    !> The freedoms that each set of supports holds. Of the sets that hold others the first load case that has
+    !! them is noted.
+    subroutine hold_patterns()
+      logical, allocatable :: held(:, :, :)   ! by each pattern [2, nodes, patterns]
+      integer :: k
+
+      allocate (held(directions, model%nodes, 0))
+      do k = 1, size(cases%case)
+        call take_pattern(k, held)
+      end do
+      cases%patterns = size(held, 3)
+      model%held = held(:, :, min(pattern, cases%patterns))
+    end subroutine hold_patterns
+
+    !> The pattern of a load case.
+    subroutine take_pattern(k, held)
+      integer, intent(in) :: k
+      logical, allocatable, intent(inout) :: held(:, :, :)
+      integer :: p
+
+      p = findloc(cases%case(:k - 1)%supports, cases%case(k)%supports, dim=1)
+      if (p > 0) then
+        cases%case(k)%pattern = cases%case(p)%pattern
+        return
+      end if
+      call hold_nodes(deck, nodes, cases%case(k)%supports, model, faults)
+      do p = 1, size(held, 3)
+        if (all(held(:, :, p) .eqv. model%held)) exit
+      end do
+      cases%case(k)%pattern = p
+      if (p > size(held, 3)) held = reshape([held, model%held], [shape(model%held), p])
+    end subroutine take_pattern
   end subroutine build_model
 
   !> Put the names of their cards before what was found of the scene, with the places of these.

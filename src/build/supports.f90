@@ -5,109 +5,176 @@ module epcont_build_supports
   use epcont_build_reference, only: card_index, resolve
   use epcont_deck_card_kinds, only: card_grid, card_rbe2, card_spc, card_spc1, card_suport
   use epcont_deck_deck, only: deck_type
+  use epcont_element_kinematics, only: directions
   use epcont_model_finding, only: findings
   use epcont_model_freedoms, only: follow_to_the_end, freedom, set_reference, tie
   use epcont_model_model, only: model_type
   implicit none
   private
-  public :: build_supports
+  public :: build_ties, hold_nodes
+
+  !> A node that a card names, with some of its freedoms.
+  type :: named_node
+    integer :: card(3) = 0   !! table, card, field or item of its list that names the node
+    integer :: node = 0      !! which
+    integer :: digits = 0    !! the field that names the freedoms
+  end type named_node
 
 contains
 
-  !> Supports of a set; then ties, of which chains are followed to their end; then the reference
-  !! freedoms, which must be free of both.
-  subroutine build_supports(deck, nodes, support_set, model, found)
+  !> The freedoms that GRID PS and a set of supports hold, and where.
+  subroutine hold_nodes(deck, nodes, set, model, found)
     type(deck_type), intent(in) :: deck        !! its cards
     type(card_index), intent(in) :: nodes      !! ids of GRID
-    integer, intent(in) :: support_set         !! of SPC and SPC1; 0: none
+    integer, intent(in) :: set                 !! of SPC and SPC1; 0: none
     type(model_type), intent(inout) :: model   !! the scene
     type(findings), intent(inout) :: found     !! what is wrong with it is added
-    integer :: i, leader(deck%card(card_rbe2)%count), ps
+    type(named_node), allocatable :: named(:)
+    integer :: i, ps
 
+    model%held = .false.
+    model%prescribed = 0.0_wp
     associate (grid => deck%card(card_grid))
       ps = grid%column('PS')
       do i = 1, grid%count
-        if (grid%given(ps, i)) call take([card_grid, i, ps], i, ps)
+        if (grid%given(ps, i)) call hold(named_node([card_grid, i, ps], i, ps))
       end do
     end associate
-    call read_fields(card_spc, [2, 5])
-    call read_lists(card_spc1)
-    call resolve(deck, card_rbe2, 2, nodes, found, leader)
-    call read_lists(card_rbe2)
-    call follow_to_the_end(model%leader)
-    call read_fields(card_suport, [1, 3, 5, 7])
+    named = [nodes_of_fields(deck, card_spc, [2, 5], nodes, found), nodes_of_lists(deck, card_spc1, nodes, found)]
+    do i = 1, size(named)
+      call hold(named(i))
+    end do
 
   contains
 
-    !> SPC and SUPORT: nodes, each with its directions in the next field.
-    subroutine read_fields(card, columns)
-      integer, intent(in) :: card, columns(:)   !! which table, the fields of its nodes
-      integer :: i, k, node(deck%card(card)%count)
-
-      do k = 1, size(columns)
-        call resolve(deck, card, columns(k), nodes, found, node)
-        do i = 1, size(node)
-          if (node(i) > 0) call take([card, i, columns(k)], node(i), columns(k) + 1)
-        end do
-      end do
-    end subroutine read_fields
-
-    !> SPC1 and RBE2: directions, then a list of nodes. Of a range some may be missing.
-    subroutine read_lists(card)
-      integer, intent(in) :: card   !! which table
-      character(len=:), allocatable :: ids
-      integer :: i, item, k
-      integer, allocatable :: node(:)
-
-      associate (table => deck%card(card))
-        do i = 1, table%count
-          do item = table%list_start(i), table%list_start(i + 1) - 1
-            associate (from => table%list(item)%from, to => table%list(item)%to)
-              node = nodes%within(from, to)
-              if (size(node) == 0 .and. nodes%whole) then
-                ids = text_of(from)
-                if (to > from) ids = ids//' to '//text_of(to)
-                call found%add_error(card, i, -item, ': there is no GRID '//ids, 'the id of a GRID')
-              end if
-            end associate
-            do k = 1, size(node)
-              call take([card, i, -item], node(k), table%entry%list_slot - 1)
-            end do
-          end do
-        end do
-      end associate
-    end subroutine read_lists
-
     !> What a card says of the freedoms of a node. Of those that are held at another displacement already one
     !! is told.
-    subroutine take(card, node, digits)
-      integer, intent(in) :: card(3)        !! table, card, field or item of its list that names the node
-      integer, intent(in) :: node, digits   !! and the field that names the freedoms
+    subroutine hold(named)
+      type(named_node), intent(in) :: named
       integer :: c, conflict
       real(wp) :: displacement
 
       conflict = 0
       displacement = 0.0_wp
-      associate (value => deck%card(card(1))%value(:, card(2)))
-        if (any(card(1) == [card_spc, card_spc1]) .and. nint(value(1)) /= support_set) return
-        if (card(1) == card_spc) displacement = value(digits + 1)
-        do c = 1, 2
-          if (all(mod(nint(value(digits))/10**[0, 1, 2, 3, 4, 5], 10) /= c)) cycle
-          select case (card(1))
-          case (card_rbe2)
-            if (leader(card(2)) > 0) call tie(model, c, node, leader(card(2)), card, found)
-          case (card_suport)
-            call set_reference(model, c, node, card, found)
-          case default
-            if (model%held(c, node) .and. model%prescribed(c, node) /= displacement) conflict = c
-            model%held(c, node) = .true.
-            model%prescribed(c, node) = displacement
-          end select
+      associate (card => named%card, node => named%node, value => deck%card(named%card(1))%value(:, named%card(2)))
+        if (card(1) /= card_grid .and. nint(value(1)) /= set) return
+        if (card(1) == card_spc) displacement = value(named%digits + 1)
+        do c = 1, directions
+          if (.not. names(value(named%digits), c)) cycle
+          if (model%held(c, node) .and. model%prescribed(c, node) /= displacement) conflict = c
+          model%held(c, node) = .true.
+          model%prescribed(c, node) = displacement
+        end do
+        if (conflict > 0) call found%add_error( &
+          card(1), card(2), card(3), ': '//freedom(model, conflict, node)// &
+          ' is held at another displacement already', 'one displacement for each freedom')
+      end associate
+    end subroutine hold
+  end subroutine hold_nodes
+
+  !> Ties of the freedoms that no support holds, of which chains are followed to their end; then the reference
+  !! freedoms, which must be free of both.
+  subroutine build_ties(deck, nodes, of_all, model, found)
+    type(deck_type), intent(in) :: deck        !! its cards
+    type(card_index), intent(in) :: nodes      !! ids of GRID
+    !> Other load cases may hold other freedoms: of a SUPORT those that are held here are none of reference
+    logical, intent(in) :: of_all
+    type(model_type), intent(inout) :: model   !! the scene, with its supports
+    type(findings), intent(inout) :: found     !! what is wrong with it is added
+    type(named_node), allocatable :: named(:)
+    integer :: c, i, leader(deck%card(card_rbe2)%count)
+
+    call resolve(deck, card_rbe2, 2, nodes, found, leader)
+    named = nodes_of_lists(deck, card_rbe2, nodes, found)
+    do i = 1, size(named)
+      associate (card => named(i)%card, node => named(i)%node)
+        do c = 1, directions
+          if (leader(card(2)) > 0 .and. names(deck%card(card_rbe2)%value(named(i)%digits, card(2)), c)) &
+            call tie(model, c, node, leader(card(2)), card, found)
         end do
       end associate
-      if (conflict > 0) &
-        call found%add_error(card(1), card(2), card(3), ': '//freedom(model, conflict, node)// &
-                             ' is held at another displacement already', 'one displacement for each freedom')
-    end subroutine take
-  end subroutine build_supports
+    end do
+    call follow_to_the_end(model%leader)
+    named = nodes_of_fields(deck, card_suport, [1, 3, 5, 7], nodes, found)
+    do i = 1, size(named)
+      associate (card => named(i)%card, node => named(i)%node)
+        do c = 1, directions
+          if (model%held(c, node) .and. .not. of_all) cycle
+          if (names(deck%card(card_suport)%value(named(i)%digits, card(2)), c)) &
+            call set_reference(model, c, node, card, found)
+        end do
+      end associate
+    end do
+  end subroutine build_ties
+
+  !> Is a direction among the digits of a field?
+  elemental logical function names(digits, c)
+    real(wp), intent(in) :: digits
+    integer, intent(in) :: c
+
+    names = any(mod(nint(digits)/10**[0, 1, 2, 3, 4, 5], 10) == c)
+  end function names
+
+  !> SPC and SUPORT: nodes, each with its directions in the next field.
+  function nodes_of_fields(deck, card, columns, nodes, found) result(named)
+    type(deck_type), intent(in) :: deck
+    integer, intent(in) :: card, columns(:)   !! which table, the fields of its nodes
+    type(card_index), intent(in) :: nodes
+    type(findings), intent(inout) :: found
+    type(named_node), allocatable :: named(:)
+    integer :: i, k, node(deck%card(card)%count)
+
+    allocate (named(size(columns)*size(node)))
+    do k = 1, size(columns)
+      call resolve(deck, card, columns(k), nodes, found, node)
+      do i = 1, size(node)
+        named((k - 1)*size(node) + i) = named_node([card, i, columns(k)], node(i), columns(k) + 1)
+      end do
+    end do
+    named = pack(named, named%node > 0)
+  end function nodes_of_fields
+
+  !> SPC1 and RBE2: directions, then a list of nodes. Of a range some may be missing.
+  function nodes_of_lists(deck, card, nodes, found) result(named)
+    type(deck_type), intent(in) :: deck
+    integer, intent(in) :: card   !! which table
+    type(card_index), intent(in) :: nodes
+    type(findings), intent(inout) :: found
+    type(named_node), allocatable :: named(:)
+    integer :: i, item, k, last
+    integer, allocatable :: node(:)
+
+    last = 0
+    allocate (named(64))
+    associate (table => deck%card(card))
+      do i = 1, table%count
+        do item = table%list_start(i), table%list_start(i + 1) - 1
+          node = nodes%within(table%list(item)%from, table%list(item)%to)
+          if (size(node) == 0 .and. nodes%whole) call refuse(i, item)
+          do while (last + size(node) > size(named))   ! room doubles
+            named = [named, named]
+          end do
+          do k = 1, size(node)
+            named(last + k) = named_node([card, i, -item], node(k), table%entry%list_slot - 1)
+          end do
+          last = last + size(node)
+        end do
+      end do
+    end associate
+    named = named(:last)
+
+  contains
+
+    !> There is none of these nodes.
+    subroutine refuse(i, item)
+      integer, intent(in) :: i, item
+      character(len=:), allocatable :: ids
+
+      associate (from => deck%card(card)%list(item)%from, to => deck%card(card)%list(item)%to)
+        ids = text_of(from)
+        if (to > from) ids = ids//' to '//text_of(to)
+      end associate
+      call found%add_error(card, i, -item, ': there is no GRID '//ids, 'the id of a GRID')
+    end subroutine refuse
+  end function nodes_of_lists
 end module epcont_build_supports

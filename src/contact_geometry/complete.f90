@@ -53,7 +53,9 @@ contains
     call complete_pairs(model, .false., found)
     call find_contacts(model, found)
     call check_controls(model, found)
-    if (found%errors == 0) call finish_model(model, found)
+    if (found%errors > 0) return
+    call find_travels(model)
+    call finish_model(model, found)
 
   contains
 
@@ -77,14 +79,13 @@ contains
     end subroutine complete_freedoms
   end subroutine complete_model
 
-  !> What a scene without errors must still be refused or warned of, and its travels.
+  !> What a scene without errors must still be refused or warned of.
   subroutine finish_model(model, found)
     type(model_type), intent(inout) :: model   !! the scene
     type(findings), intent(inout) :: found   !! what is wrong with it is added
     type(outline_shape) :: drawn
 
     call check_pairs(model, found)
-    call find_travels(model)
     drawn = new_outline_shape(model%body_outline, model%x)
     call warn_of_hanging_nodes(model, drawn, found)
     call warn_of_lying_together(model, drawn, found)

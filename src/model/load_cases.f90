@@ -37,11 +37,13 @@ module epcont_model_load_cases
     integer, allocatable :: set(:)              !! of loads, by their ids
     real(wp), allocatable :: factor(:)          !! of each
     integer :: supports = 0                     !! set of supports, by its id; 0: none
+    integer :: pattern = 1                      !! of the freedoms that they hold
   end type load_case
 
   !> All cases, and what their sets say.
   type :: load_cases
     type(load_case), allocatable :: case(:)
+    integer :: patterns = 1                                !! of held freedoms: scenes that are solved apart
     type(nodal_force), allocatable :: force(:)             !! FORCE
     type(set_pressure), allocatable :: pressure(:)         !! PLOADX1
     type(set_displacement), allocatable :: held_at(:)      !! SPC, of sets of supports; others are held at 0

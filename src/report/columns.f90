@@ -122,7 +122,7 @@ contains
     character(len=*), intent(in) :: names   !! commas between them
 
     if (self%subcase == 0) call self%line(names)
-    if (self%subcase > 0 .and. self%is_empty()) call self%line('subcase,'//names)
+    if (self%subcase > 0) call self%line('subcase,'//names)
   end subroutine head
 
   !> A row of a file.

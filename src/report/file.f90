@@ -219,11 +219,17 @@ contains
   end subroutine put
 
   !> Add what another holds in memory.
-  subroutine add(self, other)
+  subroutine add(self, other, without_head)
     class(text_file), intent(inout) :: self
     class(text_file), intent(in) :: other
+    logical, intent(in), optional :: without_head   !! but for its first line
+    integer :: first
 
-    call put(self, other%text(:other%used))
+    first = 1
+    if (present(without_head)) then
+      if (without_head) first = index(other%text(:other%used), newline) + 1
+    end if
+    call put(self, other%text(first:other%used))
   end subroutine add
 
   !> Is there nothing in memory?

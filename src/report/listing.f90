@@ -11,7 +11,6 @@ module epcont_report_listing
   use epcont_report_echo, only: list_cards
   use epcont_report_names, only: centre_name, joined, point_name, when
   use epcont_report_outcome, only: limit_of_pressure, most_pairs, poisson_text, remark_lines, unbounded
-  use epcont_report_plan_text, only: plan_text
   use epcont_report_run, only: run_results
   use epcont_report_scene_text, only: deeper
   use epcont_report_summary, only: figure_type
@@ -23,10 +22,10 @@ module epcont_report_listing
 contains
 
   !> Title, what the deck holds, warnings and notes, those of its only case among them, and the plan.
-  subroutine list_scene(run, listing)
+  subroutine list_scene(run, plan, listing)
     type(run_results), intent(in) :: run         !! what is known of the run
+    character(len=*), intent(in) :: plan         !! in lines
     type(table_type), intent(inout) :: listing   !! is added to
-    character(len=:), allocatable :: plan
 
     call list_deck()
     call list_cards(listing, run%deck)
@@ -37,7 +36,6 @@ contains
                         run%faults%warnings + run%outcome%found%warnings, &
                         run%faults%notes + run%outcome%found%notes, listing)
     end if
-    plan = plan_text(run%planned_scene)
     call listing%line(plan(:len(plan) - 1))
 
   contains

@@ -36,8 +36,9 @@ module epcont_report_plan_text
 contains
 
   !> The plan of a scene, in lines.
-  function plan_text(scene) result(text)
+  function plan_text(scene, of) result(text)
     type(planned_scene), intent(in) :: scene   !! what is to be solved, and how
+    character(len=*), intent(in), optional :: of   !! these load cases
     character(len=:), allocatable :: text
     logical :: in_double
     type(iteration_plan) :: iteration
@@ -47,7 +48,8 @@ contains
     iteration = scene%iteration
     in_double = iteration%precision == precision_double
     plan%text = ''
-    call plan%heading('PLAN')
+    if (present(of)) call plan%heading('PLAN  ('//of//')')
+    if (.not. present(of)) call plan%heading('PLAN')
     call say(plural(scene%model%nodes, 'node')//', '//plural(scene%model%elements, 'element')//', '// &
              plural(scene%model%pairs, 'pair')//'; bodies: '//text_of(scene%model%bodies))
     if (iteration%from_first_pivot) &

@@ -7,6 +7,8 @@ module epcont_report_results
   use epcont_report_columns, only: table_type
   use epcont_report_file, only: new_text_file, remove_file, text_file
   use epcont_report_listing, only: list_case, list_scene
+  use epcont_report_names, only: joined
+  use epcont_report_plan_text, only: plan_text
   use epcont_report_run, only: run_results
   use epcont_report_summary, only: figure_type, summarise
   use epcont_report_tables, only: put_table
@@ -40,34 +42,55 @@ module epcont_report_results
   character(len=8), parameter :: table_name(*) = [character(len=8) :: &
     'summary', 'contact', 'zones', 'bodies', 'history', 'pivots', 'nodes', 'elements']
 
+  !> What there is to write of one of several load cases.
+  type :: case_results
+    type(case_row) :: row
+    type(table_type) :: listing
+    type(table_type) :: table(size(table_name))
+  end type case_results
+
   !> What a run writes, and what of several load cases is written already, in memory.
   type :: results_type
     character(len=:), allocatable :: stem             !! path of the files, without their suffixes
     !> Asked for on the command line: tables of nodes and elements though the deck does not, the listing and
     !! the summary alone, and files for ParaView
     logical :: all_tables = .false., brief = .false., vtk = .false.
-    type(table_type), private :: listing
-    type(table_type), private :: table(size(table_name))
-    type(case_row), allocatable, private :: case(:)
+    type(case_results), allocatable, private :: case(:)
+    character(len=:), allocatable, private :: plan    !! of all scenes that cases make, in lines
   contains
     procedure :: begin
+    procedure :: add_plan
     procedure :: add_case
     procedure :: finish
   end type results_type
 
+  !> Load cases that a plan is of are named, up to so many.
+  integer, parameter :: most_named = 12
+
 contains
 
-  !> Nothing is taken yet, or load cases are to be solved again.
-  subroutine begin(self)
+  !> Nothing is taken yet.
+  subroutine begin(self, run)
     class(results_type), intent(inout) :: self
-    integer :: k
+    type(run_results), intent(in) :: run   !! whose load cases will come
 
-    self%listing = table_type(text='')
-    do k = 1, size(table_name)
-      self%table(k) = table_type(text='', listed=.false.)
-    end do
-    self%case = [case_row ::]
+    allocate (self%case(size(run%deck%subcase)))
+    self%plan = ''
   end subroutine begin
+
+  !> Take the plan of some load cases.
+  subroutine add_plan(self, run, cases)
+    class(results_type), intent(inout) :: self
+    type(run_results), intent(in) :: run   !! with the plan
+    integer, intent(in) :: cases(:)        !! which
+
+    if (size(cases) == size(self%case)) then
+      self%plan = plan_text(run%planned_scene)
+    else
+      self%plan = self%plan//plan_text(run%planned_scene, &
+                                       'SUBCASE '//joined(run%deck%subcase(cases)%id, ' ', most_named))
+    end if
+  end subroutine add_plan
 
   !> Take what came of a load case; that of the only one is written.
   subroutine add_case(self, run, error)
@@ -80,18 +103,30 @@ contains
     if (run%case == 1) call remove_results(self%stem)
     figures = summarise(run)
     if (run%has_cases()) then
-      call list_case(run, figures, self%all_tables, self%listing)
-      self%case = [self%case, row_of_case(run)]
+      call hold_case(self%case(run%case))
     else
       call write_listing()
     end if
     do k = 1, size(table_name)
-      if (is_wanted(trim(table_name(k)))) call write_table(trim(table_name(k)), self%table(k))
+      if (is_wanted(trim(table_name(k)))) &
+        call write_table(trim(table_name(k)), self%case(run%case)%table(k))
     end do
     if (self%vtk .and. run%outcome%has_answer .and. .not. allocated(error)) &
       call write_vtk(run, self%stem//run%case_suffix(), error)
 
   contains
+
+    !> One of several is added to no file yet.
+    subroutine hold_case(case)
+      type(case_results), intent(inout) :: case
+
+      case%row = row_of_case(run)
+      case%listing = table_type(text='')
+      call list_case(run, figures, self%all_tables, case%listing)
+      do k = 1, size(table_name)
+        case%table(k) = table_type(text='', listed=.false., subcase=case%row%subcase)
+      end do
+    end subroutine hold_case
 
     !> Has the case such a table, and is it asked for?
     pure logical function is_wanted(name)
@@ -119,21 +154,19 @@ contains
 
       call new_text_file(self%stem//'.lst', listing, error)
       if (allocated(error)) return
-      call list_scene(run, listing)
+      call list_scene(run, plan_text(run%planned_scene), listing)
       call list_case(run, figures, self%all_tables, listing)
       call listing%finish(error)
     end subroutine write_listing
 
-    !> The rows of a table, in a file of its own or added to those of other cases, where all has gone well so
-    !! far.
+    !> The rows of a table, in a file of its own or held, where all has gone well so far.
     subroutine write_table(name, held)
       character(len=*), intent(in) :: name
-      type(table_type), intent(inout) :: held   !! the rows of the cases before
+      type(table_type), intent(inout) :: held   !! of one of several cases
       type(table_type) :: table
 
       if (allocated(error)) return
       if (run%has_cases()) then
-        held%subcase = run%deck%subcase(run%case)%id
         call put_rows(name, held)
       else
         call new_text_file(self%stem//'.'//name//'.csv', table, error)
@@ -168,33 +201,50 @@ contains
     if (.not. run%has_cases()) return
     call new_text_file(self%stem//'.lst', file, error)
     if (allocated(error)) return
-    call list_scene(run, file)
-    call file%add(self%listing)
-    call put_cases(self%case, file)
+    call list_scene(run, self%plan, file)
+    do k = 1, size(self%case)
+      call file%add(self%case(k)%listing)
+    end do
+    call put_cases(self%case%row, file)
     call file%finish(error)
     do k = 1, size(table_name)
-      if (.not. self%table(k)%is_empty()) call write_table(trim(table_name(k)), self%table(k))
+      call write_table(k)
     end do
-    if (.not. self%brief) then
-      self%listing = table_type(text='', listed=.false.)
-      call put_cases(self%case, self%listing)
-      call write_table('cases', self%listing)
-    end if
+    if (.not. self%brief) call write_cases()
     if (self%vtk .and. .not. allocated(error)) call write_collection(run, self%stem, error)
 
   contains
 
-    !> The rows of all cases.
-    subroutine write_table(name, held)
-      character(len=*), intent(in) :: name
-      type(table_type), intent(in) :: held
+    !> The rows of all cases, below one line of heads.
+    subroutine write_table(t)
+      integer, intent(in) :: t   !! which table
       type(text_file) :: file
+      logical :: begun
+      integer :: k
 
-      if (.not. allocated(error)) call new_text_file(self%stem//'.'//name//'.csv', file, error)
+      if (all([(self%case(k)%table(t)%is_empty(), k=1, size(self%case))])) return
+      if (.not. allocated(error)) &
+        call new_text_file(self%stem//'.'//trim(table_name(t))//'.csv', file, error)
       if (allocated(error)) return
-      call file%add(held)
+      begun = .false.
+      do k = 1, size(self%case)
+        if (self%case(k)%table(t)%is_empty()) cycle
+        call file%add(self%case(k)%table(t), without_head=begun)
+        begun = .true.
+      end do
       call file%finish(error)
     end subroutine write_table
+
+    !> What came of each case.
+    subroutine write_cases()
+      type(table_type) :: file
+
+      if (.not. allocated(error)) call new_text_file(self%stem//'.cases.csv', file, error)
+      if (allocated(error)) return
+      file%listed = .false.
+      call put_cases(self%case%row, file)
+      call file%finish(error)
+    end subroutine write_cases
   end subroutine finish
 
   !> Figures in full.

@@ -238,6 +238,7 @@ contains
     character(len=*), intent(in) :: stem                  !! path of the files, without their suffixes
     type(error_type), allocatable, intent(out) :: error   !! the file cannot be written
     type(text_file) :: file
+    character(len=:), allocatable :: id
     integer :: k
 
     call new_text_file(stem//'.pvd', file, error)
@@ -246,10 +247,9 @@ contains
     call file%line('<VTKFile type="Collection" version="1.0">')
     call file%line('<Collection>')
     do k = 1, size(run%deck%subcase)
-      associate (id => text_of(run%deck%subcase(k)%id))
-        call file%line('<DataSet timestep="'//id//'" file="'//stem(index(stem, '/', back=.true.) + 1:)// &
-                       '.case'//id//'.vtu"/>')
-      end associate
+      id = text_of(run%deck%subcase(k)%id)
+      call file%line('<DataSet timestep="'//id//'" file="'//stem(index(stem, '/', back=.true.) + 1:)// &
+                     '.case'//id//'.vtu"/>')
     end do
     call file%line('</Collection>')
     call file%line('</VTKFile>')

@@ -50,7 +50,7 @@ contains
     type(observer) :: watch
 
     call read_deck(path, deck, faults, error)
-    call build_model(deck, solved%model, cases, faults)
+    call build_model(deck, 1, solved%model, cases, faults)
     if (faults%errors > 0) error stop 'solved_scene: the deck is not sound'
     call solved%find_motions(loose)
     if (loose%errors > 0) error stop 'solved_scene: a body is loose'

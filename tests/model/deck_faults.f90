@@ -45,7 +45,7 @@ contains
     type(planned_scene) :: scene
 
     call read_lines(cards//'ENDDATA|', deck, faults)
-    call build_model(deck, scene%model, cases, faults)
+    call build_model(deck, 1, scene%model, cases, faults)
     if (faults%errors == 0) call scene%find_motions(faults)
     call tell(deck, scene%model%kinds, faults)
     words = bars(render(faults, deck%source))
@@ -60,7 +60,7 @@ contains
     type(load_cases) :: cases
 
     call read_lines(cards//'ENDDATA|', deck, faults)
-    call build_model(deck, model, cases, faults)
+    call build_model(deck, 1, model, cases, faults)
     if (faults%errors > 0) error stop 'deck_faults: the deck is not sound'
   end function model_of
 end module deck_faults
