@@ -23,7 +23,7 @@ module epcont_build_build
   use epcont_model_element_shapes, only: check_axis
   use epcont_model_finding, only: findings, of_body, of_couple, of_element, of_line, of_node, of_pair, &
       of_paper_ratio, of_scene
-  use epcont_model_load_cases, only: load_cases, put_case
+  use epcont_model_load_cases, only: contact_all, load_cases, put_case
   use epcont_model_model, only: model_type
   implicit none
   private
@@ -44,6 +44,7 @@ contains
     type(load_cases), intent(out) :: cases       !! all of them
     type(diagnostics), intent(inout) :: faults   !! of the deck; they are added to
     type(card_index) :: nodes
+    integer :: chosen   ! contacts
     integer :: k
 
     model%kinds = element_kinds()
@@ -58,11 +59,13 @@ contains
     call build_cases(deck, nodes, model, cases, faults)
     call hold_patterns()
     call build_ties(deck, nodes, cases%patterns == 1, model, faults)
+    chosen = cases%case(findloc(cases%case%pattern, pattern, dim=1))%contact
     call check_axis(model, faults)
     ! What iterations of a mesher leave of zero. Sides are longer by far, but what it makes of gaps would load
     ! the scene.
     where (abs(model%x) < least_cause) model%x = 0.0_wp
-    call build_contacts(deck, nodes, model, faults)
+    call build_contacts(deck, nodes, chosen, model, faults)
+    model%contact_is_off = chosen /= contact_all
     call find_contacts(model, faults)
     call check_once(deck, model%controls%original, faults)
     call check_controls(model, faults)
@@ -72,42 +75,56 @@ contains
       call put_case(cases, findloc(cases%case%pattern, pattern, dim=1), model)
       call finish_model(model, faults)
     end if
+    call find_card_of_contact()
     call tell(deck, model%kinds, faults)
 
   contains
 
-    !> The freedoms that each set of supports holds. Of the sets that hold others the first load case that has
-    !! them is noted.
+    !> The patterns of the load cases: of the freedoms that their supports hold, and of their contacts.
     subroutine hold_patterns()
       logical, allocatable :: held(:, :, :)   ! by each pattern [2, nodes, patterns]
+      integer, allocatable :: first(:)        ! case of each pattern
       integer :: k
 
-      allocate (held(directions, model%nodes, 0))
+      allocate (held(directions, model%nodes, 0), first(0))
       do k = 1, size(cases%case)
-        call take_pattern(k, held)
+        call take_pattern(k, held, first)
       end do
-      cases%patterns = size(held, 3)
+      cases%patterns = size(first)
       model%held = held(:, :, min(pattern, cases%patterns))
     end subroutine hold_patterns
 
     !> The pattern of a load case.
-    subroutine take_pattern(k, held)
+    subroutine take_pattern(k, held, first)
       integer, intent(in) :: k
       logical, allocatable, intent(inout) :: held(:, :, :)
-      integer :: p
+      integer, allocatable, intent(inout) :: first(:)
+      integer :: before, p
 
-      p = findloc(cases%case(:k - 1)%supports, cases%case(k)%supports, dim=1)
-      if (p > 0) then
-        cases%case(k)%pattern = cases%case(p)%pattern
-        return
-      end if
-      call hold_nodes(deck, nodes, cases%case(k)%supports, model, faults)
-      do p = 1, size(held, 3)
-        if (all(held(:, :, p) .eqv. model%held)) exit
-      end do
-      cases%case(k)%pattern = p
-      if (p > size(held, 3)) held = reshape([held, model%held], [shape(model%held), p])
+      associate (case => cases%case)
+        before = findloc(case(:k - 1)%supports, case(k)%supports, dim=1)
+        if (before == 0) call hold_nodes(deck, nodes, case(k)%supports, model, faults)
+        if (before > 0) model%held = held(:, :, case(before)%pattern)
+        do p = 1, size(first)
+          if (case(k)%contact == case(first(p))%contact .and. all(held(:, :, p) .eqv. model%held)) exit
+        end do
+        case(k)%pattern = p
+      end associate
+      if (p <= size(first)) return
+      first = [first, k]
+      held = reshape([held, model%held], [shape(model%held), p])
     end subroutine take_pattern
+
+    !> Of contacts the only one is chosen: what is found of it is of its card.
+    subroutine find_card_of_contact()
+      integer :: i
+
+      if (chosen <= 0) return
+      do i = 1, faults%count
+        if (faults%list(i)%of == of_couple) &
+          faults%list(i)%which = findloc(nint(deck%card(card_bconp)%value(1, :)), chosen, dim=1)
+      end do
+    end subroutine find_card_of_contact
   end subroutine build_model
 
   !> Put the names of their cards before what was found of the scene, with the places of these.

@@ -4,7 +4,7 @@ module epcont_build_cases
   use epcont_base_sorting, only: new_id_index
   use epcont_base_text, only: short_real, text_of
   use epcont_build_reference, only: card_index, chosen_sets, note_unused, resolve
-  use epcont_deck_card_kinds, only: card_force, card_load, card_ploadx1, card_spc, card_spc1, card_spcd
+  use epcont_deck_card_kinds, only: card_bconp, card_force, card_load, card_ploadx1, card_spc, card_spc1, card_spcd
   use epcont_deck_deck, only: deck_type
   use epcont_deck_entry, only: farthest, least_cause
   use epcont_model_arrays, only: side_pressure
@@ -41,10 +41,12 @@ contains
     do k = 1, size(loads)
       cases%case(k)%id = deck%subcase(k)%id
       cases%case(k)%supports = supports(k)
+      cases%case(k)%contact = deck%subcase(k)%contact%id
       call combine(loads(k), cases%case(k))
       used = [used, cases%case(k)%set]
     end do
     call check_combinations()
+    call check_contacts()
     call note_unused(deck, load_cards, used, found)
     call note_unused(deck, [card_load], loads, found)
     call add_forces()
@@ -94,6 +96,19 @@ contains
         end do
       end associate
     end subroutine check_combinations
+
+    !> BCONTACT names a BCONP.
+    subroutine check_contacts()
+      integer :: k
+
+      do k = 1, size(deck%subcase)
+        associate (contact => deck%subcase(k)%contact)
+          if (contact%id <= 0 .or. any(nint(deck%card(card_bconp)%value(1, :)) == contact%id)) cycle
+          call found%add_error(contact%place, 'BCONTACT = '//text_of(contact%id)// &
+                               ': there is no such BCONP', 'ALL, NONE or the id of a BCONP')
+        end associate
+      end do
+    end subroutine check_contacts
 
     !> FORCE.
     subroutine add_forces()

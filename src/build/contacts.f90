@@ -8,6 +8,7 @@ module epcont_build_contacts
   use epcont_deck_deck, only: deck_type
   use epcont_model_arrays, only: set_pairs
   use epcont_model_finding, only: findings
+  use epcont_model_load_cases, only: contact_all, contact_none
   use epcont_model_model, only: model_type
   use epcont_model_single_pairs, only: complete_pairs
   implicit none
@@ -17,9 +18,10 @@ module epcont_build_contacts
 contains
 
   !> Pairs, then lines.
-  subroutine build_contacts(deck, nodes, model, found)
+  subroutine build_contacts(deck, nodes, chosen, model, found)
     type(deck_type), intent(in) :: deck        !! its cards
     type(card_index), intent(in) :: nodes      !! ids of GRID
+    integer, intent(in) :: chosen              !! the only BCONP; contact_all or contact_none
     type(model_type), intent(inout) :: model   !! the scene
     type(findings), intent(inout) :: found     !! what is wrong with it is added
     !> x-axes in the plane of the systems: the basic one, number 0, and those of CORD2R
@@ -30,7 +32,8 @@ contains
     do i = 1, deck%card(card_cord2r)%count
       if (deck%card(card_cord2r)%sound(i)) call read_system()
     end do
-    call read_pairs()
+    if (chosen /= contact_none) call read_pairs()
+    if (chosen == contact_none) model%pair_id = [integer ::]
     deallocate (model%line, model%couple)
     allocate (model%line(deck%card(card_blseg)%count), model%couple(deck%card(card_bconp)%count))
     model%line%id = nint(deck%card(card_blseg)%value(1, :))
@@ -41,6 +44,7 @@ contains
     do k = 1, 2
       call resolve(deck, card_bconp, 1 + k, index_of(deck, card_blseg), found, model%couple%line(k))
     end do
+    if (chosen /= contact_all) model%couple = pack(model%couple, model%couple%id == chosen)
 
   contains
 

@@ -12,9 +12,6 @@ module epcont_deck_case_control
   private
   public :: case_control, set_choice, subcase_control, read_case_control
 
-  !> The contacts of a load case, beside the id of its one BCONP.
-  integer, parameter, public :: contact_all = 0, contact_none = -1
-
   !> The set that a statement chooses; 0: no choice.
   type :: set_choice
     integer :: id = 0
@@ -27,7 +24,7 @@ module epcont_deck_case_control
     type(place_type) :: place                                !! of its SUBCASE
     character(len=:), allocatable :: subtitle, label         !! empty where not given
     type(set_choice) :: spc, load
-    type(set_choice) :: contact                              !! contact_all, contact_none or a BCONP
+    type(set_choice) :: contact                              !! the only BCONP; 0: all; -1: none
     logical :: displacement = .false., stress = .false., spcforces = .false.  !! tables wanted
   end type subcase_control
 
@@ -150,8 +147,8 @@ contains
       case ('BCONTACT')
         now%contact%place = parts%value_place
         if (all(upper(parts%value) /= ['ALL ', 'NONE'])) call take_set(now%contact)
-        if (upper(parts%value) == 'ALL') now%contact%id = contact_all
-        if (upper(parts%value) == 'NONE') now%contact%id = contact_none
+        if (upper(parts%value) == 'ALL') now%contact%id = 0
+        if (upper(parts%value) == 'NONE') now%contact%id = -1
       case ('ECHO')
         ! Words with commas between, some with options: `SORT(EXCEPT GRID), PUNCH`.
         words = ' '//upper(parts%value)

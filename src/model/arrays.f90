@@ -62,6 +62,7 @@ module epcont_model_arrays
     real(wp), allocatable :: initial_gap(:)     !! [length] [pairs]
     type(named_line), allocatable :: line(:)    !! lines of nodes [any]
     type(line_couple), allocatable :: couple(:) !! which of these may touch [any]
+    logical :: contact_is_off = .false.         !! bodies may pass through each other, which is warned of
     type(controls_type) :: controls             !! of the plastic iteration
   end type scene_type
 
@@ -157,6 +158,7 @@ contains
     deallocate (scene%block, scene%line)
     allocate (scene%block(size(given%block)), scene%line(size(given%line)))
     scene%controls = given%controls
+    scene%contact_is_off = given%contact_is_off
     call copy_lists(given%block, given%curve, given%line)
 
   contains

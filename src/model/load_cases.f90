@@ -11,6 +11,9 @@ module epcont_model_load_cases
   private
   public :: load_case, load_cases, put_case
 
+  !> The contacts of a case, beside the id of its one BCONP.
+  integer, parameter, public :: contact_all = 0, contact_none = -1
+
   !> A force at a node.
   type, public :: nodal_force
     integer :: set = 0                          !! by its id
@@ -37,13 +40,14 @@ module epcont_model_load_cases
     integer, allocatable :: set(:)              !! of loads, by their ids
     real(wp), allocatable :: factor(:)          !! of each
     integer :: supports = 0                     !! set of supports, by its id; 0: none
-    integer :: pattern = 1                      !! of the freedoms that they hold
+    integer :: contact = 0                      !! the only BCONP that it has; contact_all or contact_none
+    integer :: pattern = 1                      !! of the freedoms that supports hold, and contacts
   end type load_case
 
   !> All cases, and what their sets say.
   type :: load_cases
     type(load_case), allocatable :: case(:)
-    integer :: patterns = 1                                !! of held freedoms: scenes that are solved apart
+    integer :: patterns = 1                                !! scenes that are solved apart
     type(nodal_force), allocatable :: force(:)             !! FORCE
     type(set_pressure), allocatable :: pressure(:)         !! PLOADX1
     type(set_displacement), allocatable :: held_at(:)      !! SPC, of sets of supports; others are held at 0

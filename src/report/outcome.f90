@@ -96,7 +96,7 @@ contains
       is_exact = run%answer%lost() <= lost_digits
       if (run%answer%converged .and. run%certificate%valid .and. is_exact) then
         call conclude(status_valid, 'valid', '')
-        if (.not. run%certificate%scene%sound()) call conclude( &
+        if (.not. (run%certificate%scene%sound() .or. run%model%contact_is_off)) call conclude( &
           status_numerical, doubtful, scene_sentence(run%model, run%certificate%scene, unsound))
       else if (.not. run%answer%converged .and. &
                (run%certificate%balanced .and. is_exact .or. run%answer%runs_away)) then
@@ -113,6 +113,8 @@ contains
     subroutine remark_answer()
       integer :: k, vague
 
+      if (run%model%contact_is_off .and. .not. run%certificate%scene%sound()) call warn( &
+        'contact is off (BCONTACT): '//scene_sentence(run%model, run%certificate%scene, unsound))
       call warn_of_contact()
       call warn_of_forces()
       do k = 1, scene_warnings
