@@ -32,8 +32,7 @@ contains
     do i = 1, deck%card(card_cord2r)%count
       if (deck%card(card_cord2r)%sound(i)) call read_system()
     end do
-    if (chosen /= contact_none) call read_pairs()
-    if (chosen == contact_none) model%pair_id = [integer ::]
+    call read_pairs()
     deallocate (model%line, model%couple)
     allocate (model%line(deck%card(card_blseg)%count), model%couple(deck%card(card_bconp)%count))
     model%line%id = nint(deck%card(card_blseg)%value(1, :))
@@ -89,9 +88,9 @@ contains
           if (property(i) > 0) gap(i) = deck%card(card_pgap)%number('U0', property(i))
           if (cgap%has('CID', i)) normal(:, i) = axis(:, system(i))
         end do
-        call set_pairs(model%scene_type, node, normal, gap)
-        model%pairs = cgap%count
-        model%pair_id = nint(cgap%value(1, :))
+        model%pairs = merge(0, cgap%count, chosen == contact_none)
+        call set_pairs(model%scene_type, node(:, :model%pairs), normal(:, :model%pairs), gap(:model%pairs))
+        model%pair_id = nint(cgap%value(1, :model%pairs))
       end associate
       call complete_pairs(model, deck%parameter_word('GAPGEOM') == 'YES', found)
     end subroutine read_pairs
