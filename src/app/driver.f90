@@ -12,7 +12,7 @@ module epcont_app_driver
   use epcont_deck_deck, only: read_deck
   use epcont_deck_render, only: render, render_notes
   use epcont_linalg_rate, only: measured_rate
-  use epcont_model_load_cases, only: load_cases, put_case
+  use epcont_model_load_cases, only: put_case
   use epcont_plan_planned_scene, only: planned_scene
   use epcont_report_columns, only: known, listed_number, number, right
   use epcont_report_file, only: file_lock, lock_files, unlock_files
@@ -117,7 +117,7 @@ contains
       integer, intent(in) :: p
       type(diagnostics) :: told   ! all of it is known
 
-      call build_model(run%deck, p, run%model, run%cases, told)
+      call build_model(run%deck, run%model, told, of_pattern=p)
       call run%find_motions(told)
       call run%make_plan(watch)
     end subroutine take_pattern
@@ -180,7 +180,7 @@ contains
       call read_deck(path, run%deck, run%faults, error)
       call watch%lap(stage_reading)
       if (allocated(error)) return
-      call build_model(run%deck, 1, run%model, run%cases, run%faults)
+      call build_model(run%deck, run%model, run%faults, run%cases)
       call watch%lap(stage_model)
       if (run%faults%errors > 0) return
       call run%find_motions(run%faults)
@@ -192,13 +192,12 @@ contains
     !> What is wrong with the scene where load cases hold other freedoms than the first, and not there too.
     subroutine check_patterns()
       type(planned_scene) :: other
-      type(load_cases) :: cases
       type(diagnostics) :: faults
       integer :: i, p
 
       do p = 2, run%cases%patterns
         faults = diagnostics()
-        call build_model(run%deck, p, other%model, cases, faults)
+        call build_model(run%deck, other%model, faults, of_pattern=p)
         if (faults%errors == 0) call other%find_motions(faults)
         call tell(run%deck, other%model%kinds, faults)
         do i = 1, faults%count

@@ -37,16 +37,19 @@ contains
 
   !> Build the scene; whatever is wrong with it is added to `faults`, and the model serves only without
   !! errors.
-  subroutine build_model(deck, pattern, model, cases, faults)
+  subroutine build_model(deck, model, faults, all_cases, of_pattern)
     type(deck_type), intent(in) :: deck          !! its cards
-    integer, intent(in) :: pattern               !! of the freedoms that supports hold; 1: of the first case
     type(model_type), intent(out) :: model       !! the scene, with the first load case of that pattern
-    type(load_cases), intent(out) :: cases       !! all of them
     type(diagnostics), intent(inout) :: faults   !! of the deck; they are added to
+    type(load_cases), intent(out), optional :: all_cases   !! of the deck
+    integer, intent(in), optional :: of_pattern  !! of supports and contacts; else that of the first case
     type(card_index) :: nodes
-    integer :: chosen   ! contacts
+    type(load_cases) :: cases
+    integer :: chosen, pattern   ! contacts, and what of_pattern says
     integer :: k
 
+    pattern = 1
+    if (present(of_pattern)) pattern = of_pattern
     model%kinds = element_kinds()
     do k = 1, size(own_ids)
       call check_unique(deck, own_ids(k:k), faults)
@@ -75,6 +78,7 @@ contains
       call put_case(cases, findloc(cases%case%pattern, pattern, dim=1), model)
       call finish_model(model, faults)
     end if
+    if (present(all_cases)) all_cases = cases
     call find_card_of_contact()
     call tell(deck, model%kinds, faults)
 

@@ -5,7 +5,6 @@ module solved_scene
   use epcont_base_kinds, only: wp
   use epcont_deck_deck, only: deck_type, read_deck
   use epcont_base_diagnostic, only: diagnostics
-  use epcont_model_load_cases, only: load_cases
   use epcont_build_build, only: build_model
   use epcont_certificate_certificate, only: certify
   use epcont_model_finding, only: findings
@@ -44,13 +43,12 @@ contains
     type(scene), intent(out) :: solved
     type(deck_type) :: deck
     type(diagnostics) :: faults
-    type(load_cases) :: cases
     type(error_type), allocatable :: error
     type(findings) :: loose
     type(observer) :: watch
 
     call read_deck(path, deck, faults, error)
-    call build_model(deck, 1, solved%model, cases, faults)
+    call build_model(deck, solved%model, faults)
     if (faults%errors > 0) error stop 'solved_scene: the deck is not sound'
     call solved%find_motions(loose)
     if (loose%errors > 0) error stop 'solved_scene: a body is loose'

@@ -4,7 +4,6 @@ module deck_faults
   use epcont_deck_deck, only: deck_type
   use epcont_base_diagnostic, only: diagnostics
   use epcont_deck_render, only: render
-  use epcont_model_load_cases, only: load_cases
   use epcont_build_build, only: build_model, tell
   use epcont_model_model, only: model_type
   use epcont_plan_planned_scene, only: planned_scene
@@ -41,11 +40,10 @@ contains
     character(len=:), allocatable :: words
     type(deck_type) :: deck
     type(diagnostics) :: faults
-    type(load_cases) :: cases
     type(planned_scene) :: scene
 
     call read_lines(cards//'ENDDATA|', deck, faults)
-    call build_model(deck, 1, scene%model, cases, faults)
+    call build_model(deck, scene%model, faults)
     if (faults%errors == 0) call scene%find_motions(faults)
     call tell(deck, scene%model%kinds, faults)
     words = bars(render(faults, deck%source))
@@ -57,10 +55,9 @@ contains
     type(model_type) :: model
     type(deck_type) :: deck
     type(diagnostics) :: faults
-    type(load_cases) :: cases
 
     call read_lines(cards//'ENDDATA|', deck, faults)
-    call build_model(deck, 1, model, cases, faults)
+    call build_model(deck, model, faults)
     if (faults%errors > 0) error stop 'deck_faults: the deck is not sound'
   end function model_of
 end module deck_faults
