@@ -58,8 +58,7 @@ contains
     call linear%joined%respond(scene, linear%factored_bodies, load, opening, force, u)
     change = max(change, maxval(abs(force(pressed, loads + 1:)), dim=1)/maxval(answer%contact%force))
     call linear%estimate_condition(scene, condition)
-    sensitivity = contact_sensitivity(.true., change(1), min(1.0_wp, epsilon(1.0_wp)* &
-                                                             (condition*change(1) + change(2))))
+    sensitivity = contact_sensitivity(.true., change(1), rounding())
     do j = scene%motions%count + 1, loads
       if (give_way(opening(:, j))) force(:, j) = 0.0_wp
     end do
@@ -67,6 +66,13 @@ contains
     passed%displacement = u(:, :loads, :)
 
   contains
+
+    !> What rounding may leave in a force, of the largest: what the last step of the contact has not changed is
+    !! right, but for what gaps are the sum of.
+    real(wp) function rounding()
+      rounding = min(condition*epsilon(1.0_wp)*change(1), linear%joined%correction + epsilon(1.0_wp)*change(1))
+      rounding = min(1.0_wp, rounding + epsilon(1.0_wp)*change(2))
+    end function rounding
 
     !> Equal parts, and the alternating column that finds what they cancel.
     subroutine begin_probes(x)

@@ -44,6 +44,7 @@ module epcont_linear_joined_contact
     logical :: failed = .false.     !! to find a contact, or all that is to be told of it
     !> What a pair gives way by under a force of its own, about [length/force] [pairs]
     real(wp), allocatable :: compliance(:)
+    real(wp) :: correction = huge(1.0_wp)          !! of forces by the last step, of the largest
     real(wp), allocatable, private :: gamma(:)     !! springs of the pairs [force/length] [pairs]
     real(wp), allocatable, private :: hold(:)      !! springs of SUPORT freedoms [force/length] [motions]
     logical, allocatable, private :: closed(:)     !! whose springs are to be in the factor [pairs]
@@ -148,11 +149,8 @@ contains
     end if
     call self%find_set(scene, bodies, gap, load_factor, state, watch)
     if (state%contact%state == contact_solved) call self%settle(scene, gap, state)
-    if (state%contact%state == contact_solved) then
-      self%last = state
-    else
-      self%failed = .true.
-    end if
+    if (state%contact%state == contact_solved) self%last = state
+    if (state%contact%state /= contact_solved) self%failed = .true.
     call watch%lap(stage_contact)
   end subroutine solve
 
@@ -206,6 +204,7 @@ contains
         call take_displacements()
         if (all(has_settled(change, before))) then
           state%contact%state = contact_solved
+          self%correction = change(1)
           exit
         end if
         call balance()

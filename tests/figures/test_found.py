@@ -35,6 +35,12 @@ def turned(text, degrees):
     return "\n".join(map(",".join, lines)) + "\n"
 
 
+def graded(digits, way):
+    """Ten blocks on each other, their moduli so many digits apart in all, falling or rising."""
+    young = {str(k + 1): 2.1e5 * 10.0 ** (way * digits * (k / 9 - 0.5)) for k in range(10)}
+    return re.sub(r"MAT1,(\d+),[^,]*", lambda card: f"MAT1,{card[1]},{scene.written(young[card[1]])}", deck("g10_6"))
+
+
 def strips(sides, foundation):
     """Square elements side by side on others of another modulus, held below, pressed evenly by 1."""
     text = scene.Deck(2.1e5, 0.3)
@@ -89,8 +95,7 @@ class Found(scene.Extremes):
         """Ten blocks of falling or rising stiffness under one load: each bears the same pressure, or the answer is refused."""
         for digits in (8, 12, 16):
             for way in (1, -1):
-                young = {str(k + 1): 2.1e5 * 10.0 ** (way * digits * (k / 9 - 0.5)) for k in range(10)}
-                text = re.sub(r"MAT1,(\d+),[^,]*", lambda card: f"MAT1,{card[1]},{scene.written(young[card[1]])}", deck("g10_6"))
+                text = graded(digits, way)
                 for rule in ("CONRY", "BLOCK"):
                     with self.subTest(digits=digits, way=way, rule=rule):
                         result = scene.solve(text.replace("BEGIN BULK", f"BEGIN BULK\nPARAM,RULE,{rule}"))
@@ -98,6 +103,15 @@ class Found(scene.Extremes):
                         if result.status == 0:
                             self.near([pair["pressure"] for pair in result.table("contact")], [1e-5] * 45, 1e-4)
                             self.assertEqual(result.message, "")
+
+    def test_rounding_of_joined_bodies(self):
+        """The same blocks as one system: what rounding may have left in the forces covers what it has, by less than digits of moduli."""
+        for digits, way, most in ((0, 1, 1e-9), (8, 1, 1e-7), (10, 1, 1e-5), (10, -1, 1e-10)):
+            with self.subTest(digits=digits, way=way):
+                result = self.valid(graded(digits, way).replace("BEGIN BULK", "BEGIN BULK\nPARAM,RULE,JOINED"))
+                stated = result.summary["rounding_error_force"]
+                self.assertLess(max(abs(pair["pressure"] / 1e-5 - 1.0) for pair in result.table("contact")), stated)
+                self.assertLess(stated, most)
 
     def test_slender_strips(self):
         """A strip 150 and 500 times as long as high lies on another: the last digit of its forces bends it further than gaps may be open."""
