@@ -67,11 +67,13 @@ contains
 
   contains
 
-    !> What rounding may leave in a force, of the largest: what the last step of the contact has not changed is
-    !! right, but for what gaps are the sum of.
+    !> What rounding may leave in a force, of the largest: what the last step of the contact has not changed
+    !! is right, but for what gaps are the sum of.
     real(wp) function rounding()
-      rounding = min(condition*epsilon(1.0_wp)*change(1), linear%joined%correction + epsilon(1.0_wp)*change(1))
-      rounding = min(1.0_wp, rounding + epsilon(1.0_wp)*change(2))
+      associate (off => epsilon(1.0_wp)*change)
+        rounding = min(condition*off(1), linear%joined%correction + off(1))
+        rounding = min(1.0_wp, rounding + off(2))
+      end associate
     end function rounding
 
     !> Equal parts, and the alternating column that finds what they cancel.

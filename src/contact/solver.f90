@@ -4,7 +4,7 @@ module epcont_contact_solver
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: cancelled, lost_digits, negligible, null_component, &
     solved_to
-  use epcont_contact_basis, only: contact_basis, move_basis, new_basis
+  use epcont_contact_basis, only: contact_basis, move_basis, new_basis, respond
   use epcont_contact_block_pivoting, only: find_by_blocks
   use epcont_contact_equilibrium, only: find_rigid_start, rigid_start
   use epcont_contact_flexibility_matrix, only: dense_flexibility
@@ -114,6 +114,8 @@ contains
           state%force > lost_digits*maxval([state%force, 1.0_wp]))
       if (any(solution%motion_free)) then
         call open_pairs(state, state%force <= zero)
+        call close_by_motions(state)
+        solution%approach(scaled%kept) = state%approach
         call choose_neutral(state, solution%approach)
         call find_touching(state, terms, solution%touching)
       end if
@@ -138,6 +140,25 @@ contains
       where (chosen) state%force = 0.0_wp
       where (chosen) state%change = -scaled%known_force
     end subroutine open_pairs
+
+    !> Close what forces that were taken from pairs leave of the gaps of others: in a slender body that is
+    !! much. Pairs of the basis hold the motions, those without force as well.
+    pure subroutine close_by_motions(state)
+      type(contact_state), intent(inout) :: state
+      real(wp), allocatable :: approach(:, :), change(:, :), gap(:), before(:)
+
+      if (.not. state%sound) return
+      before = gaps_under(scaled, scaled%gap, state%change, state%approach)
+      call respond(state%contact_basis, reshape(before(state%pairs), [size(state%pairs), 1]), &
+                   reshape(0*state%approach, [size(state%approach), 1]), change, approach)
+      gap = gaps_under(scaled, scaled%gap, state%change, state%approach + approach(:, 1))
+      associate (pressed => state%force > 0.0_wp)
+        if (maxval([abs(gap), 0.0_wp], mask=[pressed, .true.]) >= &
+            maxval([abs(before), 0.0_wp], mask=[pressed, .true.])) return
+      end associate
+      state%approach = state%approach + approach(:, 1)
+      where (abs(state%gap) > 0.0_wp) state%gap = gap
+    end subroutine close_by_motions
 
     !> Which pairs touch: no gap is left of theirs.
     pure subroutine find_touching(state, terms, touching)

@@ -125,6 +125,15 @@ class Found(scene.Extremes):
                     result = self.valid(turned(text.text(), degrees))
                     self.near([pair["pressure"] for pair in result.table("contact")[20:-20]], [1.0] * (sides - 39), 1e-9)
 
+    def test_strip_on_one_node(self):
+        """A strip a thousand times as long as high is pressed on one node and turns freely about it: in any direction that gap is closed."""
+        text = deck("strip_on_one_node")
+        for degrees in (0.0, 1e-9, 1e-3, 11.0, 30.0, 37.0, 60.0, 123.0):
+            for rule in ("CONRY", "BLOCK"):
+                with self.subTest(degrees=degrees, rule=rule):
+                    result = self.valid(turned(text.replace("BEGIN BULK", f"BEGIN BULK\nPARAM,RULE,{rule}"), degrees))
+                    self.near(max(pair["force"] for pair in result.table("contact")), 100.0, 1e-9)
+
     def test_gap_that_closes(self):
         """A block comes straight down on a stack: that is no slide, whichever side of the corner is the nearer one by rounding."""
         for blocks in (30, 50):
