@@ -1,7 +1,8 @@
 !> THE table of what the parts of an estimate count, and from where on something counts. Those that differ
 !> from kind to kind are measured on scenes whose answers are known (tests/accuracy/score.py, its sets `tuned`
 !> to `third`) and on scenes drawn by chance (score_by_chance.py), and scored on others (`unseen`); each has a
-!> say in a figure of tests/accuracy/estimates.csv. Of the others, each line says whence it comes.
+!> say in a figure of tests/accuracy/estimates.csv, but for that of the parabola's top: that has one in
+!> tests/figures/test_found.py. Of the others, each line says whence it comes.
 module epcont_accuracy_weights
   use epcont_base_kinds, only: wp
   use epcont_element_element_kind, only: by_linear_triangles, by_quadrilaterals
@@ -12,16 +13,19 @@ module epcont_accuracy_weights
   !> Weights that differ from one kind of elements to another.
   type :: estimate_weights
     !> Of the largest pressure
-    real(wp) :: parabola, stress, smaller, spacing, square, graded, pressure_energy
+    real(wp) :: parabola, rise, stress, smaller, spacing, square, graded, pressure_energy
     real(wp) :: step, width_energy                                                    !! of the half-width
     real(wp) :: product, between, end                                                 !! of the approach
   end type estimate_weights
 
   !> They, in thousandths, of linear triangles, quadrilaterals, quadratic elements, rings of linear triangles
   !! and of quadratic elements: each in elastic scenes, then in those with something beyond yield.
-  integer, parameter :: thousandths(10, 12) = reshape([ &
+  integer, parameter :: thousandths(10, 13) = reshape([ &
     ! Largest pressure: its distance from a parabola through the nearest pairs
     500, 1300, 1050, 1200, 400, 500, 1300, 1500, 1200, 700, &
+    ! in it, what that parabola rises by to its top between two pairs: forces over sides are means, short of
+    ! what is in their middle by a third of it (of the others, and beyond yield, the rest tells enough)
+    0, 0, 1333, 0, 0, 0, 0, 0, 0, 0, &
     ! that from the smooth stress
     0, 100, 20, 350, 40, 800, 0, 0, 20, 170, &
     ! the smaller of the two
@@ -44,7 +48,7 @@ module epcont_accuracy_weights
     ! between
     0, 0, 300, 400, 0, 0, 0, 0, 0, 0, &
     ! the same for contact that ends at a node: a distance d from the true end counts as d**2
-    100, 400, 150, 300, 140, 750, 200, 120, 350, 400], [10, 12])
+    100, 400, 150, 300, 140, 750, 200, 120, 350, 400], [10, 13])
 
   ! Weights that all kinds have.
 
@@ -89,6 +93,9 @@ module epcont_accuracy_weights
     !> The pressure that its bend adds, E* times its angle, is at least this part of the largest
     !! (test_limits.py).
     tip_matters = 0.1_wp, &
+    !> Part of the longest side at the end of a zone, of either body, that counts there: not all, so that
+    !! sides that are alike change nothing (round fronts on unlike meshes, drawn by chance).
+    other_side = 0.8_wp, &
     !> Part of a zone's pairs at which the gap bends by turns from which on that is waves
     !! (tests/accuracy/test_waves).
     waves_are_common = 1.0_wp/3.0_wp, &
@@ -101,15 +108,15 @@ module epcont_accuracy_weights
 
 contains
 
-  !> Those of a kind of elements.
+  !> Those of some kinds of elements: of each weight the largest.
   pure type(estimate_weights) function weights_of(estimated_as, rings, yielded) result(weights)
-    integer, intent(in) :: estimated_as   !! as the table of elements says
-    logical, intent(in) :: rings          !! the elements are
-    logical, intent(in) :: yielded        !! something in the scene has
-    integer :: kind
+    integer, intent(in) :: estimated_as(:)   !! as the table of elements says
+    logical, intent(in) :: rings             !! the elements are
+    logical, intent(in) :: yielded           !! something in the scene has
+    integer :: kind(size(estimated_as))
 
     kind = estimated_as
-    if (rings .and. kind /= by_quadrilaterals) kind = merge(4, 5, kind == by_linear_triangles)
-    weights = transfer(thousandths(2*kind - merge(0, 1, yielded), :)/1000.0_wp, weights)
+    where (rings .and. kind /= by_quadrilaterals) kind = merge(4, 5, kind == by_linear_triangles)
+    weights = transfer(maxval(thousandths(2*kind - merge(0, 1, yielded), :), dim=1)/1000.0_wp, weights)
   end function weights_of
 end module epcont_accuracy_weights

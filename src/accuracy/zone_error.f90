@@ -8,11 +8,14 @@
 module epcont_accuracy_zone_error
   use epcont_accuracy_limits, only: edge_pairs, has_tip
   use epcont_accuracy_surface_line, only: elements_behind, find_waves, first_element, surface_line
-  use epcont_accuracy_weights, only: beyond_mean, estimate_weights, stretched, waves_alone, weights_of
+  use epcont_accuracy_weights, only: beyond_mean, estimate_weights, other_side, stretched, waves_alone, &
+      weights_of
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: dependent, least_difference, no_effect
+  use epcont_geometry_plane, only: cross_product
   use epcont_model_model, only: model_type
   use epcont_result_answer, only: answer_type
+  use epcont_result_contact_line, only: outer_sides
   use epcont_result_zones, only: contact_zone, falls
   implicit none
   private
@@ -48,6 +51,8 @@ module epcont_accuracy_zone_error
   type :: zone_end
     !> To the first open pair, or between the last two, if that is more [length]
     real(wp) :: step = 0.0_wp
+    !> The same, or nearly as much as the longest side there, of either body; at most the zone [length]
+    real(wp) :: unknown = 0.0_wp
     !> What a mean over the last side is short of the pressure at its end [stress]
     real(wp) :: short = 0.0_wp
     logical :: edge = .false.       !! the candidates do, and the pressure does not fall towards it
@@ -77,6 +82,46 @@ contains
     if (other%pressure < 0.0_wp .or. &
         other%pressure > (1.0_wp + least_difference)*error%pressure) error = other
   end function estimate_zone
+
+  !> The kinds of elements that a pair's figures are judged by: its own, and of the other side what has no
+  !! middle nodes where its own have some.
+  pure function kinds_at(model, pair, own) result(kinds)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: pair
+    integer, intent(in) :: own              !! kind of the elements at the pair's node
+    integer, allocatable :: elements(:), kinds(:)
+    integer :: k
+
+    kinds = [own]
+    do k = 1, 2
+      elements = elements_behind(model, model%pair_node(k, pair))
+      if (size(elements) == 0) cycle
+      associate (there => model%kind(elements(1)))
+        if (model%kinds(there)%degree < model%kinds(own)%degree) kinds = [own, there]
+      end associate
+    end do
+  end function kinds_at
+
+  !> The longest side at a pair, of either body that can be strained, along the contact; of those with a
+  !! middle node half [length].
+  pure real(wp) function longest_side(model, pair)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: pair
+    integer, allocatable :: sides(:, :)
+    integer :: i, k
+
+    longest_side = 0.0_wp
+    do k = 1, 2
+      if (size(elements_behind(model, model%pair_node(k, pair))) == 0) cycle
+      sides = outer_sides(model, model%pair_node(k, pair))
+      do i = 1, size(sides, 2)
+        associate (side => model%x(:, sides(2, i)) - model%x(:, sides(1, i)))
+          longest_side = max(longest_side, abs(cross_product(side, model%normal(:, pair))) &
+                                           *merge(0.5_wp, 1.0_wp, sides(3, i) > 0))
+        end associate
+      end do
+    end do
+  end function longest_side
 
   !> Of those of some values that count, the largest, but for rounding.
   pure function are_largest(values, counts)
@@ -113,7 +158,8 @@ contains
     largest = p(peak)
     kind = first_element(model, line%node(error%peak))
     kind = merge(model%kind(max(kind, 1)), 1, kind > 0)
-    error%weights = weights_of(model%kinds(kind)%estimated_as, model%has_rings(), yielded)
+    error%weights = weights_of(model%kinds(kinds_at(model, error%peak, kind))%estimated_as, &
+                               model%has_rings(), yielded)
     if (largest <= 0.0_wp) return
     mirrored = line%mirrored([zone%first, zone%last])
     long = zone%along(n)
@@ -129,7 +175,7 @@ contains
     error%half_length = 0.5_wp*(long + sum(zone%vanishes))
     if (mirrored(1) .neqv. mirrored(2)) error%half_length = 2.0_wp*error%half_length
     if (zone%half_width >= 0.0_wp) &
-      error%half_width = sum(error%weights%step*ends%step)*merge(1.0_wp, 0.5_wp, any(mirrored)) &
+      error%half_width = sum(error%weights%step*ends%unknown)*merge(1.0_wp, 0.5_wp, any(mirrored)) &
                          + error%weights%width_energy*energy*zone%half_width &
                          + flattening/largest*zone%half_width   ! the load is given
     ! two pairs may stand at one place
@@ -168,6 +214,7 @@ contains
       if (e == 1) second = min(n, 1 + count(zone%along <= 0.0_wp))
       length = abs(zone%along(second) - zone%along(first))
       found%step = max(zone%open(e), length)
+      found%unknown = max(found%step, min(long, other_side*longest_side(model, zone%pairs(first))))
       if (zone%open(e) > 0.0_wp) then
         found%cut_off = n > few .and. peak == first
       else
@@ -213,9 +260,9 @@ contains
       end do
     end function depth_behind
 
-    !> How far the peak is off the least-squares parabola of p**2 through the pairs nearest to it, mirrored
-    !! ones and those the other way around too; of those that are as near all. Of too few pairs for one: what
-    !! Hertz's pressure falls by over half a spacing [stress].
+    !> How far the peak is off the least-squares parabola of p**2 through the pairs nearest to it, or short of
+    !! its top, if that is more; mirrored ones and those the other way around too; of those that are as near
+    !! all. Of too few pairs for one: what Hertz's pressure falls by over half a spacing [stress].
     pure real(wp) function off_parabola() result(off)
       real(wp) :: x(3*n), y(3*n), m(0:4), reach, right(0:2), square
       logical :: left(3*n)
@@ -244,10 +291,27 @@ contains
         right = right + y(k)*[1.0_wp, x(k), x(k)**2]
       end do
       square = determinant(m, m(0:2))
-      if (square > dependent*m(0)*m(2)*m(4)) &
-        off = abs(largest - sqrt(max(0.0_wp, determinant(m, right)/square)))
+      if (square <= dependent*m(0)*m(2)*m(4)) return
+      associate (here => max(0.0_wp, determinant(m, right)/square))
+        off = sqrt(here) - largest
+        off = max(-off, off + error%weights%rise*rise(m, right, here))
+      end associate
     end function off_parabola
   end function estimate_at
+
+  !> What the root of a parabola rises by from the peak to its top, if that is no farther than a spacing.
+  pure real(wp) function rise(m, right, here)
+    real(wp), intent(in) :: m(0:4)       !! moments
+    real(wp), intent(in) :: right(0:2)   !! right-hand side of its normal equations
+    real(wp), intent(in) :: here         !! its value at the peak
+    real(wp) :: bend, slope              !! times a determinant above 0
+
+    slope = (right(1) - m(1)*here)*m(4) - (right(2) - m(2)*here)*m(3)
+    bend = (right(2) - m(2)*here)*m(2) - (right(1) - m(1)*here)*m(3)
+    rise = 0.0_wp
+    if (bend < 0.0_wp .and. abs(slope) <= -2.0_wp*bend) &
+      rise = sqrt(here - slope**2/(4.0_wp*bend*(m(2)*m(4) - m(3)**2))) - sqrt(here)
+  end function rise
 
   !> Of the normal equations of a parabola, with this first column.
   pure real(wp) function determinant(m, column)
