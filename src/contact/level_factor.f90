@@ -155,6 +155,9 @@ contains
         f(below + 1:below + next_m, j) = -closing(j, m + 1:m + next_m)
       end do
       f(n + 1:below + next_m, n + 1:n + m) = 0.0_wp
+      do j = 1, m
+        f(n + j, n + j) = -scaled%own_stiffness(motion(j))
+      end do
     end associate
   end subroutine assemble
 

@@ -25,6 +25,7 @@ module epcont_contact_scaling
     real(wp) :: flexibility_scale = 1.0_wp       !! rho/omega, by which entries of F are multiplied
     real(wp), allocatable :: own_flexibility(:) !! that each pair has besides F [n]
     type(motion_matrix) :: motion               !! A [n, m]
+    real(wp), allocatable :: own_stiffness(:)   !! that each motion has besides its pairs [m]
     integer, allocatable :: motion_level(:)     !! last level of the pairs that each motion closes [m]
     real(wp), allocatable :: gap(:)             !! g, gaps under load and known forces [n]
     real(wp), allocatable :: known_force(:)     !! those, 0 where the problem has none [n]
@@ -136,6 +137,7 @@ contains
     squares = 0.0_wp
     scaled%motion_level = spread(1, 1, scaled%motion%motions())
     scaled%gamma = spread(0.0_wp, 1, scaled%motion%motions())
+    scaled%own_stiffness = scaled%gamma
     do j = 1, size(scaled%motion_level)
       do i = scaled%motion%start(j), scaled%motion%start(j + 1) - 1
         associate (k => scaled%motion%pair(i))

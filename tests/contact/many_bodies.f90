@@ -7,7 +7,7 @@ module many_bodies
   use random_problem, only: generator
   implicit none
   private
-  public :: bodies_of, scene_of, shapes
+  public :: bodies_of, scene_of, shapes, stack_of
 
   !> A row of bodies; one that ends where it begins; rows upon each other; two rows that have nothing to do with each other.
   character(6), parameter :: shapes(4) = [character(6) :: 'row', 'ring', 'pile', 'apart']
@@ -77,4 +77,40 @@ contains
     problem%motion = dense_motions(motion)
     problem%resultant = problem%motion%carried(force)
   end function scene_of
+
+  !> The same of bodies that shift and turn, each as soft near a force as it is, some a million times stiffer than others.
+  function stack_of(random, body, bodies) result(problem)
+    type(generator), intent(inout) :: random
+    integer, intent(in) :: body(:, :), bodies
+    type(contact_problem) :: problem
+    real(wp) :: motion(size(body, 2), 2*bodies), place(size(body, 2)), softness
+    real(wp), allocatable :: near(:, :)
+    integer, allocatable :: own(:)
+    integer :: b, i, k, n
+
+    n = size(body, 2)
+    problem%flexibility = new_flexibility(body, bodies)
+    place = [(2*random%uniform() - 1, k=1, n)]
+    motion = 0.0_wp
+    do b = 1, bodies
+      own = pack([(k, k=1, n)], [(any(body(:, k) == b), k=1, n)])
+      motion(own, 2*b - 1) = merge(1.0_wp, -1.0_wp, body(1, own) == b)
+      motion(own, 2*b) = place(own)*motion(own, 2*b - 1)
+      softness = 10.0_wp**(6*random%uniform() - 3)
+      allocate (near(size(own), size(own)), source=0.0_wp)
+      do k = 1, size(own)
+        do i = 1, size(own)
+          if (all(body(:, own(i)) == body(:, own(k)))) &
+            near(i, k) = softness*exp(-4*(place(own(i)) - place(own(k)))**2)
+        end do
+        near(k, k) = 1.01_wp*near(k, k)
+      end do
+      call problem%flexibility%add(own, near)
+      deallocate (near)
+    end do
+    call problem%flexibility%complete()
+    problem%initial_gap = [(merge(0.0_wp, 0.3_wp*random%uniform(), random%chance(0.5_wp)), k=1, n)]
+    allocate (problem%load_gap(n), source=0.0_wp)
+    problem%motion = dense_motions(motion)
+  end function stack_of
 end module many_bodies
