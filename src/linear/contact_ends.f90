@@ -51,7 +51,7 @@ contains
         if (before .eqv. becomes(next) == stays_closed) return
         beside = merge(r - 1, r + 1, before)
         if (becomes(first) == leaves) then
-          m = min(next - first - 1, (begin(beside + 1) - begin(beside))/2)
+          m = min(next - first, (begin(beside + 1) - begin(beside))/2)
           if (before) wanted(first - m:first - 1) = .false.
           if (.not. before) wanted(next:next + m - 1) = .false.
         else if (becomes(first) == comes) then
