@@ -82,6 +82,10 @@ contains
     integer :: p
 
     allocate (strain(components, model%points))
+    if (all(displacement == 0.0_wp)) then   ! as contact of joined bodies begins
+      strain = 0.0_wp
+      return
+    end if
     !$omp parallel do num_threads(threads_over(model%points))
     do p = 1, model%points
       strain(:, p) = strain_at(p)
@@ -179,6 +183,7 @@ contains
     integer :: c, i, p
 
     allocate (force(directions, model%nodes), source=0.0_wp)
+    if (all(stress == 0.0_wp)) return
     do p = 1, model%points
       s = self%volume(p)*stress(:, p)
       c = self%column(p)

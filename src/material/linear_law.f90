@@ -67,10 +67,10 @@ contains
     real(wp), allocatable :: stress(:, :)
     integer :: p
 
-    stress = self%increment(strain)
+    allocate (stress(components, size(strain, 2)))
     !$omp parallel do num_threads(threads_over(size(strain, 2)))
     do p = 1, size(strain, 2)
-      stress(:, p) = stress(:, p) + self%initial_stress(:, p)
+      stress(:, p) = of_strain(self%matrix(:, :, self%matrix_of(p)), strain(:, p)) + self%initial_stress(:, p)
     end do
     !$omp end parallel do
   end function stress
@@ -85,11 +85,16 @@ contains
     allocate (increment(components, size(strain, 2)))
     !$omp parallel do num_threads(threads_over(size(strain, 2)))
     do p = 1, size(strain, 2)
-      associate (d => self%matrix(:, :, self%matrix_of(p)))
-        increment(:, p) = d(:, 1)*strain(1, p) + d(:, 2)*strain(2, p) + d(:, 3)*strain(3, p) + &
-                          d(:, 4)*strain(4, p)
-      end associate
+      increment(:, p) = of_strain(self%matrix(:, :, self%matrix_of(p)), strain(:, p))
     end do
     !$omp end parallel do
   end function increment
+
+  !> What a strain adds to the stress of a point.
+  pure function of_strain(matrix, strain) result(stress)
+    real(wp), intent(in) :: matrix(components, components), strain(components)
+    real(wp) :: stress(components)
+
+    stress = matrix(:, 1)*strain(1) + matrix(:, 2)*strain(2) + matrix(:, 3)*strain(3) + matrix(:, 4)*strain(4)
+  end function of_strain
 end module epcont_material_linear_law

@@ -23,7 +23,8 @@ module epcont_plan_separator
     integer, allocatable, private :: before(:), behind(:)
     integer, allocatable, private :: from(:)   !! from where a new way has come to a node
     integer, allocatable, private :: tried(:)  !! the neighbour to which it went on last
-    integer, allocatable, private :: far(:)    !! how far a state is from the right [-nodes:nodes]
+    !> How far a state is from the right; of nodes that are not in the band `no_way` [-nodes:nodes]
+    integer, allocatable, private :: far(:)
   end type parted_graph
 
   integer, parameter :: no_way = -1, the_end = 0
@@ -42,7 +43,7 @@ contains
     self%beside = beside
     allocate (self%side(nodes), source=outside)
     allocate (self%before(nodes), self%behind(nodes), self%from(nodes), self%tried(nodes))
-    allocate (self%far(-nodes:nodes))
+    allocate (self%far(-nodes:nodes), source=no_way)
   end function new_parted_graph
 
   !> Part the band of a set: the fewest nodes to the edge, the others to the halves, which become as even as
@@ -71,6 +72,8 @@ contains
       end do
     end do
     call part_evenly(self, band, first, list, (size(set) - ways)/2 - count(self%side(set) == left))
+    self%far(band) = no_way
+    self%far(-band) = no_way
   end subroutine find_separator
 
   !> The sides that the neighbours of a node are on, as bits.
@@ -115,7 +118,7 @@ contains
         else
           if (self%before(node) /= no_way) call reach(node, onward)
           do j = self%beside%start(node), self%beside%start(node + 1) - 1
-            if (self%side(self%beside%group(j)) == between) call reach(self%beside%group(j), onward)
+            call reach(self%beside%group(j), onward)
           end do
         end if
       end associate
@@ -154,7 +157,6 @@ contains
         self%tried(node) = self%tried(node) + 1
         if (self%tried(node) < self%beside%start(node + 1)) then
           next = self%beside%group(self%tried(node))
-          if (self%side(next) /= between) cycle
         else if (self%tried(node) == self%beside%start(node + 1)) then
           next = node   ! out of it by where its own way comes in
         else
