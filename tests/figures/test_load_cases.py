@@ -1,0 +1,146 @@
+#!/usr/bin/env python3
+"""Load cases: each is what a deck of its own gives, whatever stands beside it, in whatever order, and however contact is found."""
+import csv
+import os
+import pathlib
+import re
+import subprocess
+import tempfile
+import unittest
+
+PROGRAM = os.environ["EPCONT_PROGRAM"]
+INPUT = pathlib.Path(os.environ["EPCONT_SOURCE_DIR"]) / "input"
+SAME = 1e-9
+FACTORS = [0.5, 1.0, 0.25, 1.0]
+#: What is found is the same; how, it may not be.
+OF_THE_WAY = {"condition", "rounding_error_force", "contact_amplification", "iteration_error_displacement", "iteration_error_force", "load_factor",
+              "stress_off_curve", "curve_tolerance", "energy_balance", "equilibrium_residual", "largest_force_gap_product", "smallest_gap",
+              "smallest_force", "stress_off_curve_limit", "factorizations", "pivots", "degenerate_pivots"}
+
+
+def bulk(path):
+    """The cards of a deck, and the set of its loads."""
+    text = path.read_text()
+    cards = text[re.search(r"^BEGIN BULK.*\n", text, re.M).end():]
+    return cards, int(re.search(r"^(?:FORCE|PLOADX1)[ ,]+(\d+)", cards, re.M).group(1))
+
+
+def run(deck, *options):
+    """Run a deck in a folder of its own: exit status, the rows of its tables by name."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = pathlib.Path(folder) / "deck.dat"
+        path.write_text(deck)
+        status = subprocess.run([PROGRAM, path, *options], capture_output=True, cwd=folder, check=False).returncode
+        tables = {}
+        for name in ["summary", "contact", "zones", "bodies", "nodes", "elements"]:
+            file = path.with_suffix("." + name + ".csv")
+            if file.exists():
+                tables[name] = list(csv.DictReader(file.open()))
+        tables["listing"] = path.with_suffix(".lst").read_bytes() if path.with_suffix(".lst").exists() else b""
+        return status, tables
+
+
+def of_factors(path, factors, above="", param=""):
+    """A deck of many cases, each the loads of a deck times a factor."""
+    cards, loads = bulk(path)
+    cases = "".join(f"SUBCASE {k}\n LOAD = {1000 + k}\n" for k in range(1, len(factors) + 1))
+    sums = "".join(f"LOAD,{1000 + k},2.0,{0.5 * factor!r},{loads}\n" for k, factor in enumerate(factors, 1))
+    return f"SOL 101\nCEND\n{above}{cases}BEGIN BULK\n{param}{sums}{cards}"
+
+
+def of_one(path, factor, above="", param=""):
+    """The same of one factor alone, without cases."""
+    cards, loads = bulk(path)
+    return f"SOL 101\nCEND\n{above}LOAD = 1000\nBEGIN BULK\n{param}LOAD,1000,1.0,{factor!r},{loads}\n{cards}"
+
+
+class LoadCases(unittest.TestCase):
+    """Cases beside decks of one."""
+
+    def compare(self, rows, own, table):
+        """Rows of a case are those of its own deck, columns that say how it was found apart."""
+        self.assertEqual(len(rows), len(own), table)
+        for column in own[0] if own else []:
+            values = [[row[column] for row in side] for side in (rows, own)]
+            try:
+                numbers = [[float(value) if value else -1.0 for value in side] for side in values]
+            except ValueError:
+                if table != "summary":
+                    self.assertEqual(values[0], values[1], column)
+                continue
+            scale = max([abs(number) for number in numbers[1]] + [1e-30])
+            if column.startswith("mesh_error"):
+                scale *= 1e3    # a difference of near fields
+            for one, other in zip(*numbers):
+                self.assertLessEqual(abs(one - other), SAME * scale, f"{table} {column}")
+
+    def check(self, name, above="", param="", factors=tuple(FACTORS)):
+        status, all_of_them = run(of_factors(INPUT / name, factors, above, param))
+        worst = 0
+        for k, factor in enumerate(factors, 1):
+            one, own = run(of_one(INPUT / name, factor, above, param))
+            worst = max(worst, one)
+            for table in ["contact", "zones", "nodes", "elements"]:
+                rows = [row for row in all_of_them.get(table, []) if row["subcase"] == str(k)]
+                self.compare(rows, own.get(table, []), f"{name} case {k} {table}")
+            figures = {row["key"]: row["value"] for row in all_of_them["summary"] if row["subcase"] == str(k)}
+            for row in own["summary"]:
+                if row["key"] in OF_THE_WAY or row["key"].startswith(("worst_", "largest_p", "allowed_", "mesh_error")):
+                    continue
+                try:
+                    wanted = float(row["value"])
+                except ValueError:
+                    self.assertEqual(figures[row["key"]], row["value"], row["key"])
+                    continue
+                self.assertAlmostEqual(float(figures[row["key"]]), wanted, delta=1e-8 * max(abs(wanted), 1e-12), msg=f"{name} {k} {row['key']}")
+        self.assertEqual(status, worst, name)
+        return [int(row["value"]) for row in all_of_them["summary"] if row["key"] == "factorizations"]
+
+    def test_scenes(self):
+        tables = "DISPLACEMENT = ALL\nSTRESS = ALL\n"
+        for name in ["hertz/hertz44_elastic.dat", "cylinder_on_block/cylinder_on_block.dat", "layer_lines/layer_lines.dat", "roller/roller.dat",
+                     "ball/ball_on_flat.dat", "off_centre/off_centre.dat"]:
+            with self.subTest(name):
+                self.assertEqual(sum(self.check(name, tables)[1:]), 0, "factored again")
+
+    def test_yielding(self):
+        """Each case begins with the factors of the unloaded state, not with those of the case before."""
+        self.check("hertz/hertz44.dat", "STRESS = ALL\n")
+
+    def test_rules(self):
+        for rule in ["CONRY", "BLOCK", "JOINED"]:
+            with self.subTest(rule):
+                self.check("layer_lines/layer_lines.dat", param=f"PARAM,RULE,{rule}\n")
+
+    def test_same_bytes_on_any_number_of_threads(self):
+        deck = of_factors(INPUT / "layer_lines/layer_lines.dat", FACTORS)
+        listings = set()
+        for threads in "1", "2", "3":
+            os.environ["OMP_NUM_THREADS"] = threads
+            listings.add(run(deck)[1]["listing"])
+        del os.environ["OMP_NUM_THREADS"]
+        self.assertEqual(len(listings), 1)
+
+    def test_the_largest_status_is_that_of_the_run(self):
+        """A case that nothing carries stands beside those that are answered."""
+        cards, loads = bulk(INPUT / "hertz/hertz44_elastic.dat")
+        deck = f"SUBCASE 1\nLOAD = {loads}\nSUBCASE 2\nLOAD = 99\nSUBCASE 3\nLOAD = {loads}\nBEGIN BULK\nLOAD,99,-1.0,1.0,{loads}\n{cards}"
+        status, tables = run(deck)
+        self.assertEqual(status, 1)
+        self.assertEqual([row["value"] for row in tables["summary"] if row["key"] == "status"], ["valid", "no equilibrium", "valid"])
+
+    def test_contact_off_and_on(self):
+        """Without contact a case that supports hold alone is answered; what the body passes through is warned of."""
+        cards, loads = bulk(INPUT / "hertz/hertz44_elastic.dat")
+        held = cards.replace("SPC1    1", "SPC1    2")
+        held = "".join(line + "\n" for line in held.split("\n") if line.startswith("SPC1"))
+        deck = (f"LOAD = {loads}\nSPC = 1\nSUBCASE 1\nSUBCASE 2\nSPC = 2\nBCONTACT = NONE\nLOAD = 50\nSUBCASE 3\nSPC = 2\nLOAD = 50\n"
+                f"BEGIN BULK\nSPC,2,41,2,0.0\nSPCD,50,41,2,-1.0-4\n{held}{cards}")
+        status, tables = run(deck)
+        self.assertEqual(status, 0)
+        touching = [row for row in tables["contact"] if row["status"] == "touching"]
+        self.assertEqual({row["subcase"] for row in touching}, {"1", "3"})
+
+
+if __name__ == "__main__":
+    unittest.main()
