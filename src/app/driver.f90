@@ -17,7 +17,6 @@ module epcont_app_driver
   use epcont_report_columns, only: known, listed_number, number, right
   use epcont_report_file, only: file_lock, lock_files, unlock_files
   use epcont_report_outcome, only: judge, limit_of_pressure, reason_of, remark_lines
-  use epcont_report_plan_text, only: plan_text
   use epcont_report_results, only: remove_results, results_type
   use epcont_report_run, only: run_results
   use epcont_system_large_pages, only: heap_step, take_heap
@@ -77,7 +76,7 @@ contains
         call say(name//'  checked')
       else
         call run%make_plan(watch)
-        if (arguments%asks('--plan')) call print_text(name//plan_text(run%planned_scene), status)
+        if (arguments%asks('--plan')) call say_plans()
       end if
       call print_error(render(run%faults, run%deck%source))
       if (.not. writes) then
@@ -89,10 +88,21 @@ contains
       call solve_cases()
     end subroutine solve_deck
 
+    !> The plans of all load cases.
+    subroutine say_plans()
+      integer :: p
+
+      call results%begin(run)
+      do p = 1, run%cases%patterns
+        if (p > 1) call take_pattern(p)
+        call results%add_plan(run, run%cases%of_pattern(p))
+      end do
+      call print_text(name//results%plan, status)
+    end subroutine say_plans
+
     !> All load cases: those with the same freedoms held one after the other, since they share factors.
     subroutine solve_cases()
-      integer, allocatable :: cases(:)
-      integer :: k, p, worst
+      integer :: p, worst
 
       results%stem = stem
       results%all_tables = arguments%asks('--tables')
@@ -102,10 +112,9 @@ contains
       worst = status_valid
       do p = 1, run%cases%patterns
         if (p > 1) call take_pattern(p)
-        cases = pack([(k, k=1, size(run%cases%case))], run%cases%case%pattern == p)
-        call solve_pattern(cases, worst)
+        call solve_pattern(run%cases%of_pattern(p), worst)
         if (allocated(error)) return
-        call results%add_plan(run, cases)
+        call results%add_plan(run, run%cases%of_pattern(p))
       end do
       call results%finish(run, error)
       call watch%lap(stage_writing)
@@ -166,7 +175,7 @@ contains
 
     !> What the run would take on this machine: on standard error, since plans are compared.
     subroutine say_forecast()
-      call print_error(name//': '//forecast_text(run%planned_scene, &
+      call print_error(name//': '//forecast_text(run%planned_scene, size(run%cases%case), run%cases%patterns, &
         run%rows_of_tables(arguments%asks('--tables')), sum(watch%spent(2, :)), measured_rate())//newline)
     end subroutine say_forecast
 

@@ -14,8 +14,9 @@ module epcont_app_forecast_text
 contains
 
   !> Time of the processor, the solves that this supposes where a scene may take more or fewer, and memory.
-  pure function forecast_text(scene, rows, begun, rate) result(text)
+  pure function forecast_text(scene, cases, patterns, rows, begun, rate) result(text)
     type(planned_scene), intent(in) :: scene   !! what is to be solved
+    integer, intent(in) :: cases, patterns     !! of loads, of these those that share no factors
     integer, intent(in) :: rows                !! of tables that would be written
     real(wp), intent(in) :: begun              !! time of the processor so far [s]
     real(wp), intent(in) :: rate               !! of products of matrices [1/s]
@@ -23,8 +24,10 @@ contains
     type(run_time) :: time
 
     time = foresee(scene%iteration, scene%expected, rows, begun, rate)
+    time%cases = cases
+    time%patterns = patterns
     text = 'about '//rough_time(time%whole())//' of processor time'// &
-           when(scene%iteration%yields, ' ('//plural(time%solves, 'solve')//')')//', '// &
+           when(scene%iteration%yields, ' ('//plural(time%solves, 'solve')//when(cases > 1, ' a load case')//')')//', '// &
            megabytes(scene%expected%bytes)
   end function forecast_text
 

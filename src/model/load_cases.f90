@@ -52,9 +52,21 @@ module epcont_model_load_cases
     type(set_pressure), allocatable :: pressure(:)         !! PLOADX1
     type(set_displacement), allocatable :: held_at(:)      !! SPC, of sets of supports; others are held at 0
     type(set_displacement), allocatable :: moved(:)        !! SPCD, of sets of loads: instead of those
+  contains
+    procedure :: of_pattern
   end type load_cases
 
 contains
+
+  !> The cases of a pattern, in their order.
+  pure function of_pattern(self, pattern) result(cases)
+    class(load_cases), intent(in) :: self
+    integer, intent(in) :: pattern   !! which
+    integer, allocatable :: cases(:)
+    integer :: k
+
+    cases = pack([(k, k=1, size(self%case))], self%case%pattern == pattern)
+  end function of_pattern
 
   !> Put a load case on a scene, in place of the one before.
   pure subroutine put_case(cases, k, model)

@@ -39,6 +39,8 @@ module epcont_plan_run_time
     real(wp) :: next = 0.0_wp     !! each other one, where something yields [s]
     real(wp) :: finish = 0.0_wp   !! what comes after the last [s]
     integer :: solves = 1         !! as most scenes take
+    integer :: cases = 1          !! of loads
+    integer :: patterns = 1       !! of these, that share no factors
   contains
     procedure :: whole
   end type run_time
@@ -80,6 +82,7 @@ contains
   pure real(wp) function whole(self)
     class(run_time), intent(in) :: self
 
-    whole = self%begun + self%solve + (self%solves - 1)*self%next + self%finish
+    whole = self%begun + self%patterns*self%solve + (self%solves*self%cases - self%patterns)*self%next + &
+            self%cases*self%finish
   end function whole
 end module epcont_plan_run_time

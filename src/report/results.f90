@@ -3,6 +3,7 @@
 !> nothing is written before the last.
 module epcont_report_results
   use epcont_base_error, only: error_type
+  use epcont_base_text, only: text_of
   use epcont_report_case_table, only: case_row, put_cases, row_of_case
   use epcont_report_columns, only: table_type
   use epcont_report_file, only: new_text_file, remove_file, text_file
@@ -56,7 +57,7 @@ module epcont_report_results
     !! the summary alone, and files for ParaView
     logical :: all_tables = .false., brief = .false., vtk = .false.
     type(case_results), allocatable, private :: case(:)
-    character(len=:), allocatable, private :: plan    !! of all scenes that cases make, in lines
+    character(len=:), allocatable :: plan    !! of all scenes that cases make, in lines
   contains
     procedure :: begin
     procedure :: add_plan
@@ -74,7 +75,7 @@ contains
     class(results_type), intent(inout) :: self
     type(run_results), intent(in) :: run   !! whose load cases will come
 
-    allocate (self%case(size(run%deck%subcase)))
+    if (.not. allocated(self%case)) allocate (self%case(size(run%deck%subcase)))
     self%plan = ''
   end subroutine begin
 
@@ -84,8 +85,10 @@ contains
     type(run_results), intent(in) :: run   !! with the plan
     integer, intent(in) :: cases(:)        !! which
 
-    if (size(cases) == size(self%case)) then
+    if (.not. run%has_cases()) then
       self%plan = plan_text(run%planned_scene)
+    else if (size(cases) == size(self%case)) then
+      self%plan = plan_text(run%planned_scene, text_of(size(cases))//' load cases')
     else
       self%plan = self%plan//plan_text(run%planned_scene, &
                                        'SUBCASE '//joined(run%deck%subcase(cases)%id, ' ', most_named))
