@@ -27,7 +27,8 @@ contains
     time%cases = cases
     time%patterns = patterns
     text = 'about '//rough_time(time%whole())//' of processor time'// &
-           when(scene%iteration%yields, ' ('//plural(time%solves, 'solve')//when(cases > 1, ' a load case')//')')//', '// &
+           when(scene%iteration%yields, ' ('//plural(time%solves, 'solve')// &
+                when(cases > 1, ' a load case')//')')//', '// &
            megabytes(scene%expected%bytes)
   end function forecast_text
 

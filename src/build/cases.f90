@@ -4,7 +4,8 @@ module epcont_build_cases
   use epcont_base_sorting, only: new_id_index
   use epcont_base_text, only: short_real, text_of
   use epcont_build_reference, only: card_index, chosen_sets, note_unused, resolve
-  use epcont_deck_card_kinds, only: card_bconp, card_force, card_load, card_ploadx1, card_spc, card_spc1, card_spcd
+  use epcont_deck_card_kinds, only: card_bconp, card_force, card_load, card_ploadx1, card_spc, card_spc1, &
+      card_spcd
   use epcont_deck_deck, only: deck_type
   use epcont_deck_entry, only: farthest, least_cause
   use epcont_model_arrays, only: side_pressure

@@ -40,7 +40,8 @@ contains
         if (grid%given(ps, i)) call hold(named_node([card_grid, i, ps], i, ps))
       end do
     end associate
-    named = [nodes_of_fields(deck, card_spc, [2, 5], nodes, found), nodes_of_lists(deck, card_spc1, nodes, found)]
+    named = [nodes_of_fields(deck, card_spc, [2, 5], nodes, found), &
+             nodes_of_lists(deck, card_spc1, nodes, found)]
     do i = 1, size(named)
       call hold(named(i))
     end do
@@ -56,7 +57,8 @@ contains
 
       conflict = 0
       displacement = 0.0_wp
-      associate (card => named%card, node => named%node, value => deck%card(named%card(1))%value(:, named%card(2)))
+      associate (card => named%card, node => named%node, &
+                 value => deck%card(named%card(1))%value(:, named%card(2)))
         if (card(1) /= card_grid .and. nint(value(1)) /= set) return
         if (card(1) == card_spc) displacement = value(named%digits + 1)
         do c = 1, directions

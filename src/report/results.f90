@@ -37,7 +37,8 @@ module epcont_report_results
     result_file('.elements.csv', 'the elements, where the deck or --tables all asks for it'), &
     result_file('.cases.csv', 'the load cases, where the deck has more than one'), &
     result_file('.vtu', 'the bodies, for ParaView, with --vtk: displacements, stresses, states'), &
-    result_file('.contact.vtu', 'the boundary in contact, for ParaView, with --vtk: pressures, gaps')]
+    result_file('.contact.vtu', 'the boundary in contact, for ParaView, with --vtk: pressures, gaps'), &
+    result_file('.pvd', 'of several load cases: DECK.caseN.vtu and .caseN.contact.vtu, for ParaView')]
 
   !> The tables that are files, and have rows of each load case.
   character(len=8), parameter :: table_name(*) = [character(len=8) :: &
