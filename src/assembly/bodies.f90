@@ -92,7 +92,7 @@ contains
     allocate (prescribed(directions, scene%model%nodes), source=0.0_wp)
     call prescribe(scene, 1.0_wp, prescribed)
     self%settlement = -self%operator%nodal_forces( &
-                      scene%model, self%law%increment(self%operator%strains(scene%model, prescribed)))
+                      scene%model, self%law%increment(self%operator%strains(scene%model, prescribed, 0.0_wp)))
   end subroutine settle
 
   !> A part of the prescribed displacements, put in its place; nothing else is touched.

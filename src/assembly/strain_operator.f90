@@ -73,14 +73,18 @@ contains
     end do
   end subroutine put_element
 
-  !> Strains xx, yy, zz, xy (engineering) [components, points].
-  function strains(self, model, displacement) result(strain)
+  !> Strains xx, yy, zz, xy (engineering) that stresses come of: of displacements, less free ones, which
+  !! temperatures make without stress [components, points].
+  function strains(self, model, displacement, load_factor) result(strain)
     class(strain_operator), intent(in) :: self
     type(model_type), intent(in) :: model        !! the scene
     real(wp), intent(in) :: displacement(:, :)   !! [length] [directions, nodes]
+    real(wp), intent(in) :: load_factor          !! of the temperatures
     real(wp), allocatable :: strain(:, :)
+    logical :: expands
     integer :: p
 
+    expands = allocated(model%free_strain) .and. load_factor /= 0.0_wp
     allocate (strain(components, model%points))
     if (all(displacement == 0.0_wp)) then   ! as contact of joined bodies begins
       strain = 0.0_wp
@@ -89,6 +93,7 @@ contains
     !$omp parallel do num_threads(threads_over(model%points))
     do p = 1, model%points
       strain(:, p) = strain_at(p)
+      if (expands) strain(:3, p) = strain(:3, p) - load_factor*model%free_strain(p)
     end do
     !$omp end parallel do
 

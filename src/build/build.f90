@@ -10,6 +10,7 @@ module epcont_build_build
   use epcont_build_mesh, only: build_mesh, element_cards
   use epcont_build_reference, only: card_index, check_unique, chosen_sets, index_of
   use epcont_build_supports, only: build_ties, hold_nodes
+  use epcont_build_temperatures, only: build_temperatures
   use epcont_contact_geometry_complete, only: check_controls, finish_model
   use epcont_contact_geometry_line_contacts, only: find_contacts
   use epcont_deck_card_kinds, only: card_bconp, card_blseg, card_cgap, card_cord2r, card_grid, card_mat1, &
@@ -60,6 +61,7 @@ contains
     call build_mesh(deck, nodes, model, faults)
     model%controls = read_controls(deck)
     call build_cases(deck, nodes, model, cases, faults)
+    call build_temperatures(deck, nodes, model, cases, faults)
     call hold_patterns()
     call build_ties(deck, nodes, cases%patterns == 1, model, faults)
     chosen = cases%case(findloc(cases%case%pattern, pattern, dim=1))%contact

@@ -27,6 +27,8 @@ module epcont_build_mesh
   type :: material_card
     real(wp) :: young = 1.0_wp      !! [stress]
     real(wp) :: poisson = 0.0_wp
+    real(wp) :: expansion = 0.0_wp             !! [1/temperature]
+    real(wp) :: reference_temperature = 0.0_wp
     type(uniaxial_curve) :: curve
   end type material_card
 
@@ -92,6 +94,8 @@ contains
         young = mat1%number('E', i)
         shear = mat1%number('G', i)
         poisson = mat1%number('NU', i)
+        material(i)%expansion = mat1%number('A', i)
+        material(i)%reference_temperature = mat1%number('TREF', i)
         if (count([mat1%has('E', i), mat1%has('G', i), mat1%has('NU', i)]) < 2) then
           call refuse(card_mat1, i, 'E', ': of E, G and NU two are needed', 'E and NU, say')
         else if (.not. mat1%has('NU', i)) then
@@ -188,6 +192,8 @@ contains
         end do
         call set_sections(model%scene_type, section%young, section%poisson, kinematics)
         model%curve = section%curve
+        model%expansion = section%expansion
+        model%reference_temperature = section%reference_temperature
         model%thickness(:shell%count) = shell%value(shell%column('T'), :)
       end associate
     end subroutine read_sections

@@ -6,6 +6,7 @@
 module epcont_certificate_certificate
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: valid_to
+  use epcont_certificate_free_expansion, only: expansion_type, free_strains, held_stress, part_of_held
   use epcont_certificate_scene, only: scene_type
   use epcont_certificate_unit_strains, only: find_slopes, unit_strains
   use epcont_certificate_yielding, only: stress_on_curve, von_mises_stress
@@ -65,6 +66,7 @@ module epcont_certificate_certificate
     real(wp), allocatable :: force(:, :, :)   !! on their nodes [force] [directions, nodes, elements]
     real(wp), allocatable :: work(:)          !! of the stresses [points]
     real(wp) :: off_curve = 0.0_wp, motion_strain = 0.0_wp, lost_stress = 0.0_wp   !! as in the certificate
+    type(expansion_type) :: expansion
   end type checked_elements
   integer, parameter :: at_once = 4096
 
@@ -89,12 +91,14 @@ contains
     real(wp), dimension(directions, model%nodes) :: load, residual   ! the latter: out of balance [force]
     real(wp) :: element_force(model%nodes)   ! sum of the sizes of the elements' forces at each node
     real(wp) :: stored, work                 ! work of the stresses, and of the forces
+    type(expansion_type) :: expansion
     real(wp) :: terms                        ! sum of the sizes of all that these two are sums of
     real(wp) :: forces, largest_force, largest_stress, length
 
     found%tolerance = max(valid_to, rounding_errors*answer%rounding_error)
     load = answer%load_factor*model%load
-    largest_stress = maxval(abs(answer%point_stress))
+    largest_stress = max(maxval(abs(answer%point_stress)), &
+                         part_of_held*held_stress(model, answer%load_factor))
     residual = 0.0_wp
     element_force = 0.0_wp
     stored = 0.0_wp
@@ -103,24 +107,26 @@ contains
     ! A rigid travel says nothing of how exact the gaps must be: only what the bodies give way does.
     ! Nor does a load that a support takes at once.
     forces = sum(abs(load + answer%reaction)) + sum(abs(answer%contact%force))
-    length = ratio(abs(stored), forces)
+    length = ratio(max(abs(stored), stored - expansion%work), forces)
     associate (u => answer%displacement, reaction => answer%reaction)
       ! Where stops take all loads at once, nothing moves but by rounding of what the forces would push in.
       if (maxval(abs(u)) <= roundings*epsilon(1.0_wp)*least_indentation()) length = least_indentation()
       ! Where nothing presses on anything, bodies give way nowhere: the travels that close gaps are all there
       ! is.
       if (forces == 0.0_wp) length = maxval(abs(u))
+      if (expansion%held_work > 0.0_wp) length = max(length, part_of_held*maxval(abs(answer%deformation)))
       found%length_scale = max(length, least_length)
       work = sum(load*u) + sum(reaction*u)
-      terms = sum(abs(load*u)) + sum(abs(reaction*u)) + abs(stored)
+      terms = sum(abs(load*u)) + sum(abs(reaction*u)) + abs(stored) + &
+              part_of_held*expansion%held_work
     end associate
     if (model%pairs > 0) call add_pairs()
     call gather_ties()
-    largest_force = max(maxval(element_force), maxval(abs(load)))
+    largest_force = max(maxval(element_force), maxval(abs(load)), part_of_held*expansion%held_force)
     if (any(answer%contact%force > 0.0_wp)) largest_force = max(largest_force, found%force_scale)
     found%equilibrium = ratio(maxval(abs(residual)), largest_force)
     ! On its curve no stress does less than no work; as far off it as the iteration may leave it, it can.
-    found%energy = ratio(max(abs(work - stored), -stored), terms)
+    found%energy = ratio(max(abs(work - stored), expansion%work - stored), terms)
     found%curve_tolerance = max(found%tolerance, curve_tolerance)
     found%off_curve_limit = found%curve_tolerance + min(several*found%lost_stress, found%curve_tolerance)
     found%valid = all(within_limits(found))
@@ -170,15 +176,18 @@ contains
       real(wp), intent(in) :: slope(directions, most_nodes, most_points, *)   !! of each kind
       type(checked_elements), intent(out) :: part
       real(wp) :: unit(components, directions, most_nodes, most_points), volume(most_points)
-      real(wp) :: force(directions)
+      real(wp) :: force(directions), free(most_points)
       integer :: c, e, k, p
 
       allocate (part%force(directions, size(model%connectivity, 1), first:last), source=0.0_wp)
       allocate (part%work(model%first_point(first):model%first_point(last + 1) - 1))
       do e = first, last
         call unit_strains(model, e, slope(:, :, :, model%kind(e)), unit, volume)
+        call free_strains(model, e, answer%load_factor, volume, free)
         associate (stress => answer%point_stress(:, model%first_point(e):model%first_point(e + 1) - 1))
-          call check_points(e, stress, unit, volume, part)
+          call part%expansion%add_element(model%young(model%section(e)), stress, &
+                                          unit(:, :, :model%node_count(e), :), volume, free(:size(stress, 2)))
+          call check_points(e, stress, unit, volume, free, part)
           do k = 1, model%node_count(e)
             do p = 1, size(stress, 2)
               do c = 1, directions
@@ -208,15 +217,16 @@ contains
           stored = stored + part%work(p)
         end do
       end do
+      call expansion%include(part%expansion)
       found%off_curve = max(found%off_curve, part%off_curve)
       found%motion_strain = max(found%motion_strain, part%motion_strain)
       found%lost_stress = max(found%lost_stress, part%lost_stress)
     end subroutine add_part
 
     !> The integration points of an element.
-    subroutine check_points(e, stress, unit, volume, part)
+    subroutine check_points(e, stress, unit, volume, free, part)
       integer, intent(in) :: e
-      real(wp), intent(in) :: stress(:, :), volume(:)
+      real(wp), intent(in) :: stress(:, :), volume(:), free(:)
       real(wp), intent(in) :: unit(:, :, :, :)      !! strains by unit displacements
       type(checked_elements), intent(inout) :: part
       real(wp), dimension(directions, most_nodes) :: motion, u
@@ -236,6 +246,7 @@ contains
         rounding = epsilon(1.0_wp)*maxval(abs(unit(:, :, :n, p)))   ! of a strain by unit displacements
         strain = strain_by(u(:, :n), unit(:, :, :, p), ring)
         part%work(model%first_point(e) + p - 1) = volume(p)*dot_product(stress(:, p), strain)
+        strain(:3) = strain(:3) - free(p)
         call check_stress(model%section(e), strain, stress(:, p), rounding*maxval(abs(u(:, :n))), part)
         if (.not. moves) cycle
         strain = strain_by(motion(:, :n), unit(:, :, :, p), ring)

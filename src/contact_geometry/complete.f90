@@ -12,6 +12,7 @@ module epcont_contact_geometry_complete
   use epcont_model_arrays, only: scene_type
   use epcont_model_controls, only: method_newton
   use epcont_model_element_shapes, only: check_axis, complete_elements
+  use epcont_model_expansion, only: find_free_strains
   use epcont_model_finding, only: findings, of_node, of_paper_ratio, of_scene, of_section
   use epcont_model_freedoms, only: find_travels, follow_to_the_end, set_reference, tie
   use epcont_model_given, only: check_given, number_parts
@@ -55,6 +56,7 @@ contains
     call check_controls(model, found)
     if (found%errors > 0) return
     call find_travels(model)
+    call find_free_strains(model)
     call finish_model(model, found)
 
   contains

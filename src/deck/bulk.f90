@@ -5,7 +5,7 @@ module epcont_deck_bulk
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of, upper
   use epcont_deck_card, only: card_fields, continues, find_name, gather
-  use epcont_deck_card_kinds, only: card_kinds, card_param
+  use epcont_deck_card_kinds, only: card_kinds, card_mat1, card_param
   use epcont_deck_card_reader, only: read_card
   use epcont_deck_case_control, only: keyword
   use epcont_deck_catalogue, only: catalogue, parameters
@@ -27,9 +27,10 @@ module epcont_deck_bulk
 contains
 
   !> Read the cards from line `first` on.
-  subroutine read_bulk(lines, first, table, faults)
+  subroutine read_bulk(lines, first, heated, table, faults)
     type(source), intent(in) :: lines   !! of the deck
     integer, intent(in) :: first                              !! the first line that is not of case control
+    logical, intent(in) :: heated                             !! temperatures have an effect
     type(card_table), allocatable, intent(out) :: table(:)    !! the cards of each kind [card_kinds]
     type(diagnostics), intent(inout) :: faults   !! what is wrong is added to them
     type(card_entry) :: entry(card_kinds)
@@ -42,6 +43,9 @@ contains
     integer :: k, line
 
     entry = catalogue()
+    associate (field => entry(card_mat1)%field)
+      field%used = field%used .and. (heated .or. field%name /= 'A' .and. field%name /= 'TREF')
+    end associate
     names = entry%name
     parameter_entry = parameters()
     call find_kinds()
@@ -168,6 +172,8 @@ contains
       word = name(:scan(name//' ', ' =(;') - 1)
       remedy = suggestion(name, names, 'epcont --cards lists the cards that are read')
       if (name == 'CQUAD9' .or. name == 'CQUAD') remedy = 'CTRIA6, CQUAD4 or CQUAD8'
+      if (name == 'MATT1' .or. index(name, 'TABLEM') == 1) &
+        remedy = 'moduli on MAT1: they do not depend on temperature'
       if (any(names == word)) remedy = 'fields of 8 columns, or commas'
       if (first == 1 .and. any(keyword == word) .or. word == 'BEGIN') &
         remedy = 'one line BEGIN BULK behind case control'

@@ -9,6 +9,7 @@ module epcont_deck_card_kinds
     card_force = 7, card_ploadx1 = 8, card_rbe2 = 9, card_suport = 10, card_cord2r = 11, card_cgap = 12, &
     card_pgap = 13, card_cbar = 14, card_param = 15, card_mats1 = 16, card_tables1 = 17, card_ctria6 = 18, &
     card_cquad4 = 19, card_ctrax3 = 20, card_ctrax6 = 21, card_psolid = 22, card_blseg = 23, &
-    card_bconp = 24, card_cquad8 = 25, card_load = 26, card_spcd = 27, &
-    card_kinds = 27   !! how many there are
+    card_bconp = 24, card_cquad8 = 25, card_load = 26, card_spcd = 27, card_temp = 28, &
+    card_tempd = 29, &
+    card_kinds = 29   !! how many there are
 end module epcont_deck_card_kinds

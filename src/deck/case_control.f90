@@ -23,7 +23,7 @@ module epcont_deck_case_control
     integer :: id = 0                                        !! 0: the deck has no SUBCASE
     type(place_type) :: place                                !! of its SUBCASE
     character(len=:), allocatable :: subtitle, label         !! empty where not given
-    type(set_choice) :: spc, load
+    type(set_choice) :: spc, load, temperature
     type(set_choice) :: contact                              !! the only BCONP; 0: all; -1: none
     logical :: displacement = .false., stress = .false., spcforces = .false.  !! tables wanted
   end type subcase_control
@@ -36,9 +36,9 @@ module epcont_deck_case_control
   end type case_control
 
   !> Their words. From the first on that a load case may have for itself, all are its own.
-  character(len=*), parameter, public :: keyword(15) = [character(len=12) :: &
+  character(len=*), parameter, public :: keyword(16) = [character(len=12) :: &
     'SOL', 'CEND', 'TITLE', 'ECHO', 'CNTNLSUB', 'SUBCASE', 'SUBTITLE', 'LABEL', 'SPC', 'LOAD', 'BCONTACT', &
-    'DISPLACEMENT', 'STRESS', 'SPCFORCES', 'NLPARM']
+    'DISPLACEMENT', 'STRESS', 'SPCFORCES', 'NLPARM', 'TEMPERATURE']
   integer, parameter :: first_own = 7
   !> Those of SOL that are static, linear or not.
   character(len=*), parameter :: static = &
@@ -50,6 +50,7 @@ module epcont_deck_case_control
   type :: statement
     character(len=:), allocatable :: word      !! in capitals
     character(len=:), allocatable :: value     !! behind `=`, or behind the word
+    character(len=:), allocatable :: option    !! in parentheses between, with these, in capitals
     type(place_type) :: word_place, option_place, value_place   !! of line 0: there is none
   end type statement
 
@@ -106,7 +107,7 @@ contains
                               trim(merge(' a SUBCASE', '          ', now%id > 0 .and. k >= first_own)))
       stated(k) = keyword(k) /= 'SUBCASE'
       parts%word = trim(keyword(k))
-      if (parts%option_place%line > 0) &
+      if (parts%option_place%line > 0 .and. parts%word /= 'TEMPERATURE') &
         call faults%add_note(parts%option_place, parts%word//': options have no effect')
     end subroutine check_word
 
@@ -144,6 +145,12 @@ contains
         call take_set(now%spc)
       case ('LOAD')
         call take_set(now%load)
+      case ('TEMPERATURE')
+        if (any(parts%option == [character(len=6) :: '', '(LOAD)', '(BOTH)'])) then
+          call take_set(now%temperature)
+        else
+          call refuse_option()
+        end if
       case ('BCONTACT')
         now%contact%place = parts%value_place
         if (all(upper(parts%value) /= ['ALL ', 'NONE'])) call take_set(now%contact)
@@ -190,6 +197,16 @@ contains
         parts%value_place, 'SUBCASE '//text_of(now%id)//' is there twice', 'a number of its own')
       stated(first_own:) = .false.
     end subroutine begin_subcase
+
+    !> Temperatures that are no load.
+    subroutine refuse_option()
+      character(len=:), allocatable :: remedy
+
+      remedy = 'TEMPERATURE(LOAD)'
+      if (index(parts%option, '(INI') == 1) remedy = 'TREF of MAT1: bodies are at it before they are loaded'
+      if (index(parts%option, '(MAT') == 1) remedy = 'moduli on MAT1: they do not depend on temperature'
+      call faults%add_error(parts%option_place, 'TEMPERATURE'//parts%option//' is not known here', remedy)
+    end subroutine refuse_option
 
     !> The set of a statement such as `SPC = 1`.
     subroutine take_set(set)
@@ -260,9 +277,11 @@ contains
     parts%word = upper(text(first:last))
     parts%word_place = place_type(line, first, max(first, last))
     at = last + verify(text(last + 1:)//'.', ' ')
+    parts%option = ''
     if (text(at:min(at, len(text))) == '(') then
       last = at + index(text(at:)//')', ')') - 1
       parts%option_place = place_type(line, at, min(last, len(text)))
+      parts%option = upper(text(at:min(last, len(text))))
       at = last + verify(text(last + 1:)//'.', ' ')
     end if
     if (text(at:min(at, len(text))) == '=') at = at + verify(text(at + 1:)//'.', ' ')

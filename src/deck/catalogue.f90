@@ -39,8 +39,8 @@ module epcont_deck_catalogue
     '  NU; real from=0 below=0.5 instead=0.4999; Poisson''s ratio | incompressible: the bulk'// &
     ' modulus is infinite', &
     '  RHO; real noted; density', &
-    '  A; real noted; thermal expansion', &
-    '  TREF; real noted; reference temperature', &
+    '  A; real cause zero; thermal expansion: strain by one degree', &
+    '  TREF; real zero; temperature without thermal strain', &
     '  GE; real noted; damping', &
     '  ST; real noted; limit of tension [stress]', &
     '  SC; real noted; limit of compression [stress]', &
@@ -203,7 +203,24 @@ module epcont_deck_catalogue
     '  D1; real zero cause; displacement [length]', &
     '  G2; id with_next; second node', &
     '  C2; digits with_last; directions', &
-    '  D2; real zero cause; displacement [length]']
+    '  D2; real zero cause; displacement [length]', &
+    'TEMP: temperatures of nodes', &
+    '  SID; id; set', &
+    '  G1; id; node', &
+    '  T1; real needed; its temperature', &
+    '  G2; id with_next; second node', &
+    '  T2; real with_last; its temperature', &
+    '  G3; id with_next; third node', &
+    '  T3; real with_last; its temperature', &
+    'TEMPD: temperature of all nodes that TEMP does not name', &
+    '  SID1; id; set', &
+    '  T1; real needed; temperature', &
+    '  SID2; id with_next; second set', &
+    '  T2; real with_last; temperature', &
+    '  SID3; id with_next; third set', &
+    '  T3; real with_last; temperature', &
+    '  SID4; id with_next; fourth set', &
+    '  T4; real with_last; temperature']
 
   !> All PARAMs: the field VALUE for each NAME.
   character(len=*), parameter :: choices(*) = [character(len=180) :: &

@@ -40,7 +40,7 @@ contains
     if (allocated(error)) return
     deck%whole = faults%errors == 0
     call read_case_control(deck%source, deck%case_control, bulk, faults)
-    call read_bulk(deck%source, bulk, deck%card, faults)
+    call read_bulk(deck%source, bulk, any(deck%subcase%temperature%id > 0), deck%card, faults)
   end subroutine read_deck
 
   !> The text, unless it is to be listed, and the fields of all cards but the parameters are done with: their

@@ -182,7 +182,7 @@ contains
     state%contact%pivots = 0
     state%contact%block_steps = 0
     call prescribe(scene, load_factor, state%deformation)
-    state%strain = bodies%operator%strains(scene%model, state%deformation)
+    state%strain = bodies%operator%strains(scene%model, state%deformation, load_factor)
     change = huge(1.0_wp)
     whole = .false.
     borne = 0.0_wp
@@ -301,7 +301,7 @@ contains
       real(wp), allocatable :: strain(:, :)
 
       call scene%motions%add(scene%model, -motion, step)
-      strain = bodies%operator%strains(scene%model, step)
+      strain = bodies%operator%strains(scene%model, step, 0.0_wp)
       state%deformation = state%deformation + step
       state%strain = state%strain + strain
       state%contact%approach = state%contact%approach + motion

@@ -190,8 +190,12 @@ contains
       type(half_solved_body), allocatable :: half(:)
 
       force = load_factor*scene%model%load
-      if (any(self%law%initial_stress /= 0.0_wp)) &
+      if (allocated(scene%model%free_strain)) then   ! stresses where nothing gives way
+        force = force - self%operator%nodal_forces(scene%model, self%law%stress( &
+                self%operator%strains(scene%model, 0.0_wp*force, load_factor)))
+      else if (any(self%law%initial_stress /= 0.0_wp)) then
         force = force - self%operator%nodal_forces(scene%model, self%law%initial_stress)
+      end if
       call self%add_forces(scene, force, load_factor, half)
       if (allocated(self%problem%known_gap)) deallocate (self%problem%known_force, self%problem%known_gap)
       self%problem%load_gap = gap_opening(scene%model, self%finish(scene, half, load_factor, .true.)) + &
@@ -204,7 +208,7 @@ contains
       call self%add_forces(scene, pair_forces(scene%model, state%contact%force), 0.0_wp, half)
       ! Strains are of the deformation: added to a long travel it would lose their digits.
       state%deformation = self%finish(scene, half, load_factor, .false.)
-      state%strain = self%operator%strains(scene%model, state%deformation)
+      state%strain = self%operator%strains(scene%model, state%deformation, load_factor)
     end subroutine solve_once
 
     !> The same to double precision with factors in single: step by step the forces out of balance, in double,
@@ -220,7 +224,7 @@ contains
                   source=0.0_wp)
       end if
       call prescribe(scene, load_factor, state%deformation)
-      state%strain = self%operator%strains(scene%model, state%deformation)
+      state%strain = self%operator%strains(scene%model, state%deformation, load_factor)
       if (allocated(state%contact%touching)) deallocate (state%contact%touching)
       if (allocated(start)) state%contact%touching = start
       before = 0.0_wp
@@ -321,7 +325,7 @@ contains
     real(wp), allocatable :: step(:, :), strain(:, :)
 
     step = self%displacements(scene, force, 0.0_wp)
-    strain = self%operator%strains(scene%model, step)
+    strain = self%operator%strains(scene%model, step, 0.0_wp)
     state%deformation = state%deformation + step
     state%strain = state%strain + strain
     change = maxval(abs(strain))/max(maxval(abs(state%strain)), tiny(1.0_wp))

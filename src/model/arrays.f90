@@ -50,6 +50,8 @@ module epcont_model_arrays
     integer, allocatable :: kinematics(:)       !! plane_strain, plane_stress or axisymmetric [sections]
     real(wp), allocatable :: thickness(:)       !! [length] [sections]
     type(uniaxial_curve), allocatable :: curve(:)  !! how each section yields, if it does [sections]
+    real(wp), allocatable :: expansion(:)       !! strain for each degree [1/temperature] [sections]
+    real(wp), allocatable :: reference_temperature(:)   !! at which there is none [temperature] [sections]
     logical, allocatable :: held(:, :)          !! the freedom has a prescribed displacement [2, nodes]
     real(wp), allocatable :: prescribed(:, :)   !! that displacement [length] [2, nodes]
     !> Node whose displacement the freedom shares: itself if not tied [2, nodes]
@@ -57,6 +59,8 @@ module epcont_model_arrays
     logical, allocatable :: reference(:, :)     !! SUPORT freedoms [2, nodes]
     real(wp), allocatable :: load(:, :)         !! nodal forces [force] [2, nodes]
     type(side_pressure), allocatable :: pressure(:)   !! in addition to these [any]
+    !> Not allocated: that of reference everywhere [temperature] [nodes]
+    real(wp), allocatable :: temperature(:)
     integer, allocatable :: pair_node(:, :)     !! nodes A and B that name the pair [2, pairs]
     real(wp), allocatable :: normal(:, :)       !! unit, along which B is pushed [2, pairs]
     real(wp), allocatable :: initial_gap(:)     !! [length] [pairs]
@@ -84,7 +88,7 @@ contains
     call set_pairs(scene, reshape([integer ::], [2, 0]), reshape([real(wp) ::], [2, 0]), [real(wp) ::])
   end function new_scene
 
-  !> What elements are made of; of thickness 1, and nothing yields: that may be changed.
+  !> What elements are made of; of thickness 1, and nothing yields or expands: that may be changed.
   pure subroutine set_sections(scene, young, poisson, kinematics)
     type(scene_type), intent(inout) :: scene   !! is changed
     real(wp), intent(in) :: young(:)           !! [stress] [sections]
@@ -95,6 +99,8 @@ contains
     scene%poisson = poisson
     scene%kinematics = kinematics
     scene%thickness = spread(1.0_wp, 1, size(young))
+    scene%expansion = spread(0.0_wp, 1, size(young))
+    scene%reference_temperature = scene%expansion
     if (allocated(scene%curve)) deallocate (scene%curve)
     allocate (scene%curve(size(young)))
   end subroutine set_sections
@@ -154,6 +160,11 @@ contains
     scene%thickness = given%thickness
     call set_pairs(scene, given%pair_node, given%normal, given%initial_gap)
     scene%pressure = given%pressure(:)
+    if (allocated(given%temperature)) then
+      scene%temperature = given%temperature(:)
+      scene%expansion = given%expansion
+      scene%reference_temperature = given%reference_temperature
+    end if
     scene%couple = given%couple(:)
     deallocate (scene%block, scene%line)
     allocate (scene%block(size(given%block)), scene%line(size(given%line)))

@@ -62,6 +62,12 @@ contains
               all(scene%normal == 0.0_wp, dim=1), &
               'normal(:, #) is no unit vector', 'one of length 1, or zero: from A to B')
     call need(has_size(scene%initial_gap), 'initial_gap(#) is no length', any_size)
+    if (allocated(scene%temperature)) then
+      call need(abs(scene%temperature) <= farthest, 'temperature(#) is no temperature', any_size)
+      call need(has_size(scene%expansion), 'expansion(#) is no expansion', any_size)
+      call need(abs(scene%reference_temperature) <= farthest, &
+                'reference_temperature(#) is no temperature', any_size)
+    end if
     if (elements > 0) &
       call need(within(scene%pressure%element, elements), 'pressure(#)%element is no element', &
                 '1 to '//text_of(elements))
@@ -106,6 +112,10 @@ contains
       call fit('curve(sections)', sections, given%curve)
       call fit('pair_node(2, pairs)', pairs, given%pair_node)
       call fit('normal(2, pairs)', pairs, given%normal)
+      if (.not. allocated(given%temperature)) return
+      call fit('temperature(nodes)', nodes(2:), given%temperature)
+      call fit('expansion(sections)', sections, given%expansion)
+      call fit('reference_temperature(sections)', sections, given%reference_temperature)
     end subroutine check_shapes
 
     !> An array is there, and of the shape that is wanted.

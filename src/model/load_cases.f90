@@ -4,6 +4,7 @@ module epcont_model_load_cases
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: directions
   use epcont_model_arrays, only: side_pressure
+  use epcont_model_expansion, only: find_free_strains
   use epcont_model_freedoms, only: find_travels
   use epcont_model_model, only: model_type
   use epcont_model_pressure, only: add_pressure
@@ -34,12 +35,19 @@ module epcont_model_load_cases
     real(wp) :: displacement = 0.0_wp           !! [length]
   end type set_displacement
 
+  !> Temperatures of all nodes.
+  type, public :: set_temperatures
+    integer :: set = 0                          !! by its id
+    real(wp), allocatable :: temperature(:)     !! [nodes]
+  end type set_temperatures
+
   !> Which sets a case has.
   type :: load_case
     integer :: id = 0                           !! of its SUBCASE; 0: the deck has none
     integer, allocatable :: set(:)              !! of loads, by their ids
     real(wp), allocatable :: factor(:)          !! of each
     integer :: supports = 0                     !! set of supports, by its id; 0: none
+    integer :: temperatures = 0                 !! set of these, by its id; 0: none
     integer :: contact = 0                      !! the only BCONP that it has; contact_all or contact_none
     integer :: pattern = 1                      !! of the freedoms that supports hold, and contacts
   end type load_case
@@ -52,6 +60,7 @@ module epcont_model_load_cases
     type(set_pressure), allocatable :: pressure(:)         !! PLOADX1
     type(set_displacement), allocatable :: held_at(:)      !! SPC, of sets of supports; others are held at 0
     type(set_displacement), allocatable :: moved(:)        !! SPCD, of sets of loads: instead of those
+    type(set_temperatures), allocatable :: heat(:)         !! TEMP and TEMPD, of those sets that cases have
   contains
     procedure :: of_pattern
   end type load_cases
@@ -91,8 +100,21 @@ contains
     end associate
     call put_displacements(cases, cases%case(k), model%prescribed)
     call find_travels(model)
-
+    call put_temperatures(cases, cases%case(k), model)
   end subroutine put_case
+
+  !> The temperatures of a case, and what comes of them.
+  pure subroutine put_temperatures(cases, case, model)
+    type(load_cases), intent(in) :: cases
+    type(load_case), intent(in) :: case
+    type(model_type), intent(inout) :: model
+    integer :: k
+
+    if (allocated(model%temperature)) deallocate (model%temperature)
+    k = findloc(cases%heat%set, case%temperatures, dim=1)
+    if (k > 0) model%temperature = cases%heat(k)%temperature
+    call find_free_strains(model)
+  end subroutine put_temperatures
 
   !> What supports prescribe in a case.
   pure subroutine put_displacements(cases, case, prescribed)

@@ -52,6 +52,9 @@ module epcont_model_model
     integer, allocatable :: first_point(:)
     integer, allocatable :: point_element(:)    !! [points]
     integer, allocatable :: section(:)          !! section of each element [elements]
+    !> What temperatures strain each point by along each axis where nothing resists; not allocated: nothing
+    !! [points]
+    real(wp), allocatable :: free_strain(:)
     integer, allocatable :: property_id(:)      !! PSHELL or PSOLID [sections]
     integer, allocatable :: material_id(:)      !! MAT1 [sections]
     !> The rigid motion of its body that supports prescribe as a whole, and what they prescribe beyond it

@@ -8,7 +8,7 @@ import re
 from dataclasses import dataclass, field
 
 KNOWN = {"GRID", "CTRIA3", "CTRIA6", "CQUAD4", "CQUAD8", "CTRAX3", "CTRAX6", "PSHELL", "PSOLID", "MAT1", "SPC", "SPC1", "FORCE", "PLOADX1",
-         "RBE2", "SUPORT", "CORD2R", "CGAP", "PGAP", "CBAR", "PARAM", "SPCADD", "LOAD", "MATS1", "TABLES1", "BLSEG", "BCONP"}
+         "RBE2", "SUPORT", "CORD2R", "CGAP", "PGAP", "CBAR", "PARAM", "SPCADD", "LOAD", "MATS1", "TABLES1", "BLSEG", "BCONP", "TEMP", "TEMPD"}
 
 #: Columns of the tables, by what their largest is the measure of.
 KINDS = {"contact": {"force": ["force"], "length": ["initial_gap", "gap"], "pressure": ["pressure"], "normal": ["nx", "ny"],
@@ -40,6 +40,19 @@ class Deck:
             e = 2 * g * (1 + nu) if e is None else e
             found[int(card[1])] = (e, e / (2 * g) - 1 if nu is None else nu)
         return found
+
+    def expansions(self):
+        """(A, TREF) by MAT1."""
+        return {int(card[1]): (real(at(card, 6)), real(at(card, 7))) for card in self.of("MAT1")}
+
+    def temperatures(self):
+        """Of the nodes, by a function; None where the deck chooses no set."""
+        if "TEMP" not in self.case:
+            return None
+        chosen = self.case["TEMP"]
+        others = {int(card[i]): real(card[i + 1]) for card in self.of("TEMPD") for i in (1, 3, 5, 7) if at(card, i)}.get(chosen, 0.0)
+        known = {int(card[i]): real(card[i + 1]) for card in self.of("TEMP") if int(card[1]) == chosen for i in (2, 4, 6) if at(card, i)}
+        return lambda node: known.get(node, others)
 
     def curves(self, moduli):
         """Points (strain, stress) of the uniaxial curves, by MAT1; a table's yield strain is its yield stress over E."""
@@ -110,7 +123,7 @@ def read(path):
     begin = [i for i, line in enumerate(lines) if line.split()[:2] == ["BEGIN", "BULK"]]
     if begin:
         for line in lines[:begin[0]]:
-            match = re.match(r"\s*(SPC|LOAD)\s*=\s*(\d+)\s*$", line)
+            match = re.match(r"\s*(SPC|LOAD|TEMP)(?:[A-Z]*)(?:\((?:LOAD|BOTH)\))?\s*=\s*(\d+)\s*$", line)
             if match:
                 deck.case[match[1]] = int(match[2])
         lines = lines[begin[0] + 1:]

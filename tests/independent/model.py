@@ -16,6 +16,7 @@ class Model:
         self.nodes()
         self.materials()
         self.elements()
+        self.heat()
         self.freedoms()
         self.pairs()
         self.load()
@@ -39,6 +40,8 @@ class Model:
             self.section[int(card[1])] = (real(card[3]), Law(*moduli[int(card[2])], not strain, curves.get(int(card[2])), paper))
         for card in self.deck.of("PSOLID"):
             self.section[int(card[1])] = (None, Law(*moduli[int(card[2])], False, curves.get(int(card[2]))))
+        expansions = self.deck.expansions()
+        self.expansion = {int(card[1]): expansions[int(card[2])] for card in self.deck.of("PSHELL") + self.deck.of("PSOLID")}
 
     def elements(self):
         """Elements card by card; `parts` has the integration points of each kind: (which, freedoms, strain matrices), `boundary`
@@ -74,6 +77,21 @@ class Model:
         of_point = np.array(self.property, int)[self.owner]
         self.groups = [(law, np.flatnonzero(of_point == q)) for q, (_, law) in self.section.items()]
 
+    def heat(self):
+        """Strains of all points that temperatures make where nothing resists; CQUAD4 has their mean where its change of volume is one."""
+        self.free = np.zeros((len(self.volume), 4))
+        temperature, point = self.deck.temperatures(), 0
+        for members, kind, p in zip(self.members, self.kind, self.property):
+            here = slice(point, point + len(kind.points))
+            point = here.stop
+            if temperature is None:
+                continue
+            a, reference = self.expansion[p]
+            strain = np.array(kind.shapes()) @ [a * (temperature(self.node[row]) - reference) for row in members]
+            if kind is KINDS["CQUAD4"] and not self.section[p][1].plane_stress:
+                strain[:] = strain @ self.volume[here] / self.volume[here].sum()
+            self.free[here, :3] = strain[:, None]
+
     def of_points(self, name, strain, *shape):
         """What the law of each point's section says of its strain."""
         values = np.zeros((len(strain),) + shape)
@@ -92,10 +110,10 @@ class Model:
         return stress, total, secant, plastic
 
     def strains(self, u):
-        """Strains xx yy zz xy of all points."""
-        strain = np.zeros((len(self.volume), 4))
+        """Strains xx yy zz xy of all points that stresses come of."""
+        strain = -self.free
         for which, freedom, b in self.parts:
-            strain[which] = np.einsum("eij,ej->ei", b, u[freedom])
+            strain[which] += np.einsum("eij,ej->ei", b, u[freedom])
         return strain
 
     def mean(self, values):

@@ -53,7 +53,8 @@ class Problem:
         model = self.model
         self.full = model.stiffness(d)
         self.k = (model.tie.T @ self.full @ model.tie).tocsc()
-        self.f = model.tie.T @ (model.force - model.nodal(initial) - self.full @ model.held)
+        unmoved = initial - np.einsum("eij,ej->ei", d, model.free)
+        self.f = model.tie.T @ (model.force - model.nodal(unmoved) - self.full @ model.held)
 
     def springs(self, factor):
         """Weak springs at the SUPORT freedoms."""

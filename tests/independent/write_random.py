@@ -6,17 +6,21 @@ in one another, and blocks or rings of any element that press one another, node 
     python tests/independent/compare.py build/release/epcont DIRECTORY/*.dat --tolerance 1e-7
 
 Each block has a material of its own: elastic, bilinear, flat, or a curve of five points; plane strain or plane stress;
-meshes with random places, gaps, loads and prescribed displacements. Not kept: the seed makes them again.
+meshes with random places, gaps, loads, prescribed displacements and temperatures. Not kept: the seed makes them again.
 """
 import argparse
 import math
 import pathlib
 import random
 
+HEAT = 10.0   # temperatures, about zero: strains up to that of yielding
+
 
 class Scene:
     def __init__(self, rng, strain, rings=False):
         self.rings, self.side = rings, {}
+        self.chance = random.Random(repr(rng.getstate()[1][:4]))   # of temperatures alone
+        self.heated = self.chance.random() < 0.5
         self.rng, self.lines, self.nodes, self.elements, self.pairs, self.materials = rng, [], 0, 0, 0, 0
         self.lines += [] if rings else [f"PARAM,PLANE,{'STRAIN' if strain else 'STRESS'}"]
         self.lines += ["PARAM,GAPGEOM,YES", "CORD2R,1,,0.0,0.0,0.0,0.0,0.0,1.0,+", "+,0.0,1.0,0.0", "PGAP,900,0.0"]
@@ -34,7 +38,7 @@ class Scene:
             self.add("PSOLID", number, number)
         else:
             self.add("PSHELL", number, number, rng.uniform(0.5, 2.0))
-        self.add("MAT1", number, young, "", nu)
+        self.add("MAT1", number, young, "", nu, "", *self.expansion())
         kind = rng.choice(["elastic", "bilinear", "flat", "curve", "curve"])
         if kind in ("bilinear", "flat"):
             self.add("MATS1", number, "", "PLASTIC", young * rng.uniform(0.01, 0.3) if kind == "bilinear" else 0.0, 1, 1, stress)
@@ -49,6 +53,17 @@ class Scene:
             for i in range(0, 10, 8):
                 self.add("", *numbers[i:i + 8], *(["ENDT"] if i == 8 else []))
         return number
+
+    def expansion(self):
+        """A and TREF, where the scene has temperatures."""
+        return (self.chance.uniform(0.0, 2e-5), self.chance.uniform(-HEAT, HEAT)) if self.heated else ()
+
+    def warm(self):
+        """Temperatures of all nodes, of some by TEMPD."""
+        for node in range(1, self.nodes + 1):
+            if self.chance.random() < 0.8:
+                self.add("TEMP", 7, node, self.chance.uniform(-HEAT, HEAT))
+        self.add("TEMPD", 7, self.chance.uniform(-HEAT, HEAT))
 
     def grid(self, xs, ys, section, keep=lambda x, y: True):
         """Nodes by (column, row)."""
@@ -113,7 +128,9 @@ class Scene:
         self.add("CGAP", 100000 + self.pairs, 900, a, b, "", "", "", 1)
 
     def text(self):
-        return "\n".join(["BEGIN BULK"] + self.lines + ["ENDDATA", ""])
+        if self.heated:
+            self.warm()
+        return "\n".join(["TEMPERATURE(LOAD) = 7"] * self.heated + ["BEGIN BULK"] + self.lines + ["ENDDATA", ""])
 
 
 def places(rng, low, high, parts, uneven=0.4):

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from deck import integer
 from kinds import KINDS
 from pressures import pressures
-from verification.elements import places, strain_of, unit_strains
+from verification.elements import free_strains, places, strain_of, unit_strains
 from verification.material import respond, von_mises
 
 # Names of the figures in the summary; the key on the left is ours.
@@ -21,6 +21,8 @@ KEYS = {
 
 # Of a force: sums over some elements of products with the displacements of up to six nodes, which are rounded themselves.
 ROUNDINGS = 128 * 2.0 ** -52
+# Bodies that expand freely are compared with such a part of what they would bear if they were held.
+PART_OF_HELD = 1e-3
 
 
 @dataclass
@@ -41,6 +43,7 @@ class Element:
     noise: float
     largest: float   # stress of a point
     points: int
+    free: list       # strains of the points that temperatures make without stress
 
     def scale(self, largest, which=max):
         """What distances from the curve are over: its stress there, below yield the yield stress; no more than the largest stress of the scene."""
@@ -62,6 +65,9 @@ class Recomputed:
     lost: float = 0.0        # part of the stresses and forces that is lost, where a travel leaves few digits of the strains
     most: float = 0.0        # largest force that the largest stress could make, over the scale
     stress: float = 0.0      # largest
+    released: list = field(default_factory=list)   # work of the stresses on the free strains
+    held_work: list = field(default_factory=list)  # of stresses, and the largest force, if nothing gave way to temperatures
+    held_force: float = 0.0
     elements: dict = field(default_factory=dict)
     gaps: dict = field(default_factory=dict)
 
@@ -73,7 +79,9 @@ def recompute_element(scene, tables, element, moved):
     name, nodes, section = scene.element[element]
     points = unit_strains(name, [scene.x[node] for node in nodes], section.thickness, section.plane_stress)
     strains = [strain_of(unit, moved, section.thickness is None) for _, unit in points]
-    found = [respond(strain, section.young, section.nu, section.plane_stress, section.points, scene.paper) for strain in strains]
+    free = free_strains(name, nodes, section, scene.temperature, [volume for volume, _ in points])
+    beyond = [[e - own for e in strain[:3]] + strain[3:] for strain, own in zip(strains, free)]
+    found = [respond(strain, section.young, section.nu, section.plane_stress, section.points, scene.paper) for strain in beyond]
     whole = math.fsum(volume for volume, _ in points)
 
     def mean(values):
@@ -90,7 +98,7 @@ def recompute_element(scene, tables, element, moved):
                      list(zip(places(name, [scene.x[node] for node in nodes]), equivalent)), mean(total for _, total, _ in found), mean(secant for _, _, secant in found),
                      any(total > limit for _, total, _ in found), min(abs(total / limit - 1.0) for _, total, _ in found),
                      ROUNDINGS * steepest * max(abs(v) for pair in moved for v in pair),
-                     max(abs(v) for stress in stresses for v in stress), len(points))
+                     max(abs(v) for stress in stresses for v in stress), len(points), free)
     return result, points, strains, stresses, whole * steepest
 
 
@@ -103,7 +111,13 @@ def add_elements(scene, tables, u, rest, result):
         result.elements[element] = own
         noise = own.noise * section.young / (1.0 if section.plane_stress else 1.0 - 2.0 * section.nu)
         lost[element], lost_force, reach = noise, max(lost_force, noise * size), max(reach, size)
-        result.stress = max(result.stress, own.largest)
+        result.stress = max(result.stress, own.largest, PART_OF_HELD * held_stress(scene, nodes, section))
+        for (volume, _), stress, e in zip(points, stresses, own.free):
+            result.released.append(volume * e * math.fsum(stress[:3]))
+            result.held_work.append(volume * section.young * e * e)
+        for k in range(len(nodes)):
+            sums = [math.fsum(volume * section.young * abs(e * sum(unit[k][c][:3])) for (volume, unit), e in zip(points, own.free)) for c in (0, 1)]
+            result.held_force = max(result.held_force, *sums)
         force = [[[], []] for _ in nodes]
         for (volume, unit), strain, stress in zip(points, strains, stresses):
             stored.append(volume * math.fsum(s * e for s, e in zip(stress, strain)))
@@ -116,6 +130,13 @@ def add_elements(scene, tables, u, rest, result):
                 rest.setdefault((node, c), []).append(-sums[c])
             magnitude.setdefault(node, []).append(max(map(abs, sums)))
     return max((math.fsum(m) for m in magnitude.values()), default=0.0), stored, lost, lost_force, reach
+
+
+def held_stress(scene, nodes, section):
+    """Along one axis, if nothing gave way to the temperatures."""
+    if scene.temperature is None:
+        return 0.0
+    return section.young * max(abs(section.expansion[0] * (scene.temperature(node) - section.expansion[1])) for node in nodes)
 
 
 def recompute(scene, tables):
@@ -151,15 +172,15 @@ def recompute(scene, tables):
     loads = [abs(math.fsum(values)) for values in scene.load.values()]
     result.force = max([abs(f) for f in forces] + loads, default=0.0)
     result.length = max([math.hypot(*v) for v in u.values()] + [abs(pair.initial) for pair in scene.pair.values()], default=0.0)
-    scale = max(element_force, result.force)
-    terms = math.fsum(map(abs, works)) + abs(math.fsum(stored))
+    scale = max(element_force, result.force, PART_OF_HELD * result.held_force)
+    terms = math.fsum(map(abs, works)) + abs(math.fsum(stored)) + PART_OF_HELD * math.fsum(result.held_work)
     result.figures = {
         "equilibrium": max((abs(math.fsum(v)) for v in gathered.values()), default=0.0) / (scale or 1.0),
         "smallest_force": min(forces, default=0.0),
         "smallest_gap": min(gaps, default=0.0),
         "product": max((abs(f * g) for f, g in zip(forces, gaps)), default=0.0),
         "off_curve": max((own.off_curve(result.stress) for own in result.elements.values()), default=0.0),
-        "energy": max(abs(math.fsum(works) - math.fsum(stored)), -math.fsum(stored)) / (terms or 1.0),
+        "energy": max(abs(math.fsum(works) - math.fsum(stored)), math.fsum(result.released) - math.fsum(stored)) / (terms or 1.0),
     }
     result.lost = max([part(lost_force, scale)] + [part(lost[element], own.scale(result.stress, min)) for element, own in result.elements.items()])
     result.most = result.stress * reach / (scale or 1.0)

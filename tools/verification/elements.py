@@ -36,6 +36,17 @@ def places(name, x):
     return [[sum(v * p[c] for v, p in zip(value, x)) for c in (0, 1)] for value, _, _ in reference(name)]
 
 
+def free_strains(name, nodes, section, temperature, volumes):
+    """What temperatures strain each point by along each axis, where nothing resists."""
+    if temperature is None:
+        return [0.0] * len(volumes)
+    a, none_at = section.expansion
+    found = [math.fsum(v * a * (temperature(node) - none_at) for v, node in zip(value, nodes)) for value, _, _ in reference(name)]
+    if name == "CQUAD4" and not section.plane_stress:   # the change of volume at all points is that of the whole element
+        found = [math.fsum(volume * e for volume, e in zip(volumes, found)) / math.fsum(volumes)] * len(found)
+    return found
+
+
 def even_out(points):
     """The change of volume at all points is that of the whole element."""
     whole = math.fsum(volume for volume, _ in points)

@@ -8,10 +8,11 @@ from lines import pairs_of_lines
 
 
 class Section:
-    """thickness: None of a ring. points: of the uniaxial curve, or None."""
+    """thickness: None of a ring. points: of the uniaxial curve, or None. expansion: A and TREF."""
 
-    def __init__(self, thickness, material, plane_stress, points):
+    def __init__(self, thickness, material, plane_stress, points, expansion):
         self.thickness, (self.young, self.nu), self.plane_stress, self.points = thickness, material, plane_stress, points
+        self.expansion = expansion
 
 
 class Pair:
@@ -49,13 +50,14 @@ class Scene:
 
     def sections(self):
         material = self.deck.moduli()
-        curve = self.deck.curves(material)
+        curve, expansion = self.deck.curves(material), self.deck.expansions()
+        self.temperature = self.deck.temperatures()
         self.section = {}
         for c in self.deck.of("PSHELL"):
             strain = at(c, 4) == "-1" or self.parameter.get("PLANE") == "STRAIN"
-            self.section[int(c[1])] = Section(real(c[3]), material[int(c[2])], not strain, curve.get(int(c[2])))
+            self.section[int(c[1])] = Section(real(c[3]), material[int(c[2])], not strain, curve.get(int(c[2])), expansion[int(c[2])])
         for c in self.deck.of("PSOLID"):
-            self.section[int(c[1])] = Section(None, material[int(c[2])], False, curve.get(int(c[2])))
+            self.section[int(c[1])] = Section(None, material[int(c[2])], False, curve.get(int(c[2])), expansion[int(c[2])])
 
     def supports(self):
         """Held directions with their displacements, and the leaders of tied ones."""

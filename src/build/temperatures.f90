@@ -1,0 +1,171 @@
+!> Temperatures of the nodes from TEMP and TEMPD, in the sets that load cases choose.
+module epcont_build_temperatures
+  use epcont_base_diagnostic, only: diagnostic, severity_note
+  use epcont_base_kinds, only: wp
+  use epcont_base_text, only: text_of
+  use epcont_build_reference, only: card_index, resolve
+  use epcont_deck_card_kinds, only: card_temp, card_tempd
+  use epcont_deck_deck, only: deck_type
+  use epcont_model_finding, only: and_more, findings, of_node
+  use epcont_model_load_cases, only: load_cases
+  use epcont_model_model, only: model_type
+  implicit none
+  private
+  public :: build_temperatures
+
+contains
+
+  !> The temperatures of each set that is chosen, which all nodes must have whose elements expand.
+  subroutine build_temperatures(deck, nodes, model, cases, found)
+    type(deck_type), intent(in) :: deck          !! its cards
+    type(card_index), intent(in) :: nodes        !! ids of GRID
+    type(model_type), intent(in) :: model        !! the scene: its mesh
+    type(load_cases), intent(inout) :: cases     !! sets of temperatures are added
+    type(findings), intent(inout) :: found       !! what is wrong with it is added
+    logical :: is_first(size(deck%subcase))   ! case that has its set of temperatures
+    integer :: node(deck%card(card_temp)%count, 3)   ! that a TEMP names
+    integer :: named_by(2, model%nodes)   ! TEMP card and field that name a node; 0: none
+    integer :: default_by                 ! TEMPD of all others; 0: none
+    integer :: first, k
+
+    do k = 1, size(node, 2)
+      call resolve(deck, card_temp, 2*k, nodes, found, node(:, k))
+    end do
+    cases%case%temperatures = deck%subcase%temperature%id
+    associate (set => cases%case%temperatures)
+      is_first = [(set(k) > 0 .and. all(set(:k - 1) /= set(k)), k=1, size(set))]
+      allocate (cases%heat(count(is_first)))
+      cases%heat%set = pack(set, is_first)
+    end associate
+    do k = 1, size(cases%heat)
+      call read_default(cases%heat(k)%set, cases%heat(k)%temperature)
+      call read_nodes(cases%heat(k)%set, cases%heat(k)%temperature)
+      first = findloc(deck%subcase%temperature%id, cases%heat(k)%set, dim=1)
+      if (default_by > 0 .or. any(named_by > 0)) then
+        call check(cases%heat(k)%set)
+      else if (deck%whole .and. all(deck%card(card_temp)%sound) .and. all(deck%card(card_tempd)%sound)) then
+        call found%add_error(deck%subcase(first)%temperature%place, 'TEMPERATURE = '// &
+                             text_of(cases%heat(k)%set)//': the deck has no such set', &
+                             'the set of TEMP or TEMPD cards in the deck')
+      end if
+    end do
+    call note_unused(deck, cases%heat%set, found)
+
+  contains
+
+    !> TEMPD.
+    subroutine read_default(set, temperature)
+      integer, intent(in) :: set
+      real(wp), allocatable, intent(out) :: temperature(:)
+      integer :: i, k
+
+      default_by = 0
+      allocate (temperature(model%nodes), source=0.0_wp)
+      associate (tempd => deck%card(card_tempd))
+        do i = 1, tempd%count
+          do k = 1, size(tempd%value, 1), 2
+            if (tempd%given(k, i) .and. nint(tempd%value(k, i)) == set) &
+              call take(card_tempd, i, k, default_by, temperature)
+          end do
+        end do
+      end associate
+    end subroutine read_default
+
+    !> TEMP.
+    subroutine read_nodes(set, temperature)
+      integer, intent(in) :: set
+      real(wp), intent(inout) :: temperature(:)
+      integer :: i, k
+
+      named_by = 0
+      do k = 1, size(node, 2)
+        do i = 1, size(node, 1)
+          associate (n => node(i, k))
+            if (n == 0 .or. nint(deck%card(card_temp)%value(1, i)) /= set) cycle
+            named_by(2, n) = 2*k
+            call take(card_temp, i, 2*k, named_by(1, n), temperature(n:n))
+          end associate
+        end do
+      end do
+    end subroutine read_nodes
+
+    !> What a card says, once, of nodes.
+    subroutine take(card, i, column, by, temperature)
+      integer, intent(in) :: card, i, column   !! it, and the field before the temperature
+      integer, intent(inout) :: by             !! the card that has said so of them before
+      real(wp), intent(inout) :: temperature(:)
+
+      associate (said => deck%card(card)%value(column + 1, i))
+        if (by > 0 .and. any(temperature < said .or. temperature > said)) &
+          call found%add_error(card, i, column, ': another temperature than '// &
+                               deck%card(card)%identity(by)//' has for the same', 'one temperature')
+        by = i
+        temperature = said
+      end associate
+    end subroutine take
+
+    !> Nodes of elements that expand have temperatures, and those alone.
+    subroutine check(set)
+      integer, intent(in) :: set
+      logical :: expands(model%nodes), unnamed(model%nodes), vain(model%nodes)
+      integer :: k
+
+      expands = expanding_nodes(model)
+      unnamed = expands .and. named_by(1, :) == 0
+      k = findloc(unnamed, .true., dim=1)
+      if (k > 0 .and. default_by == 0) call found%add_error(of_node, k, 1, &
+        ': has no temperature in set '//text_of(set)//and_more(count(unnamed), '; nor have ', ' more'), &
+        'TEMP or TEMPD')
+      if (found%errors > 0) return   ! it may be what could not be read
+      vain = named_by(1, :) > 0 .and. .not. expands
+      k = findloc(vain, .true., dim=1)
+      if (k > 0) then
+        call found%add_warning(card_temp, named_by(1, k), named_by(2, k), ': no material expands at '// &
+                               model%name_of(of_node, k)//and_more(count(vain), ', nor at ', ' more nodes'), &
+                               'A on its MAT1')
+      else if (.not. any(expands)) then
+        call found%add_warning(card_tempd, default_by, 1, ': no material expands', 'A on MAT1')
+      end if
+    end subroutine check
+  end subroutine build_temperatures
+
+  !> Which nodes have elements whose material expands? [nodes]
+  pure function expanding_nodes(model) result(expands)
+    type(model_type), intent(in) :: model
+    logical :: expands(model%nodes)
+    integer :: e
+
+    expands = .false.
+    do e = 1, model%elements
+      if (model%section(e) == 0) cycle
+      if (model%expansion(model%section(e)) == 0.0_wp) cycle
+      associate (node => model%connectivity(:model%node_count(e), e))
+        expands(pack(node, node > 0)) = .true.
+      end associate
+    end do
+  end function expanding_nodes
+
+  !> A note of each set that no load case chooses.
+  pure subroutine note_unused(deck, used, found)
+    type(deck_type), intent(in) :: deck       !! its cards
+    integer, intent(in) :: used(:)            !! ids of sets
+    type(findings), intent(inout) :: found    !! notes are added
+    integer, parameter :: card(2) = [card_temp, card_tempd]
+    integer, allocatable :: heard(:)
+    integer :: c, i, k
+
+    heard = used
+    do c = 1, size(card)
+      associate (table => deck%card(card(c)))
+        do i = 1, table%count
+          do k = 1, merge(1, size(table%value, 1), card(c) == card_temp), 2
+            if (.not. table%given(k, i) .or. any(heard == nint(table%value(k, i)))) cycle
+            heard = [heard, nint(table%value(k, i))]
+            call found%add(diagnostic(severity_note, of=card(c), which=i, item=k, &
+                                      what=': set '//text_of(heard(size(heard)))//' not used', remedy=''))
+          end do
+        end do
+      end associate
+    end do
+  end subroutine note_unused
+end module epcont_build_temperatures
