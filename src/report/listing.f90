@@ -189,7 +189,7 @@ contains
       call listing%heading('SUMMARY')
       call list_figures([character(len=21) :: 'max_pressure', 'total_contact_force', &
         'pairs_in_contact', 'approach_', 'plastic_elements', 'max_equivalent_stress', 'max_displacement', &
-        'status'])
+        'lowest_temperature', 'highest_temperature', 'status'])
       call listing%heading('CERTIFICATE  (recomputed from displacements and forces alone; tolerance '// &
                            short_real(run%certificate%tolerance)//')')
       call list_figures([character(len=25) :: 'equilibrium_residual', 'smallest_', &

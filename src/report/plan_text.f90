@@ -54,7 +54,6 @@ contains
              plural(scene%model%pairs, 'pair')//'; bodies: '//text_of(scene%model%bodies))
     if (iteration%from_first_pivot) &
       call say('ORIGINAL: as the program of about 1980, each contact from its first pivot on')
-    if (allocated(scene%model%free_strain)) call say_temperatures()
     call say_iteration()
     call say_rule()
     do k = 1, min(most, size(scene%model%line_contact))
@@ -92,26 +91,6 @@ contains
 
       if (count > most) call say('and '//plural(count - most, noun)//behind)
     end subroutine say_further
-
-    !> How far from those without strain temperatures are, in elements that expand.
-    subroutine say_temperatures()
-      real(wp) :: above, below
-      integer :: e
-
-      above = -huge(above)
-      below = huge(below)
-      associate (model => scene%model)
-        do e = 1, model%elements
-          associate (node => model%connectivity(:model%node_count(e), e), s => model%section(e))
-            if (model%expansion(s) == 0.0_wp) cycle
-            below = min(below, minval(model%temperature(node)) - model%reference_temperature(s))
-            above = max(above, maxval(model%temperature(node)) - model%reference_temperature(s))
-          end associate
-        end do
-      end associate
-      call say('temperatures from '//short_real(below)//' to '//short_real(above)// &
-               ' above TREF, where bodies expand')
-    end subroutine say_temperatures
 
     !> Whether the scene can yield, and how that is iterated.
     subroutine say_iteration()

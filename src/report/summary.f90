@@ -79,7 +79,28 @@ contains
       call put_largest_stress(first_largest(run%answer%largest_stress))
       call put('max_displacement', length, number, maxval(norm2(run%answer%displacement, dim=1)), &
                'largest displacement')
+      if (allocated(run%model%free_strain)) call put_temperatures()
     end subroutine put_answer
+
+    !> How far from those without strain they are, in elements that expand.
+    subroutine put_temperatures()
+      real(wp) :: lowest, highest
+      integer :: e
+
+      lowest = huge(lowest)
+      highest = -huge(highest)
+      associate (model => run%model)
+        do e = 1, model%elements
+          associate (node => model%connectivity(:model%node_count(e), e), s => model%section(e))
+            if (model%expansion(s) == 0.0_wp) cycle
+            lowest = min(lowest, minval(model%temperature(node)) - model%reference_temperature(s))
+            highest = max(highest, maxval(model%temperature(node)) - model%reference_temperature(s))
+          end associate
+        end do
+      end associate
+      call put('lowest_temperature', 'temperature', number, lowest, 'lowest temperature, above TREF')
+      call put('highest_temperature', 'temperature', number, highest, 'highest temperature, above TREF')
+    end subroutine put_temperatures
 
     !> Of the element that has it.
     subroutine put_largest_stress(element)

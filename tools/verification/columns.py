@@ -18,7 +18,7 @@ UNITS = {"status": "", "max_pressure": "force/length2", "total_contact_force": "
          "iterations": "", "pivots": "", "max_equivalent_stress": "force/length2", "max_displacement": "length", "equilibrium_residual": "",
          "smallest_force": "force", "smallest_gap": "length", "largest_force_gap_product": "force*length", "stress_off_curve": "",
          "max_equivalent_stress_element": "", "max_equivalent_stress_x": "length", "max_equivalent_stress_y": "length",
-         "curve_tolerance": "", "stress_off_curve_limit": "", "energy_balance": "", "load_factor": ""}
+         "lowest_temperature": "temperature", "highest_temperature": "temperature", "curve_tolerance": "", "stress_off_curve_limit": "", "energy_balance": "", "load_factor": ""}
 #: Figures that are rounding in a valid answer: held to their tolerance, not digit by digit.
 BOUNDS = ("equilibrium_residual", "smallest_force", "smallest_gap", "largest_force_gap_product", "energy_balance", "stress_off_curve_limit")
 
@@ -219,9 +219,12 @@ def check_summary(report, scene, tables, found, tolerance):
     }
     if not scene.pair:
         wanted["total_contact_force"] = 0.0
+    deviations = scene.deviations()
+    if any(deviations):
+        wanted.update(lowest_temperature=min(deviations), highest_temperature=max(deviations))
     for key, ours in wanted.items():
         told = summary.get(key, "missing")
-        good = told == str(ours) if isinstance(ours, int) else told != "missing" and abs(number(told, tables.path("summary"), key) - ours) <= tolerance * ours
+        good = told == str(ours) if isinstance(ours, int) else told != "missing" and abs(number(told, tables.path("summary"), key) - ours) <= tolerance * abs(ours)
         report.line(key, ours, told, good)
     check_highest(report, tables, tolerance)
     if tables.history:

@@ -59,6 +59,13 @@ class Scene:
         for c in self.deck.of("PSOLID"):
             self.section[int(c[1])] = Section(None, material[int(c[2])], False, curve.get(int(c[2])), expansion[int(c[2])])
 
+    def deviations(self):
+        """Of the temperatures from TREF, in elements that expand."""
+        if self.temperature is None:
+            return []
+        expanding = [(nodes, section.expansion[1]) for _, nodes, section in self.element.values() if section.expansion[0]]
+        return [self.temperature(node) - none_at for nodes, none_at in expanding for node in nodes]
+
     def supports(self):
         """Held directions with their displacements, and the leaders of tied ones."""
         cards = self.deck.of("SPC1") + self.deck.of("SPC")
