@@ -86,7 +86,7 @@ contains
 
     expands = allocated(model%free_strain) .and. load_factor /= 0.0_wp
     allocate (strain(components, model%points))
-    if (all(displacement == 0.0_wp)) then   ! as contact of joined bodies begins
+    if (.not. expands .and. all(displacement == 0.0_wp)) then   ! as contact of joined bodies begins
       strain = 0.0_wp
       return
     end if
