@@ -22,36 +22,36 @@ contains
     type(model_type), intent(in) :: model        !! the scene: its mesh
     type(load_cases), intent(inout) :: cases     !! sets of temperatures are added
     type(findings), intent(inout) :: found       !! what is wrong with it is added
-    logical :: is_first(size(deck%subcase))   ! case that has its set of temperatures
     integer :: node(deck%card(card_temp)%count, 3)   ! that a TEMP names
     integer :: named_by(2, model%nodes)   ! TEMP card and field that name a node; 0: none
     integer :: default_by                 ! TEMPD of all others; 0: none
-    integer :: first, k
+    integer :: k
 
     do k = 1, size(node, 2)
       call resolve(deck, card_temp, 2*k, nodes, found, node(:, k))
     end do
-    cases%case%temperatures = deck%subcase%temperature%id
-    associate (set => cases%case%temperatures)
-      is_first = [(set(k) > 0 .and. all(set(:k - 1) /= set(k)), k=1, size(set))]
-      allocate (cases%heat(count(is_first)))
-      cases%heat%set = pack(set, is_first)
-    end associate
+    call choose_sets()
     do k = 1, size(cases%heat)
       call read_default(cases%heat(k)%set, cases%heat(k)%temperature)
       call read_nodes(cases%heat(k)%set, cases%heat(k)%temperature)
-      first = findloc(deck%subcase%temperature%id, cases%heat(k)%set, dim=1)
-      if (default_by > 0 .or. any(named_by > 0)) then
-        call check(cases%heat(k)%set)
-      else if (deck%whole .and. all(deck%card(card_temp)%sound) .and. all(deck%card(card_tempd)%sound)) then
-        call found%add_error(deck%subcase(first)%temperature%place, 'TEMPERATURE = '// &
-                             text_of(cases%heat(k)%set)//': the deck has no such set', &
-                             'the set of TEMP or TEMPD cards in the deck')
-      end if
+      call check(cases%heat(k)%set)
     end do
     call note_unused(deck, cases%heat%set, found)
 
   contains
+
+    !> Which load case has which set, and all of these.
+    subroutine choose_sets()
+      logical :: is_first(size(deck%subcase))   ! case that has its set
+      integer :: i
+
+      associate (set => cases%case%temperatures)
+        set = deck%subcase%temperature%id
+        is_first = [(set(i) > 0 .and. all(set(:i - 1) /= set(i)), i=1, size(set))]
+        allocate (cases%heat(count(is_first)))
+        cases%heat%set = pack(set, is_first)
+      end associate
+    end subroutine choose_sets
 
     !> TEMPD.
     subroutine read_default(set, temperature)
@@ -104,8 +104,22 @@ contains
       end associate
     end subroutine take
 
-    !> Nodes of elements that expand have temperatures, and those alone.
+    !> There is such a set, and what it says is sound.
     subroutine check(set)
+      integer, intent(in) :: set
+      integer :: first
+
+      first = findloc(deck%subcase%temperature%id, set, dim=1)
+      if (default_by > 0 .or. any(named_by > 0)) then
+        call check_nodes(set)
+      else if (deck%whole .and. all(deck%card(card_temp)%sound) .and. all(deck%card(card_tempd)%sound)) then
+        call found%add_error(deck%subcase(first)%temperature%place, 'TEMPERATURE = '//text_of(set)// &
+                             ': the deck has no such set', 'the set of TEMP or TEMPD cards in the deck')
+      end if
+    end subroutine check
+
+    !> Nodes of elements that expand have temperatures, and those alone.
+    subroutine check_nodes(set)
       integer, intent(in) :: set
       logical :: expands(model%nodes), unnamed(model%nodes), vain(model%nodes)
       integer :: k
@@ -126,7 +140,7 @@ contains
       else if (.not. any(expands)) then
         call found%add_warning(card_tempd, default_by, 1, ': no material expands', 'A on MAT1')
       end if
-    end subroutine check
+    end subroutine check_nodes
   end subroutine build_temperatures
 
   !> Which nodes have elements whose material expands? [nodes]
