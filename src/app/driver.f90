@@ -176,7 +176,8 @@ contains
     !> What the run would take on this machine: on standard error, since plans are compared.
     subroutine say_forecast()
       call print_error(name//': '//forecast_text( &
-        run%planned_scene, size(run%cases%case), run%cases%patterns, run%rows_of_tables(arguments%asks('--tables')), sum(watch%spent(2, :)), measured_rate())//newline)
+        run%planned_scene, size(run%cases%case), run%cases%patterns, &
+        run%rows_of_tables(arguments%asks('--tables')), sum(watch%spent(2, :)), measured_rate())//newline)
     end subroutine say_forecast
 
     !> Read and check.
