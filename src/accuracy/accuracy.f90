@@ -282,12 +282,14 @@ contains
     !> Is the SUPORT freedom of a motion the one node of its body's mesh that bears a load? [motions]
     pure function find_point_loads() result(is_one)
       logical :: is_one(motions)
-      real(wp) :: on_body(directions, scene%model%bodies)
+      real(wp) :: on_body(directions, scene%model%bodies), own(directions, scene%model%nodes)
       integer :: c, followers(directions, scene%model%nodes), i, j
 
       on_body = 0.0_wp
       followers = 0
       associate (model => scene%model)
+        own = model%load
+        if (allocated(model%body_force)) own = own - model%body_force   ! those act on no node alone
         do i = 1, model%nodes
           on_body(:, model%body(i)) = on_body(:, model%body(i)) + abs(model%load(:, i))
           do c = 1, directions
@@ -296,7 +298,7 @@ contains
         end do
         do j = 1, motions
           associate (node => scene%motions%node(j), c => scene%motions%component(j))
-            is_one(j) = abs(model%load(c, node)) > concentrated*on_body(c, model%body(node)) .and. &
+            is_one(j) = abs(own(c, node)) > concentrated*on_body(c, model%body(node)) .and. &
                         followers(c, node) == 1 .and. first_element(model, node) > 0
           end associate
         end do

@@ -13,17 +13,18 @@ module epcont_build_build
   use epcont_build_temperatures, only: build_temperatures
   use epcont_contact_geometry_complete, only: check_controls, finish_model
   use epcont_contact_geometry_line_contacts, only: find_contacts
-  use epcont_deck_card_kinds, only: card_bconp, card_blseg, card_cgap, card_cord2r, card_grid, card_mat1, &
-      card_mats1, card_param, card_pgap, card_pshell, card_psolid, card_rbe2, &
+  use epcont_deck_card_kinds, only: card_bconp, card_blseg, card_cgap, card_cord2r, card_grav, card_grid, &
+      card_mat1, card_mats1, card_param, card_pgap, card_pshell, card_psolid, card_rbe2, card_rforce, &
       card_spc, card_spc1, card_tables1
   use epcont_deck_deck, only: deck_type
   use epcont_deck_entry, only: least_cause
   use epcont_element_element_kind, only: element_kind
   use epcont_element_element_kinds, only: element_kinds
   use epcont_element_kinematics, only: directions
+  use epcont_model_body_checks, only: check_body_loads
   use epcont_model_element_shapes, only: check_axis
-  use epcont_model_finding, only: findings, of_body, of_couple, of_element, of_line, of_node, of_pair, &
-      of_paper_ratio, of_scene
+  use epcont_model_finding, only: findings, of_body, of_body_load, of_couple, of_element, of_line, of_node, &
+      of_pair, of_paper_ratio, of_scene
   use epcont_model_load_cases, only: contact_all, load_cases, put_case
   use epcont_model_model, only: model_type
   implicit none
@@ -78,6 +79,7 @@ contains
       call faults%add_error(of_scene, 0, 0, 'the deck has no elements', 'CTRIA3 cards')
     if (faults%errors == 0) then
       call put_case(cases, findloc(cases%case%pattern, pattern, dim=1), model)
+      call check_body_loads(model, cases%body%given, faults)
       call finish_model(model, faults)
     end if
     if (present(all_cases)) all_cases = cases
@@ -188,6 +190,10 @@ contains
         if (card(3) < 0) card(3) = -list_item(card(2), -card(3))
       case (of_couple)
         card(1) = card_bconp
+      case (of_body_load)
+        card(1) = card_grav
+        if (card(2) > deck%card(card_grav)%count) &
+          card(:2) = [card_rforce, card(2) - deck%card(card_grav)%count]
       case (of_paper_ratio)
         card(:2) = [card_param, max(deck%parameter_row('MUP'), deck%parameter_row('ORIGINAL'))]
       end select

@@ -1,11 +1,13 @@
-!> Load cases from case control, and what the sets say that they have: FORCE, PLOADX1, LOAD, SPC and SPCD.
+!> Load cases from case control, and what the sets say that they have: FORCE, PLOADX1,
+!> GRAV, RFORCE, LOAD, SPC and SPCD.
 module epcont_build_cases
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: new_id_index
   use epcont_base_text, only: short_real, text_of
+  use epcont_build_mass_loads, only: build_mass_loads
   use epcont_build_reference, only: card_index, chosen_sets, note_unused, resolve
-  use epcont_deck_card_kinds, only: card_bconp, card_force, card_load, card_ploadx1, card_spc, card_spc1, &
-      card_spcd
+  use epcont_deck_card_kinds, only: card_bconp, card_force, card_grav, card_load, card_ploadx1, card_rforce, &
+      card_spc, card_spc1, card_spcd
   use epcont_deck_deck, only: deck_type
   use epcont_deck_entry, only: farthest, least_cause
   use epcont_model_arrays, only: side_pressure
@@ -18,7 +20,7 @@ module epcont_build_cases
   public :: build_cases
 
   !> Cards whose first field is a set of loads, which LOAD may combine; and of supports.
-  integer, parameter :: load_cards(*) = [card_force, card_ploadx1, card_spcd]
+  integer, parameter :: load_cards(*) = [card_force, card_ploadx1, card_spcd, card_grav, card_rforce]
   integer, parameter :: support_cards(*) = [card_spc, card_spc1]
 
 contains
@@ -52,6 +54,7 @@ contains
     call note_unused(deck, [card_load], loads, found)
     call add_forces()
     call add_pressures()
+    call build_mass_loads(deck, nodes, model, used, cases%body, found)
     call add_displacements(card_spc, supports, cases%held_at)
     call add_displacements(card_spcd, used, cases%moved)
 
@@ -92,7 +95,7 @@ contains
             set = nint(combined%list(item)%number(2))
             if (any(id == set)) cycle
             call found%add_error(card_load, i, -item, ': there is no set '//text_of(set)//' of loads', &
-                                 'the set of FORCE, PLOADX1 or SPCD cards')
+                                 'the set of FORCE, PLOADX1, GRAV, RFORCE or SPCD cards')
           end do
         end do
       end associate

@@ -29,6 +29,7 @@ module epcont_build_mesh
     real(wp) :: poisson = 0.0_wp
     real(wp) :: expansion = 0.0_wp             !! [1/temperature]
     real(wp) :: reference_temperature = 0.0_wp
+    real(wp) :: density = 0.0_wp    !! [mass/length**3]
     type(uniaxial_curve) :: curve
   end type material_card
 
@@ -96,6 +97,7 @@ contains
         poisson = mat1%number('NU', i)
         material(i)%expansion = mat1%number('A', i)
         material(i)%reference_temperature = mat1%number('TREF', i)
+        material(i)%density = mat1%number('RHO', i)
         if (count([mat1%has('E', i), mat1%has('G', i), mat1%has('NU', i)]) < 2) then
           call refuse(card_mat1, i, 'E', ': of E, G and NU two are needed', 'E and NU, say')
         else if (.not. mat1%has('NU', i)) then
@@ -195,6 +197,11 @@ contains
         model%expansion = section%expansion
         model%reference_temperature = section%reference_temperature
         model%thickness(:shell%count) = shell%value(shell%column('T'), :)
+        model%density = section%density
+        where (model%thickness(:shell%count) > 0.0_wp) &
+          model%density(:shell%count) = model%density(:shell%count) + &
+                                        shell%value(shell%column('NSM'), :)/model%thickness(:shell%count)
+        model%density = deck%parameter_value('WTMASS', 1.0_wp)*model%density
       end associate
     end subroutine read_sections
 

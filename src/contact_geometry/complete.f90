@@ -10,10 +10,12 @@ module epcont_contact_geometry_complete
   use epcont_element_kinematics, only: directions, plane_strain
   use epcont_geometry_outline_shape, only: new_outline_shape, outline_shape
   use epcont_model_arrays, only: scene_type
+  use epcont_model_body_checks, only: check_body_loads
+  use epcont_model_body_forces, only: are_massless, put_body_forces
   use epcont_model_controls, only: method_newton
   use epcont_model_element_shapes, only: check_axis, complete_elements
   use epcont_model_expansion, only: find_free_strains
-  use epcont_model_finding, only: findings, of_node, of_paper_ratio, of_scene, of_section
+  use epcont_model_finding, only: findings, of_body_load, of_node, of_paper_ratio, of_scene, of_section
   use epcont_model_freedoms, only: find_travels, follow_to_the_end, set_reference, tie
   use epcont_model_given, only: check_given, number_parts
   use epcont_model_model, only: model_type
@@ -49,6 +51,7 @@ contains
         end if
       end do
     end if
+    if (any(model%body_load%factor /= 0.0_wp)) call check_masses()
     call complete_freedoms()
     call check_axis(model, found)
     call complete_pairs(model, .false., found)
@@ -57,9 +60,29 @@ contains
     if (found%errors > 0) return
     call find_travels(model)
     call find_free_strains(model)
+    call check_body_loads(model, model%body_load, found)
+    call put_body_forces(model)
     call finish_model(model, found)
 
   contains
+
+    !> What body loads act on has mass, and those of rings act along what they resist.
+    subroutine check_masses()
+      logical :: massless(size(model%density))
+
+      massless = are_massless(model)
+      if (any(massless)) &
+        call found%add_error(of_scene, 0, 0, 'density('//text_of(findloc(massless, .true., dim=1))// &
+                             ') is not above 0.0, and body_load acts on mass', 'a density above 0.0')
+      if (.not. model%has_rings()) return
+      do i = 1, size(model%body_load)
+        associate (load => model%body_load(i))
+          if (load%acceleration(1) /= 0.0_wp .or. load%centre(1) /= 0.0_wp .or. load%spin_up /= 0.0_wp) &
+            call found%add_error(of_body_load, i, 0, ' acts across the axis of rings', &
+                                 '0.0 for acceleration(1), centre(1) and spin_up')
+        end associate
+      end do
+    end subroutine check_masses
 
     !> Ties and reference freedoms, one by one: each is checked against those before it.
     subroutine complete_freedoms()

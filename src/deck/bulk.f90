@@ -50,8 +50,10 @@ contains
     parameter_entry = parameters()
     call find_kinds()
     begun = new_incidence(kind, unknown_card)
+    call note_without_cards(parameter_entry)
     allocate (table(card_kinds))
     do k = 1, card_kinds
+      call note_without_cards(entry(k)%field)
       call table(k)%begin(entry(k), begun%of(k))
       if (k /= card_param .and. entry(k)%list_slot == huge(1)) call read_plain(table(k))
     end do
@@ -72,6 +74,18 @@ contains
     end do
 
   contains
+
+    !> What has an effect with some cards alone has none without one of them.
+    pure subroutine note_without_cards(field)
+      type(field_entry), intent(inout) :: field(:)
+      integer :: i, k
+
+      do i = 1, size(field)
+        if (field(i)%with_cards /= '') &
+          field(i)%used = any([(begun%start(k + 1) > begun%start(k) .and. &
+                                index(field(i)%with_cards, '/'//trim(names(k))//'/') > 0, k=1, card_kinds)])
+      end do
+    end subroutine note_without_cards
 
     !> Read cards without lists, but those that are at fault, by as many threads as are granted.
     subroutine read_plain(cards)

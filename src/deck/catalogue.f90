@@ -31,14 +31,16 @@ module epcont_deck_catalogue
     '  MID1; id; its MAT1', &
     '  T; real needed positive; thickness [length]', &
     '  MID2; whole from=-1 to=99999999 heard_to=-1; -1: plane strain; else as PARAM PLANE says', &
-    '  ; any noted times=7; bending, mass', &
+    '  ; any noted times=3; bending', &
+    '  NSM; real for=GRAV/RFORCE; non-structural mass of a unit of area', &
+    '  ; any noted times=3; bending', &
     'MAT1: isotropic elastic material; two of E, G, NU', &
     '  MID; id; material', &
     '  E; real positive; Young''s modulus [stress]', &
     '  G; real positive; shear modulus [stress]', &
     '  NU; real from=0 below=0.5 instead=0.4999; Poisson''s ratio | incompressible: the bulk'// &
     ' modulus is infinite', &
-    '  RHO; real noted; density', &
+    '  RHO; real for=GRAV/RFORCE; density', &
     '  A; real cause zero; thermal expansion: strain by one degree', &
     '  TREF; real zero; temperature without thermal strain', &
     '  GE; real noted; damping', &
@@ -220,7 +222,26 @@ module epcont_deck_catalogue
     '  SID3; id with_next; third set', &
     '  T3; real with_last; temperature', &
     '  SID4; id with_next; fourth set', &
-    '  T4; real with_last; temperature']
+    '  T4; real with_last; temperature', &
+    'GRAV: gravity A*N, on all mass', &
+    '  SID; id; set', &
+    '  CID; system only_zero; system of N1 to N3: the basic one', &
+    '  A; real needed cause; factor: acceleration', &
+    '  N1; real zero; direction x; 0.0 of rings', &
+    '  N2; real zero; direction y', &
+    '  N3; real zero; direction z; 0.0 in plane scenes', &
+    'RFORCE: forces of a spin, away from its axis, on all mass', &
+    '  SID; id; set', &
+    '  G; system; node that the axis goes through; 0 or blank: the origin', &
+    '  CID; system only_zero; system of R1 to R3: the basic one', &
+    '  A; real zero cause; factor of the spin: revolutions in a unit of time', &
+    '  R1; real zero; axis x; 0.0', &
+    '  R2; real zero; axis y; that of rings', &
+    '  R3; real zero; axis z; that of plane scenes', &
+    '  METHOD; whole from=1 to=2 noted; forces are those of the mass where it is', &
+    '  RACC; real zero cause; factor of what the spin gains in a unit of time; forces go along it', &
+    '  MB; any noted; of superelements', &
+    '  IDRF; system only_zero; elements: all']
 
   !> All PARAMs: the field VALUE for each NAME.
   character(len=*), parameter :: choices(*) = [character(len=180) :: &
@@ -249,12 +270,13 @@ module epcont_deck_catalogue
     ' and PRECIS where they are left out', &
     'CORNER; real positive to=180; sides of a boundary line that turn by more than this meet at a'// &
     ' corner; default: decided from the turns beside it [degree]', &
+    'WTMASS; real positive for=GRAV/RFORCE; factor of all mass: of RHO and NSM; default 1.0', &
     'LGDISP; whole from=-1 to=-1 noted; no effect | displacements are small', &
     'INREL; whole only_zero noted; no effect | supports and contact hold bodies']
   !> PARAMs of other programs that have no effect here.
   character(len=*), parameter :: unheard(*) = [character(len=8) :: &
     'AUTOSPC', 'BAILOUT', 'COUPMASS', 'GRDPNT', 'K6ROT', 'MAXRATIO', 'NOCOMPS', 'OGEOM', 'POST', 'PRGPST', &
-    'PRTMAXIM', 'WTMASS']
+    'PRTMAXIM']
 
 contains
 

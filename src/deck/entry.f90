@@ -28,6 +28,7 @@ module epcont_deck_entry
     character(len=8) :: unit = ''
     logical :: used = .true.           !! false: noted, that is accepted without effect
     real(wp) :: heard_to = huge(1.0_wp)   !! larger values are noted too
+    character(len=24) :: with_cards = ''  !! without one of these, with `/` between, it is noted; blank: any
     logical :: required = .false.      !! may not be blank
     integer :: with = 0                !! may not be blank where the next (1), the last (-1) field is filled
     integer :: same_as = 0             !! a blank means the value of the last field (-1)
@@ -106,7 +107,8 @@ contains
   !! to 6), a `word`, where some are listed one of these, or `any`thing; or it is `blank`. Behind that may
   !! stand, in any order: limits (`from=`, `to=`, or `below=`, in place of which `instead=` would do),
   !! `positive`, `only_zero` (0 or blank), `cause` (it loads the scene), `noted` (checked, without effect),
-  !! or so above `heard_to=`, `point_optional`; what a blank means: `zero`, `default=`, or `as_last`, its
+  !! or so above `heard_to=`, or without one of the cards
+  !! `for=`, `point_optional`; what a blank means: `zero`, `default=`, or `as_last`, its
   !! neighbour; and whether it may be blank: ids and digits may if they are `optional`, or where their
   !! neighbour (`with_next`, `with_last`) is, numbers if they are not `needed`. So many like it follow each
   !! other as `times=` says. Fields that are there for `each` record of a list are told by the catalogue.
@@ -144,7 +146,7 @@ contains
       real(wp) :: number   ! behind it
 
       equals = index(word//'=', '=')
-      if (equals < len(word)) read (word(equals + 1:), *) number
+      if (equals < len(word) .and. word(:equals - 1) /= 'for') read (word(equals + 1:), *) number
       select case (word(:equals - 1))
       case ('id', 'system')
         field%kind = kind_integer
@@ -193,6 +195,8 @@ contains
         field%used = .false.
       case ('heard_to')
         field%heard_to = number
+      case ('for')
+        field%with_cards = '/'//word(equals + 1:)//'/'
       case ('point_optional')
         field%point_optional = .true.
       case ('as_last')

@@ -7,7 +7,7 @@ module epcont_model_arrays
   implicit none
   private
   public :: scene_type, new_scene, set_sections, add_elements, set_pairs, count_from_one
-  public :: element_block, line_couple, named_line, side_pressure
+  public :: body_load, element_block, line_couple, named_line, side_pressure
 
   !> Elements of one kind.
   type :: element_block
@@ -25,6 +25,17 @@ module epcont_model_arrays
     real(wp) :: pressure(2) = 0.0_wp          !! at these, positive into the element [stress]
     real(wp) :: theta = 0.0_wp                !! counter-clockwise from the inward normal [degree]
   end type side_pressure
+
+  !> What acts on all mass (GRAV, RFORCE): a uniform acceleration, and what a spin about a centre makes.
+  type :: body_load
+    real(wp) :: factor = 1.0_wp                   !! of its forces
+    real(wp) :: acceleration(directions) = 0.0_wp !! uniform, such as gravity [length/time**2]
+    !> What the axis of the spin, across the plane, goes through; rings spin about theirs [length]
+    real(wp) :: centre(directions) = 0.0_wp
+    real(wp) :: spin = 0.0_wp                     !! pushes away from the axis [revolutions/time]
+    !> Counter-clockwise; forces go along it, against those of inertia. None of rings [revolutions/time**2]
+    real(wp) :: spin_up = 0.0_wp
+  end type body_load
 
   !> A boundary line (BLSEG).
   type :: named_line
@@ -49,6 +60,7 @@ module epcont_model_arrays
     real(wp), allocatable :: poisson(:)         !! [sections]
     integer, allocatable :: kinematics(:)       !! plane_strain, plane_stress or axisymmetric [sections]
     real(wp), allocatable :: thickness(:)       !! [length] [sections]
+    real(wp), allocatable :: density(:)         !! [mass/length**3] [sections]
     type(uniaxial_curve), allocatable :: curve(:)  !! how each section yields, if it does [sections]
     real(wp), allocatable :: expansion(:)       !! strain for each degree [1/temperature] [sections]
     real(wp), allocatable :: reference_temperature(:)   !! at which there is none [temperature] [sections]
@@ -61,6 +73,7 @@ module epcont_model_arrays
     type(side_pressure), allocatable :: pressure(:)   !! in addition to these [any]
     !> Not allocated: that of reference everywhere [temperature] [nodes]
     real(wp), allocatable :: temperature(:)
+    type(body_load), allocatable :: body_load(:)      !! and to those [any]
     integer, allocatable :: pair_node(:, :)     !! nodes A and B that name the pair [2, pairs]
     real(wp), allocatable :: normal(:, :)       !! unit, along which B is pushed [2, pairs]
     real(wp), allocatable :: initial_gap(:)     !! [length] [pairs]
@@ -83,12 +96,13 @@ contains
     scene%leader = spread([(i, i=1, nodes)], 1, directions)
     allocate (scene%held(directions, nodes), scene%reference(directions, nodes), source=.false.)
     allocate (scene%prescribed(directions, nodes), scene%load(directions, nodes), source=0.0_wp)
-    allocate (scene%block(0), scene%pressure(0), scene%line(0), scene%couple(0))
+    allocate (scene%block(0), scene%pressure(0), scene%body_load(0), scene%line(0), scene%couple(0))
     call set_sections(scene, [real(wp) ::], [real(wp) ::], [integer ::])
     call set_pairs(scene, reshape([integer ::], [2, 0]), reshape([real(wp) ::], [2, 0]), [real(wp) ::])
   end function new_scene
 
-  !> What elements are made of; of thickness 1, and nothing yields or expands: that may be changed.
+  !> What elements are made of; of thickness 1, without mass, and nothing yields or expands: that may be
+  !! changed.
   pure subroutine set_sections(scene, young, poisson, kinematics)
     type(scene_type), intent(inout) :: scene   !! is changed
     real(wp), intent(in) :: young(:)           !! [stress] [sections]
@@ -101,6 +115,7 @@ contains
     scene%thickness = spread(1.0_wp, 1, size(young))
     scene%expansion = spread(0.0_wp, 1, size(young))
     scene%reference_temperature = scene%expansion
+    scene%density = spread(0.0_wp, 1, size(young))
     if (allocated(scene%curve)) deallocate (scene%curve)
     allocate (scene%curve(size(young)))
   end subroutine set_sections
@@ -158,6 +173,7 @@ contains
     scene%load = given%load
     call set_sections(scene, given%young, given%poisson, given%kinematics)
     scene%thickness = given%thickness
+    if (allocated(given%density)) scene%density = given%density
     call set_pairs(scene, given%pair_node, given%normal, given%initial_gap)
     scene%pressure = given%pressure(:)
     if (allocated(given%temperature)) then
@@ -165,6 +181,7 @@ contains
       scene%expansion = given%expansion
       scene%reference_temperature = given%reference_temperature
     end if
+    if (allocated(given%body_load)) scene%body_load = given%body_load(:)
     scene%couple = given%couple(:)
     deallocate (scene%block, scene%line)
     allocate (scene%block(size(given%block)), scene%line(size(given%line)))

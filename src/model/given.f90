@@ -40,6 +40,7 @@ contains
               '0.0 or more, and less than 0.5')
     call need(scene%thickness >= least_divisor .and. scene%thickness <= farthest, &
               'thickness(#) is no thickness', above_zero)
+    call need(scene%density >= 0.0_wp .and. has_size(scene%density), 'density(#) is no density', any_size)
     call need(within(scene%kinematics, axisymmetric), 'kinematics(#) is unknown', &
               'plane_strain, plane_stress or axisymmetric')
     do i = 1, size(scene%curve)
@@ -73,6 +74,12 @@ contains
                 '1 to '//text_of(elements))
     call need(has_size(scene%pressure%pressure(1)) .and. has_size(scene%pressure%pressure(2)) .and. &
               has_size(scene%pressure%theta), 'pressure(#) is no pressure', any_size)
+    do i = 1, size(scene%body_load)
+      associate (load => scene%body_load(i))
+        call need([all(has_size([load%factor, load%acceleration, load%centre, load%spin, load%spin_up]))], &
+                  'body_load('//text_of(i)//') is out of range', any_size)
+      end associate
+    end do
     do i = 1, size(scene%line)
       call fit('line('//text_of(i)//')%node', any_shape, scene%line(i)%node)
       if (allocated(scene%line(i)%node)) &
@@ -109,6 +116,7 @@ contains
       call fit('poisson(sections)', sections, given%poisson)
       call fit('kinematics(sections)', sections, given%kinematics)
       call fit('thickness(sections)', sections, given%thickness)
+      if (allocated(given%density)) call fit('density(sections)', sections, given%density)
       call fit('curve(sections)', sections, given%curve)
       call fit('pair_node(2, pairs)', pairs, given%pair_node)
       call fit('normal(2, pairs)', pairs, given%normal)

@@ -3,7 +3,8 @@
 module epcont_model_load_cases
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: directions
-  use epcont_model_arrays, only: side_pressure
+  use epcont_model_arrays, only: body_load, side_pressure
+  use epcont_model_body_forces, only: put_body_forces
   use epcont_model_expansion, only: find_free_strains
   use epcont_model_freedoms, only: find_travels
   use epcont_model_model, only: model_type
@@ -27,6 +28,12 @@ module epcont_model_load_cases
     integer :: set = 0                          !! by its id
     type(side_pressure) :: given
   end type set_pressure
+
+  !> What acts on all mass.
+  type, public :: set_body_load
+    integer :: set = 0                          !! by its id
+    type(body_load) :: given                    !! factor 0: no case has it
+  end type set_body_load
 
   !> A displacement of a freedom that supports hold.
   type, public :: set_displacement
@@ -58,6 +65,7 @@ module epcont_model_load_cases
     integer :: patterns = 1                                !! scenes that are solved apart
     type(nodal_force), allocatable :: force(:)             !! FORCE
     type(set_pressure), allocatable :: pressure(:)         !! PLOADX1
+    type(set_body_load), allocatable :: body(:)            !! each GRAV, then each RFORCE
     type(set_displacement), allocatable :: held_at(:)      !! SPC, of sets of supports; others are held at 0
     type(set_displacement), allocatable :: moved(:)        !! SPCD, of sets of loads: instead of those
     type(set_temperatures), allocatable :: heat(:)         !! TEMP and TEMPD, of those sets that cases have
@@ -97,6 +105,11 @@ contains
         share = share_of(case, cases%pressure(i)%set)
         if (share /= 0.0_wp) call add_pressure(model, cases%pressure(i)%given, share)
       end do
+      model%body_load = cases%body%given
+      do i = 1, size(cases%body)
+        model%body_load(i)%factor = share_of(case, cases%body(i)%set)*model%body_load(i)%factor
+      end do
+      call put_body_forces(model)
     end associate
     call put_displacements(cases, cases%case(k), model%prescribed)
     call find_travels(model)

@@ -11,7 +11,8 @@ module epcont_model_model
   use epcont_geometry_boundary_line, only: boundary_line
   use epcont_geometry_outline_shape, only: outline_type
   use epcont_model_arrays, only: scene_type
-  use epcont_model_finding, only: of_couple, of_element, of_line, of_node, of_pair, of_paper_ratio, of_section
+  use epcont_model_finding, only: of_body_load, of_couple, of_element, of_line, of_node, of_pair, &
+      of_paper_ratio, of_section
   implicit none
   private
   public :: line_contact, model_type
@@ -57,6 +58,10 @@ module epcont_model_model
     real(wp), allocatable :: free_strain(:)
     integer, allocatable :: property_id(:)      !! PSHELL or PSOLID [sections]
     integer, allocatable :: material_id(:)      !! MAT1 [sections]
+    !> The mass that each node has by its shape functions, and the moments of that about the node, for body
+    !! loads [mass, mass*length, mass*length] [3, nodes]
+    real(wp), allocatable :: mass(:, :)
+    real(wp), allocatable :: body_force(:, :)   !! what `load` has of body loads, if any [force] [2, nodes]
     !> The rigid motion of its body that supports prescribe as a whole, and what they prescribe beyond it
     !! [length] [2, nodes].
     real(wp), allocatable :: travel(:, :), beyond_travel(:, :)
@@ -338,6 +343,7 @@ contains
       name = 'PARAM MUP'
     case default
       name = ''
+      if (kind == of_body_load) name = 'body_load('//text_of(which)//')'
     end select
   end function name_of
 end module epcont_model_model

@@ -52,7 +52,7 @@ top.pressure = 10.0
 """
 LINES = "its lines: floor, face, under, top, wall"
 POINTS = LINES + "; its points: corner"
-TOP = "one of: material, body, support, load, platen, free, contact, PARAM, mesh, kind, title, units"
+TOP = "one of: material, body, support, load, platen, free, contact, PARAM, mesh, kind, title, units, gravity, spin, axis"
 CURVE = "points of total strain and stress, the yield point first: curve = [[0.00114286, 240.0], [0.01, 260.0]]"
 FORM = 'key = 1.5, key = "text" or [table]; a name with blanks or dots in quotes; a key once only'
 
@@ -70,6 +70,10 @@ SCENE = [
     ("two.geo", "two.stl", ["mesh: two.stl is neither .geo nor .msh", "a script or a mesh of Gmsh"]),
     ("units =", "unit =", ["unit: is no key here", f"{TOP}; did you mean 'units'?"]),
     ("[load]", "[loads]", ["loads: is no key here", f"{TOP}; did you mean 'load'?"]),
+    ("units =", 'gravity = 9810.0\nunits =', ["gravity: is 9810.0", "an acceleration in x and y, such as gravity = [0.0, -9810.0]"]),
+    ("units =", "axis = [0.0, 1.0]\nunits =", ["axis: has no meaning here", "spin = 120.0 beside it, or no axis"]),
+    ("units =", "spin = 2.0\nunits =", ["[material.steel] density: is missing",
+                                        "mass of a unit of volume, since gravity and spin act on it, such as density = 7.85e-9"]),
     ("N-MM", "newton and mm", ['units: is the text "newton and mm"',
                                'a word of at most 8 characters, first a letter; nothing is converted, such as units = "N-MM"']),
     ("E = 210000.0", 'E = "210e3"', ['[material.steel] E: is the text "210e3"', "Young's modulus, above zero, such as E = 210000.0"]),
@@ -98,7 +102,7 @@ SCENE = [
     ('slave = "under"', 'slave = "face"', ["[[contact]] master: 'face' is the slave, too", "the line on the other side of the contact"]),
     ('slave = "under", ', "", ["[[contact]] slave: is missing", 'the name of a line, the one of the coarser mesh, such as slave = "pin"']),
     ("[load]", "[PARAM]\nSERCH = 0.5\n[load]", ["[PARAM] SERCH: is no key here", "one of: RULE, METHOD, MUP, SOLVER, PRECIS, TOL, SEARCH, CORNER, ACCURACY, "
-                                              "MAXIT, NLOAD, FLEXIB, ORIGINAL; did you mean 'SEARCH'?"]),
+                                              "MAXIT, NLOAD, FLEXIB, ORIGINAL, WTMASS; did you mean 'SEARCH'?"]),
     ("[load]", "[PARAM]\nMAXIT = 0.5\n[load]", ["[PARAM] MAXIT: is 0.5", "a whole number above zero; epcont --cards PARAM says which"]),
     ("[load]", '[PARAM]\nPLANE = "STRESS"\n[load]', ["[PARAM] PLANE: is said by the scene itself", "kind = ... before the first table"]),
     ("[body.below]", "[body.belov]", ["[body.belov]: two.geo has no Physical Surface of that name", "its surfaces: below, above; did you mean 'below'?",

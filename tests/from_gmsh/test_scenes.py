@@ -220,6 +220,18 @@ contact = [{ slave = "rim", master = "bed" }, { slave = "rim", master = "under" 
         for stress in hub:
             self.near(stress, -1e5 / (math.pi * (45.0**2 - 30.0**2)), 0.005)
 
+    def test_gravity_and_spin(self):
+        """The contact bears the weight of the upper block, 3 by 1.5 by 5; and its mass times distance from an axis far above times the square of
+        the spin."""
+        text = (SCENES / "blocks.toml").read_text().replace("NU = 0.3\n", "NU = 0.3\ndensity = 7.0\n").replace("NU = 0.33", "NU = 0.33\ndensity = 2.0")
+        text = text.replace("top.pressure = 250.0 ", "#")
+        (self.place / "blocks.geo").write_text((SCENES / "blocks.geo").read_text())
+        for load, force in (("gravity = [0.0, -10.0]", 450.0), ("spin = 0.05\naxis = [0.0, 102.75]", 45.0 * (0.1 * math.pi)**2 * 100.0)):
+            (self.place / "heavy.toml").write_text(f"{load}\n{text}")
+            made = make(self.place / "heavy.toml", self.place / "heavy.dat")
+            self.assertEqual(made.returncode, 0, made.stderr)
+            self.near(self.solved(self.place / "heavy.dat")["summary"]["total_contact_force"], force, 1e-9)
+
     def test_travel(self):
         """A line that is moved by so much takes the place of the force, and a force on what is held has no effect."""
         table = self.variant(('[platen]\ntop = "y"\n', ""), ('[free]\ntop = "y"', "[support.top]\ny = -0.01735714285714286"),

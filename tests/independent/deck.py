@@ -8,7 +8,8 @@ import re
 from dataclasses import dataclass, field
 
 KNOWN = {"GRID", "CTRIA3", "CTRIA6", "CQUAD4", "CQUAD8", "CTRAX3", "CTRAX6", "PSHELL", "PSOLID", "MAT1", "SPC", "SPC1", "FORCE", "PLOADX1",
-         "RBE2", "SUPORT", "CORD2R", "CGAP", "PGAP", "CBAR", "PARAM", "SPCADD", "LOAD", "MATS1", "TABLES1", "BLSEG", "BCONP", "TEMP", "TEMPD"}
+         "RBE2", "SUPORT", "CORD2R", "CGAP", "PGAP", "CBAR", "PARAM", "SPCADD", "LOAD", "MATS1", "TABLES1", "BLSEG", "BCONP", "TEMP", "TEMPD",
+         "GRAV", "RFORCE"}
 
 #: Columns of the tables, by what their largest is the measure of.
 KINDS = {"contact": {"force": ["force"], "length": ["initial_gap", "gap"], "pressure": ["pressure"], "normal": ["nx", "ny"],
@@ -68,6 +69,26 @@ class Deck:
                 limit, slope = real(card[7]), real(at(card, 4))
                 points = [(0.0, 0.0), (limit / young, limit), (2 * limit / young, limit + limit * slope / (young + slope))]
             found[int(card[1])] = points
+        return found
+
+    def densities(self):
+        """By section: WTMASS times RHO and NSM over the thickness."""
+        rho = {int(card[1]): real(at(card, 5)) for card in self.of("MAT1")}
+        factor = next((real(card[2]) for card in self.of("PARAM") if card[1] == "WTMASS"), 1.0)
+        found = {int(card[1]): factor * rho[int(card[2])] for card in self.of("PSOLID")}
+        for card in self.of("PSHELL"):
+            found[int(card[1])] = factor * (rho[int(card[2])] + real(at(card, 8)) / real(card[3]))
+        return found
+
+    def body_loads(self, chosen, x):
+        """(acceleration, centre, revolutions, their growth) of the GRAV and RFORCE of the set; `x`: places by id."""
+        found = [([real(card[3]) * real(at(card, i)) for i in (4, 5)], (0.0, 0.0), 0.0, 0.0)
+                 for card in self.of("GRAV") if int(card[1]) == chosen]
+        for card in self.of("RFORCE"):
+            if int(card[1]) == chosen:
+                axis = real(at(card, 6)) or real(at(card, 7))   # of rings y, else z
+                found.append(((0.0, 0.0), x(integer(card[2])) if integer(card[2]) else (0.0, 0.0),
+                              axis * real(at(card, 4)), axis * real(at(card, 9))))
         return found
 
     def held(self, chosen):

@@ -2,6 +2,7 @@
 import numpy as np
 import scipy.sparse as sp
 
+from body import body_forces
 from boundary import boundary, edge_forces
 from deck import DeckError, at, ids, real
 from kinds import KINDS
@@ -213,7 +214,12 @@ class Model:
     def load(self):
         self.force = np.zeros(2 * len(self.node))
         cards = self.deck.of("FORCE") + self.deck.of("PLOADX1")
-        chosen = self.chosen("LOAD", cards)
+        chosen = self.chosen("LOAD", cards + self.deck.of("GRAV") + self.deck.of("RFORCE"))
+        loads, density = self.deck.body_loads(chosen, lambda node: self.x[self.row[node]]), self.deck.densities()
+        for kind, members, section in zip(self.kind, self.members, self.property) if loads else ():
+            forces = body_forces(kind, self.x[members].tolist(), self.section[section][0], density[section], loads)
+            for row, force in zip(members, forces):
+                self.force[2 * row:2 * row + 2] += force
         for card in cards:
             if int(card[1]) != chosen:
                 continue

@@ -6,7 +6,7 @@ in one another, and blocks or rings of any element that press one another, node 
     python tests/independent/compare.py build/release/epcont DIRECTORY/*.dat --tolerance 1e-7
 
 Each block has a material of its own: elastic, bilinear, flat, or a curve of five points; plane strain or plane stress;
-meshes with random places, gaps, loads, prescribed displacements and temperatures. Not kept: the seed makes them again.
+meshes with random places, gaps, loads, prescribed displacements, temperatures, gravity and spins. Not kept: the seed makes them again.
 """
 import argparse
 import math
@@ -38,7 +38,7 @@ class Scene:
             self.add("PSOLID", number, number)
         else:
             self.add("PSHELL", number, number, rng.uniform(0.5, 2.0))
-        self.add("MAT1", number, young, "", nu, "", *self.expansion())
+        self.add("MAT1", number, young, "", nu, rng.uniform(0.5, 2.0), *self.expansion())
         kind = rng.choice(["elastic", "bilinear", "flat", "curve", "curve"])
         if kind in ("bilinear", "flat"):
             self.add("MATS1", number, "", "PLASTIC", young * rng.uniform(0.01, 0.3) if kind == "bilinear" else 0.0, 1, 1, stress)
@@ -191,6 +191,22 @@ def tongue(rng):
     return scene
 
 
+def body_loads(rng, scene):
+    """Gravity or a spin or both, so that each is a part of the loads; of rings along y, and about it."""
+    kinds = rng.choice([(), (), ("GRAV",), ("RFORCE",), ("GRAV", "RFORCE"), ("RFORCE", "RFORCE")])
+    if kinds and rng.random() < 0.3:
+        scene.add("PARAM", "WTMASS", rng.uniform(0.5, 2.0))
+    for kind in kinds:
+        if kind == "GRAV":
+            scene.add("GRAV", 1, "", rng.uniform(0.02, 0.1), 0.0 if scene.rings else rng.uniform(-0.3, 0.3), -1.0)
+        elif scene.rings:
+            scene.add("RFORCE", 1, "", "", rng.uniform(0.01, 0.03), 0.0, 1.0)
+        else:
+            growth = rng.choice([(), (1, rng.uniform(-0.003, 0.003))])
+            scene.add_long("RFORCE", 1, rng.choice(["", rng.randint(1, scene.nodes)]), "", rng.uniform(0.01, 0.04), 0.0, 0.0,
+                           rng.choice([1.0, -1.0]), *growth)
+
+
 def row(at, j, middles):
     """Columns of the nodes of a row of a mesh."""
     return [at[i, k] for i, k in sorted(at) if k == j and (middles or i == int(i))]
@@ -274,6 +290,7 @@ def main():
     for k in range(options.number):
         rng = random.Random(f"{options.seed} {k}")
         scene = (pressed if k % 2 else [stack, nested, tongue][k // 2 % 3])(rng)
+        body_loads(rng, scene)
         (options.directory / f"scene{k:03}.dat").write_text(scene.text(), encoding="ascii")
 
 

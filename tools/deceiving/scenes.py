@@ -98,6 +98,7 @@ class Scene:
         self.alternate, self.falling = alternate, falling
         self.nodes, self.bodies = [], []
         self.supports, self.forces, self.platens, self.free = {}, [], [], []
+        self.gravity, self.spins = [], []   # accelerations; (node of the axis, turns in a unit of time)
         self.lines, self.contacts, self.parameters = {}, [], {}
         self.needed = None            # contacts; those behind say again what these have said
         self.note = ""
@@ -208,7 +209,7 @@ def deck(scene, twin):
     element = 0
     for number, body in enumerate(scene.bodies, 1):
         cards.append(card("PSOLID", number, number) if scene.rings else card("PSHELL", number, number, 1.0))
-        cards.append(card("MAT1", number, body.young, "", body.poisson))
+        cards.append(card("MAT1", number, body.young, "", body.poisson, *[1.0] * bool(scene.gravity + scene.spins)))
         for nodes in body.elements:
             element += 1
             named = [numbers[k] for k in nodes]
@@ -231,7 +232,7 @@ def deck(scene, twin):
     cards += [card("BCONP", k, ids[slave], ids[master]) for k, (slave, master) in zip(order, contacts)]
     if twin.mix:
         twin.mix.shuffle(cards)
-    head = [f"TITLE = {scene.note}"[:70].replace(",", " "), "SPC = 1"] + ["LOAD = 1"] * bool(scene.forces)
+    head = [f"TITLE = {scene.note}"[:70].replace(",", " "), "SPC = 1"] + ["LOAD = 1"] * bool(scene.forces + scene.gravity + scene.spins)
     return "\n".join(head + ["BEGIN BULK"] + cards + ["ENDDATA", ""]), numbers
 
 
@@ -252,4 +253,6 @@ def supports_of(scene, twin, numbers):
         cards.append(card("RBE2", 9000001 + k, numbers[leader], "".join(turned[d] for d in directions), *(numbers[m] for m in nodes)))
     cards += [card("SUPORT", numbers[node], "".join(sorted(turned[d] for d in directions))) for node, directions in scene.free]
     cards += [card("FORCE", 1, numbers[node], 0, 1.0, *twin.vector(force), 0.0) for node, force in scene.forces]
+    cards += [card("GRAV", 1, "", 1.0, *twin.vector(pull), 0.0) for pull in scene.gravity]
+    cards += [card("RFORCE", 1, numbers[node], "", turns, 0.0, 0.0, 1.0) for node, turns in scene.spins]
     return cards

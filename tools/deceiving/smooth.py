@@ -186,6 +186,34 @@ def shrink_fit(pick, n):
 
 
 @family
+def spun_fit(pick, n):
+    """The same, while both spin about its centre."""
+    scene = shrink_fit(pick, n)
+    scene.nodes.append((0.0, 0.0))
+    scene.hold([len(scene.nodes) - 1])
+    scene.spins.append((len(scene.nodes) - 1, math.sqrt(pick.uniform(1e-4, 5e-3) * scene.bodies[0].young) / (2 * math.pi)))
+    return scene
+
+
+@family
+def own_weight(pick, n):
+    """A body on a floor, pressed by its weight alone, which may lean; its upper side stays level."""
+    d = Draw(pick, n, h=(0.12, 0.3))
+    radius, half, lean = pick.uniform(0.8, 4.0), pick.uniform(0.4, 0.7), pick.choice([0.0, 0.0, 0.2, -0.5])
+    floor = base(d, -1.6, 1.7)
+    body = d.slave()
+    profiled(body, [-half, 0.0, half], 1.0, nose(radius), d.h_slave)
+    top = body.line((half, 1.0), (-half, 1.0))
+    d.scene.platens.append((top[0], "2", top[1:]))
+    d.scene.free.append((top[0], "2"))
+    d.scene.hold(top, "1")
+    weight = d.strain * min(body.young, d.young)
+    d.scene.gravity.append((lean * weight, -weight))
+    d.either(body.line((-half, nose(radius)(half)), (half, nose(radius)(half))), floor.line((1.7, 0.0), (-1.6, 0.0)), 0.8)
+    return d.scene
+
+
+@family
 def half_of_it(pick, n):
     """Half of a symmetric scene: lines end on the line of symmetry, at a tip, on a flat or on an arc."""
     d = Draw(pick, n, h=(0.12, 0.35))

@@ -24,7 +24,7 @@ KNOWN = {
     "cylinder_on_block": [NAFEMS], "nafems": [NAFEMS],
     "flat_punch": ["200/(pi*sqrt(1-s**2))"],
     "off_centre": ["100/(pi*sqrt(1-s**2))*(1+2*0.309017*s)"],
-    "shrink_fit": ["24.9288"],
+    "shrink_fit": ["24.9288"], "spinning_disc": ["7.3515"],
     "pin_in_hole": [persson(81.7426, 45)],
     "pin_in_lug/pin_in_lug.dat": [persson(100, 45)], "pin_in_lug/pin_in_lug60.dat": [persson(100, 60)],
     "patch": ["10"], "include": ["10"],

@@ -23,7 +23,7 @@ class Maker:
         self.pressures, self.forces = self.find_loads()
         self.groups.note_unused()
         moved = any(value for own in self.held.values() for value, _ in own.values())
-        if not (faults.errors or self.pressures or self.forces or moved):
+        if not (faults.errors or self.pressures or self.forces or moved or self.scene.gravity or self.scene.spin):
             faults.note("[load]", "there is none, and no support that moves: nothing but overlaps of the drawing gives forces")
         faults.end_stage()
         self.number = self.numbers()
@@ -156,7 +156,7 @@ class Maker:
         scene = self.scene
         lines = [f"$ {made}", "SOL 106", "CEND", f"TITLE = {scene.title}"]
         lines += ["SPC = 1"] if any(self.held.values()) else []
-        lines += ["LOAD = 1"] if self.pressures or self.forces else []
+        lines += ["LOAD = 1"] if self.pressures or self.forces or scene.gravity or scene.spin else []
         lines += ["BEGIN BULK"] + ([] if scene.rings else card("PARAM", "PLANE", scene.kind.split()[1].upper()))
         lines += card("PARAM", "UNITS", scene.units.upper()) if scene.units else []
         for name, value in scene.parameters.items():
@@ -174,7 +174,7 @@ class Maker:
             lines += card("PSOLID", number, which) if self.scene.rings else card("PSHELL", number, which, thickness)
         for number, name in enumerate(used, 1):
             material = self.scene.materials[name]
-            lines += [f"$ material {name}"] + card("MAT1", number, material.young, None, material.poisson)
+            lines += [f"$ material {name}"] + card("MAT1", number, material.young, None, material.poisson, *([material.density] if material.density else []))
             if material.curve:
                 points = [0.0, 0.0] + [value for point in material.curve for value in point]
                 lines += card("MATS1", number, number, "PLASTIC", None, 1, 1, material.stress)
@@ -211,6 +211,18 @@ class Maker:
             lines += card("PLOADX1", 1, self.first[body] + k, value, value, self.number[a], self.number[b])
         for node, (x, y) in sorted(self.forces.items(), key=lambda item: self.number[item[0]]):
             lines += card("FORCE", 1, self.number[node], 0, 1.0, x, y, 0.0)
+        return lines + self.body_loads()
+
+    def body_loads(self):
+        lines, scene, axis = [], self.scene, None
+        if scene.gravity:
+            lines += ["$ gravity"] + card("GRAV", 1, None, 1.0, *scene.gravity, 0.0)
+        if scene.axis and scene.spin:
+            axis = len(self.number) + 1
+            lines += ["$ axis"] + card("GRID", axis, None, *scene.axis, 0.0) + card("SPC1", 1, 12, axis)
+        if scene.spin:
+            direction = (0.0, 1.0, 0.0) if scene.rings else (0.0, 0.0, 1.0)
+            lines += ["$ spin"] + card("RFORCE", 1, axis, None, scene.spin, *direction)
         return lines
 
     def touching(self):

@@ -14,7 +14,7 @@ TABLES = ["material", "body", "support", "load", "platen", "free", "contact", "P
 DIRECTIONS = {"x": "1", "y": "2", "xy": "12"}
 #: What `epcont --cards PARAM` lists, but for what the scene says otherwise (PLANE, UNITS) or has no use for (GAPGEOM).
 PARAMETERS = {"RULE": str, "METHOD": str, "MUP": str, "SOLVER": str, "PRECIS": str, "TOL": float, "SEARCH": float, "CORNER": float, "ACCURACY": float,
-              "MAXIT": int, "NLOAD": int, "FLEXIB": str, "ORIGINAL": str}
+              "MAXIT": int, "NLOAD": int, "FLEXIB": str, "ORIGINAL": str, "WTMASS": float}
 #: N/mm2 of one unit of stress, for those whose moduli can be told to be wrong.
 STRESS_UNITS = {"N-MM": 1.0, "MPA": 1.0, "N-M": 1e-6, "SI": 1e-6, "KN-M": 1e-3, "KN-MM": 1e3, "KGF-MM": 9.80665}
 SOFTEST, STIFFEST = 1e-3, 2e6   # N/mm2: softer than gels, stiffer than diamond
@@ -27,6 +27,7 @@ class Material:
     stress: float = None   # of first yield; None: elastic
     hardening: float = 0.0
     curve: list = None
+    density: float = None
 
 
 @dataclass
@@ -38,6 +39,9 @@ class Scene:
     materials: dict = field(default_factory=dict)
     bodies: dict = field(default_factory=dict)      # surface: (material, thickness)
     supports: dict = field(default_factory=dict)    # line or point: {"1": value}
+    gravity: tuple = None                           # acceleration of all mass
+    spin: float = None                              # turns in a unit of time
+    axis: list = None                               # where their axis is; None: the origin
     loads: dict = field(default_factory=dict)       # line or point: {"pressure": p, "force": (x, y)}
     platens: dict = field(default_factory=dict)     # line: directions
     free: dict = field(default_factory=dict)        # platen or point: directions
@@ -156,7 +160,11 @@ def read_scene(path, faults: Faults):
     scene.title = top.word("title", "Two cylinders", "a line of text", str.isprintable) or path.stem
     scene.units = top.word("units", "N-MM", "a word of at most 8 characters, first a letter; nothing is converted",
                            lambda word: re.fullmatch(r"[A-Za-z][!-+\--~]{0,7}", word))
+    scene.gravity = read_pair(top, "gravity", "an acceleration in x and y", "[0.0, -9810.0]", faults)
+    scene.spin = top.number("spin", "120.0", "turns in a unit of time")
+    scene.axis = read_pair(top, "axis", "x and y of the axis of the spin", "[0.0, -250.0]", faults)
     top.end()
+    check_body_loads(scene, faults)
     read_materials(Table(tables["material"] or {}, "[material]", faults), scene, faults)
     read_bodies(Table(tables["body"] or {}, "[body]", faults), scene, faults)
     read_supports(Table(tables["support"] or {}, "[support]", faults), scene, faults)
@@ -184,7 +192,10 @@ def read_materials(table, scene, faults):
         stress = own.number("yield", "240.0", "the stress of first yield, above zero", positive)
         hardening = own.number("H", "4000.0", "stress over plastic strain, from 0 on", lambda value: value >= 0.0)
         curve = own.take("curve")
+        density = own.number("density", "7.85e-9", "mass of a unit of volume, above zero", positive)
         own.end()
+        if density is None and (scene.gravity or scene.spin):
+            faults.add(own.where("density"), "is missing", "mass of a unit of volume, since gravity and spin act on it, such as density = 7.85e-9")
         if hardening is not None and stress is None:
             faults.add(own.where("H"), "is hardening without a yield stress", "yield = 240.0 beside it")
         if curve is not None:
@@ -193,7 +204,7 @@ def read_materials(table, scene, faults):
                 faults.add(own.where("curve"), "stands beside yield or H", "either yield and H, or a curve, whose first point is the yield point")
             stress = curve[0][1] if curve else None
         check_units(own, young, stress, scene, faults)
-        scene.materials[name] = Material(young, poisson, stress, hardening or 0.0, curve)
+        scene.materials[name] = Material(young, poisson, stress, hardening or 0.0, curve, density)
 
 
 def read_curve(curve, own, young, faults):
@@ -255,17 +266,30 @@ def read_supports(table, scene, faults):
 def read_loads(table, scene, faults):
     for name, own in each(table, faults):
         found = {"pressure": own.number("pressure", "10.0", "force on an area, positive into the body")}
-        force = own.take("force")
+        named = "force" in own.left
+        found["force"] = read_pair(own, "force", "the total in x and y", "[0.0, -100.0]", faults)
         own.end()
-        if force is not None:
-            values = [real(value) for value in force] if isinstance(force, list) else []
-            if len(values) != 2 or None in values:
-                faults.add(own.where("force"), f"is {said(force)}", "the total in x and y, such as force = [0.0, -100.0]")
-            else:
-                found["force"] = values
         scene.loads[name] = {key: value for key, value in found.items() if value is not None}
-        if not scene.loads[name] and not own.left and force is None:
+        if not scene.loads[name] and not own.left and not named:
             faults.add(own.name, "loads nothing", "pressure = 10.0 or force = [0.0, -100.0]")
+
+
+def check_body_loads(scene, faults):
+    """Rings bear nothing across their axis, and spin about it."""
+    if scene.rings and scene.gravity and scene.gravity[0] != 0.0:
+        faults.add("gravity", f"acts across the axis of rings: {scene.gravity[0]:g} in x", "0.0 in x")
+    if scene.axis and (scene.rings or scene.spin is None):
+        faults.add("axis", "has no meaning here", "no axis: rings spin about their own" if scene.rings else "spin = 120.0 beside it, or no axis")
+
+
+def read_pair(table, key, meaning, example, faults):
+    """Two numbers."""
+    given = table.take(key)
+    values = [real(value) for value in given] if isinstance(given, list) else []
+    if given is not None and (len(values) != 2 or None in values):
+        faults.add(table.where(key), f"is {said(given)}", f"{meaning}, such as {key} = {example}")
+        return None
+    return values or None
 
 
 def read_contacts(tables, scene, faults):

@@ -145,7 +145,7 @@ class Changes:
         card = self.card(deck, "MAT1", "MATS1", "PSHELL")
         if not card:
             return
-        slot = self.pick.choice({"MAT1": [1, 2, 3], "MATS1": [3, 6], "PSHELL": [2]}[card.name])
+        slot = self.pick.choice({"MAT1": [1, 2, 3, 4], "MATS1": [3, 6], "PSHELL": [2]}[card.name])
         card.data += [""] * (slot + 1 - len(card.data))
         card.data[slot] = self.pick.choice(["0.0", "1.-30", "1.-10", "1.0", "1.+10", "1.+30", "1.+100", "1.-100", ".499", ".49999",
                                             ".4999999999", "0.5", "-1.0", "-0.1", ""])
@@ -156,9 +156,9 @@ class Changes:
             card.data[1] = self.pick.choice(["-1.-4", "-0.01", "-1.0", "1.0", "-1.+6", "1.+6", "1.-300", "-1.-60", "1.-12", "-1.-12"])
 
     def loads(self, deck):
-        card = self.card(deck, "FORCE", "PLOADX1", "SPC")
+        card = self.card(deck, "FORCE", "PLOADX1", "SPC", "GRAV", "RFORCE")
         if card:
-            slot = {"FORCE": 3, "PLOADX1": 2, "SPC": 3}[card.name]
+            slot = {"FORCE": 3, "PLOADX1": 2, "SPC": 3, "GRAV": 2, "RFORCE": 3}[card.name]
             card.data += [""] * (slot + 1 - len(card.data))
             card.data[slot] = self.pick.choice(["0.0", "1.+3", "1.+6", "1.+12", "1.+30", "1.+100", "1.+200", "1.-200", "1.-60", "-1.+6", "-1.0"])
 

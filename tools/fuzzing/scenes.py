@@ -161,3 +161,22 @@ def load(scene, top, total):
         for node in top:
             angle = pick.choice([-90.0, -90.0, -80.0, 90.0, 0.0])
             scene.add("FORCE", 1, node, 0, total / len(top), *(round(turn(math.radians(angle)), 15) for turn in (math.cos, math.sin)))
+    if pick.random() < 0.3:
+        body_load(scene, total)
+
+
+def body_load(scene, total):
+    """Gravity or a spin, on mass that is forgotten at times."""
+    pick = scene.pick
+    for card in scene.deck.cards:
+        if card.name == "MAT1" and pick.random() < 0.95:
+            card.data += [""] * (4 - len(card.data)) + [pick.choice(["1.0", "1.0", "7.85-9", "0.0"])]
+    if pick.random() < 0.2:
+        scene.add("PARAM", "WTMASS", pick.choice(["1.0", "2.59-3", "0.0"]))
+    nodes = [card.data[0] for card in scene.deck.cards if card.name == "GRID"]
+    axis = (0.0, 1.0, 0.0) if scene.rings else (0.0, 0.0, 1.0)
+    if pick.random() < 0.5:
+        scene.add("GRAV", 1, "", total, *pick.choice([(0.0, -1.0), (0.0, -1.0), (0.6, -0.8), (0.0, 0.0)]), 0.0)
+    else:
+        scene.add("RFORCE", 1, pick.choice(["", pick.choice(nodes)]), "", math.sqrt(total), *pick.choice([axis, axis, (1.0, 0.0, 0.0)]),
+                  pick.choice(["", 1, 2]), *pick.choice([(), (), (total,)]))

@@ -67,12 +67,12 @@ class Deck:
             name = {3: "CTRAX3", 6: "CTRAX6"} if self.rings else {3: "CTRIA3", 4: "CQUAD4", 6: "CTRIA6", 8: "CQUAD8"}
             self.card(name[len(nodes)], first + k, prop, *nodes)
 
-    def material(self, number, young, nu, thickness=1.0):
+    def material(self, number, young, nu, thickness=1.0, density=None):
         if self.rings:
             self.card("PSOLID", number, number)
         else:
             self.card("PSHELL", number, number, thickness)
-        self.card("MAT1", number, young, "", nu)
+        self.card("MAT1", number, young, "", nu, *([] if density is None else [density]))
 
     def steel(self, count):
         """So many bodies of it."""
@@ -146,7 +146,7 @@ class Deck:
     def text(self):
         head = [f"$ {line}".rstrip() for words in self.words for line in textwrap.wrap(words, 76) or [""]]
         head += ["SOL 106", "CEND", f"TITLE = {self.title}", "SPC = 1"]
-        head += ["LOAD = 1"] if any(line.startswith(("FORCE", "PLOADX1")) for line in self.lines) else []
+        head += ["LOAD = 1"] if any(line.startswith(("FORCE", "PLOADX1", "GRAV", "RFORCE")) for line in self.lines) else []
         head.append("BEGIN BULK")
         return "\n".join(head + self.lines + ["ENDDATA", ""])
 

@@ -3,6 +3,7 @@ import math
 
 from .deck import Deck
 from .fill import arc, fill, finest, segment
+from .mesh import rings, round_origin
 
 
 def nearest(mesh, place, nodes=None):
@@ -135,4 +136,31 @@ def flange(bolt=960.0, pull=400.0, radius=100.0, edge=10.0, fine=0.5, growth=0.5
         deck.press(mesh, mesh.line["head"], bolt / 12.0, first)
     deck.press(upper, upper.line["end"], -pull / 5.0, one)
     deck.contacts((upper.line["joint"], one), (lower.line["joint"], two))
+    return deck
+
+
+def spinning_disc(spin=120.0, overlap=0.05, around=12, density=7.85e-9):
+    """A rim shrunk on a disc that spins, against Lame."""
+    bore, fit, outer, young, nu = 50.0, 100.0, 150.0, 210000.0, 0.3
+    shrunk = young * overlap / fit * (outer ** 2 - fit ** 2) * (fit ** 2 - bore ** 2) / (2 * fit ** 2 * (outer ** 2 - bore ** 2))
+    pull = (3 + nu) / 8 * density * (2 * math.pi * spin) ** 2 * (bore ** 2 + outer ** 2 - (bore * outer / fit) ** 2 - fit ** 2)
+
+    def ring(inside, outside, parts, count):
+        return rings([inside + (outside - inside) * j / parts for j in range(parts + 1)], count).with_middles(round_origin)
+
+    disc = ring(bore, fit, max(2, around // 2), around)
+    rim = ring(fit - overlap, outer, max(2, 2 * around // 3), max(around + 1, 4 * around // 3))
+    deck = Deck("RIM SHRUNK ON A DISC THAT SPINS", [
+        f"A rim of radii {fit:g} and {outer:g} shrunk on a disc with a bore of radius {bore:g}, overlap {overlap:g} in radius, both of steel, in "
+        f"plane stress; they spin {spin:g} times a second (RFORCE). One quarter, supports in the lines of symmetry; lines of unlike meshes.",
+        f"Known answer (Lame, with the forces of the spin): the pressure at rest, {shrunk:.4f}, less the radial stress that the spin has there in "
+        f"a disc of one piece, {pull:.4f}: {shrunk - pull:.4f}. The rim comes off at {spin * math.sqrt(shrunk / pull):.2f} a second."],
+        strain=False, from_geometry=False)
+    first = deck.bodies(("Disc", disc), ("Rim", rim))
+    for number, (mesh, start) in enumerate(zip((disc, rim), first), 1):
+        deck.hold(1, mesh.on(0, 0.0), start)
+        deck.hold(2, mesh.on(1, 0.0), start)
+        deck.material(number, young, nu, 20.0, density)
+    deck.card("RFORCE", 1, "", "", spin, 0.0, 0.0, 1.0)
+    deck.contacts((disc.line["outer"], first[0]), (rim.line["inner"], first[1]))
     return deck

@@ -1,6 +1,7 @@
 """What a deck says, as dictionaries by id: nothing of the program."""
 import math
 
+from body import body_forces
 from boundary import boundary, edge_forces
 from deck import DeckError, at, ids, real
 from kinds import KINDS
@@ -10,9 +11,9 @@ from lines import pairs_of_lines
 class Section:
     """thickness: None of a ring. points: of the uniaxial curve, or None. expansion: A and TREF."""
 
-    def __init__(self, thickness, material, plane_stress, points, expansion):
+    def __init__(self, thickness, material, plane_stress, points, expansion, density):
         self.thickness, (self.young, self.nu), self.plane_stress, self.points = thickness, material, plane_stress, points
-        self.expansion = expansion
+        self.expansion, self.density = expansion, density
 
 
 class Pair:
@@ -50,14 +51,15 @@ class Scene:
 
     def sections(self):
         material = self.deck.moduli()
-        curve, expansion = self.deck.curves(material), self.deck.expansions()
+        curve, expansion, density = self.deck.curves(material), self.deck.expansions(), self.deck.densities()
         self.temperature = self.deck.temperatures()
         self.section = {}
         for c in self.deck.of("PSHELL"):
             strain = at(c, 4) == "-1" or self.parameter.get("PLANE") == "STRAIN"
-            self.section[int(c[1])] = Section(real(c[3]), material[int(c[2])], not strain, curve.get(int(c[2])), expansion[int(c[2])])
+            self.section[int(c[1])] = Section(real(c[3]), material[int(c[2])], not strain, curve.get(int(c[2])), expansion[int(c[2])],
+                                               density[int(c[1])])
         for c in self.deck.of("PSOLID"):
-            self.section[int(c[1])] = Section(None, material[int(c[2])], False, curve.get(int(c[2])), expansion[int(c[2])])
+            self.section[int(c[1])] = Section(None, material[int(c[2])], False, curve.get(int(c[2])), expansion[int(c[2])], density[int(c[1])])
 
     def deviations(self):
         """Of the temperatures from TREF, in elements that expand."""
@@ -140,7 +142,13 @@ class Scene:
     def loads(self):
         self.load = {}
         cards = self.deck.of("FORCE") + self.deck.of("PLOADX1")
-        chosen = self.deck.case.get("LOAD", next((int(c[1]) for c in cards), 0))
+        chosen = self.deck.case.get("LOAD", next((int(c[1]) for c in cards + self.deck.of("GRAV") + self.deck.of("RFORCE")), 0))
+        loads = self.deck.body_loads(chosen, self.x.get)
+        for name, nodes, section in self.element.values() if loads else ():
+            forces = body_forces(KINDS[name], [self.x[node] for node in nodes], section.thickness, section.density, loads)
+            for node, force in zip(nodes, forces):
+                for i in (0, 1):
+                    self.add(node, i, force[i])
         for c in cards:
             if int(c[1]) != chosen:
                 continue

@@ -1,0 +1,149 @@
+!> Nodal forces of body loads, for the certificate: by other points than those that weigh the nodes (those of
+!> Lobatto, not of Gauss), each with the force there.
+module epcont_certificate_mass_force
+  use epcont_base_kinds, only: wp
+  use epcont_element_element_kind, only: element_kind, most_nodes
+  use epcont_element_kinematics, only: axisymmetric, directions
+  use epcont_model_model, only: model_type
+  implicit none
+  private
+  public :: find_body_force
+
+  !> Lobatto's places along a line, exact to degree 5 and 9, and their weights: from one end to the middle;
+  !! the other half lies opposite.
+  real(wp), parameter :: root7 = sqrt(7.0_wp), &
+    four(2) = [1.0_wp, sqrt(0.2_wp)], of_four(2) = [1.0_wp, 5.0_wp]/6.0_wp, &
+    six(3) = [1.0_wp, sqrt((7.0_wp + 2.0_wp*root7)/21.0_wp), sqrt((7.0_wp - 2.0_wp*root7)/21.0_wp)], &
+    of_six(3) = [2.0_wp, 14.0_wp - root7, 14.0_wp + root7]/30.0_wp
+  integer, parameter :: most_places = 36
+
+  !> Of a kind of elements.
+  type :: place_table
+    integer :: count = 0
+    real(wp) :: part(most_places) = 0.0_wp                 !! of the local area
+    real(wp) :: share(most_nodes, most_places) = 0.0_wp    !! what each node has in a value there
+    real(wp) :: slope(most_nodes, directions, most_places) = 0.0_wp   !! and in its derivatives
+  end type place_table
+
+contains
+
+  !> The forces [force] [2, nodes].
+  pure subroutine find_body_force(model, force)
+    type(model_type), intent(in) :: model   !! the scene; of its body loads what is given
+    real(wp), intent(out) :: force(directions, model%nodes)
+    type(place_table) :: table(size(model%kinds))
+    integer :: e, k
+
+    do k = 1, size(model%kinds)
+      call set_places(model%kinds(k), table(k))
+    end do
+    force = 0.0_wp
+    do e = 1, model%elements
+      call add_element(model, e, table(model%kind(e)), force)
+    end do
+  end subroutine find_body_force
+
+  !> Places in a square, or in a triangle as the square whose upper side is a point.
+  pure subroutine set_places(kind, table)
+    type(element_kind), intent(in) :: kind
+    type(place_table), intent(out) :: table
+    real(wp), dimension(2*kind%degree + 2) :: line, part
+    real(wp) :: at(directions)
+    integer :: i, j
+
+    if (kind%degree == 1) then
+      line = [-four, four]
+      part = [of_four, of_four]
+    else
+      line = [-six, six]
+      part = [of_six, of_six]
+    end if
+    do i = 1, size(line)
+      do j = 1, size(line)
+        at = [line(i), line(j)]
+        associate (p => table%count)
+          p = p + 1
+          table%part(p) = part(i)*part(j)
+          if (kind%corners == 3) then
+            at = 0.5_wp*(1.0_wp + at)
+            table%part(p) = table%part(p)*0.25_wp*(1.0_wp - at(2))
+            at(1) = at(1)*(1.0_wp - at(2))
+          end if
+          call set_shares(kind, at, table%share(:, p), table%slope(:, :, p))
+        end associate
+      end do
+    end do
+  end subroutine set_places
+
+  !> What nodes have in a value at a place, and in its derivatives.
+  pure subroutine set_shares(kind, at, share, slope)
+    type(element_kind), intent(in) :: kind
+    real(wp), intent(in) :: at(directions)
+    real(wp), intent(out) :: share(most_nodes), slope(most_nodes, directions)
+    real(wp) :: after(most_nodes), before(most_nodes), half(directions)
+    real(wp) :: theirs(directions, most_nodes)   ! their derivatives, not looked at
+    integer :: c
+
+    call kind%shape(at, share, theirs)
+    do c = 1, directions
+      half = 0.0_wp
+      half(c) = 0.5_wp
+      call kind%shape(at + half, after, theirs)
+      call kind%shape(at - half, before, theirs)
+      slope(:, c) = after - before   ! exact for quadratics
+    end do
+  end subroutine set_shares
+
+  !> The forces on one element.
+  pure subroutine add_element(model, e, table, force)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: e
+    type(place_table), intent(in) :: table
+    real(wp), intent(inout) :: force(:, :)
+    real(wp) :: apart(directions, most_nodes), area, here(directions), side(directions, directions)
+    integer :: k, n, p
+
+    n = model%node_count(e)
+    associate (nodes => model%connectivity(:n, e), s => model%section(e))
+      do k = 1, n
+        apart(:, k) = model%x(:, nodes(k)) - model%x(:, nodes(1))
+      end do
+      do p = 1, table%count
+        side = matmul(apart(:, :n), table%slope(:n, :, p))
+        here = model%x(:, nodes(1)) + matmul(apart(:, :n), table%share(:n, p))
+        area = table%part(p)*(side(1, 1)*side(2, 2) - side(1, 2)*side(2, 1))
+        if (model%kinematics(s) == axisymmetric) then
+          area = area*2.0_wp*acos(-1.0_wp)*here(1)
+        else
+          area = area*model%thickness(s)
+        end if
+        here = model%density(s)*area*acceleration(model, s, here)
+        do k = 1, n
+          force(:, nodes(k)) = force(:, nodes(k)) + table%share(k, p)*here
+        end do
+      end do
+    end associate
+  end subroutine add_element
+
+  !> What all body loads give a unit of mass at a place.
+  pure function acceleration(model, section, place) result(pull)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: section
+    real(wp), intent(in) :: place(directions)
+    real(wp) :: gain, omega, pull(directions), radius(directions)   ! radians, not turns
+    integer :: i
+
+    pull = 0.0_wp
+    do i = 1, size(model%body_load)
+      associate (load => model%body_load(i))
+        omega = 2.0_wp*acos(-1.0_wp)*load%spin
+        gain = 2.0_wp*acos(-1.0_wp)*load%spin_up
+        radius = place - load%centre
+        if (model%kinematics(section) == axisymmetric) radius = [place(1), 0.0_wp]
+        pull = pull + load%factor*(load%acceleration + omega**2*radius)
+        pull(1) = pull(1) - load%factor*gain*radius(2)
+        pull(2) = pull(2) + load%factor*gain*radius(1)
+      end associate
+    end do
+  end function acceleration
+end module epcont_certificate_mass_force

@@ -1,0 +1,152 @@
+!> Forces on all mass: nodal forces of gravity and spins. Both are linear in the place, so that they take no
+!> more of a scene than the mass of each node and its moments, which are integrated once.
+module epcont_model_body_forces
+  use epcont_base_kinds, only: wp
+  use epcont_element_element_kind, only: element_kind, most_nodes
+  use epcont_element_kinematics, only: directions
+  use epcont_model_arrays, only: body_load
+  use epcont_model_model, only: model_type
+  implicit none
+  private
+  public :: are_massless, body_forces, put_body_forces, weigh_nodes
+
+  !> Gauss points along a line, for elements of the first and of the second degree, and their weights. On a
+  !! square, of which a triangle is one with a side in its third corner, they integrate rho x N exactly, of
+  !! rings and between curved sides too: shape function, place and radius are of that degree d each, the
+  !! determinant of the Jacobian of 2 d - 1. Those of the stiffness are too few.
+  integer, parameter :: along(2) = [3, 5], most_along = 5
+  real(wp), parameter :: &
+    inner = sqrt(5.0_wp - 2.0_wp*sqrt(10.0_wp/7.0_wp))/3.0_wp, &
+    outer = sqrt(5.0_wp + 2.0_wp*sqrt(10.0_wp/7.0_wp))/3.0_wp, &
+    heavy = (322.0_wp + 13.0_wp*sqrt(70.0_wp))/900.0_wp, &
+    light = (322.0_wp - 13.0_wp*sqrt(70.0_wp))/900.0_wp, &
+    place(most_along, 2) = reshape([-sqrt(0.6_wp), 0.0_wp, sqrt(0.6_wp), 0.0_wp, 0.0_wp, &
+                                    -outer, -inner, 0.0_wp, inner, outer], [most_along, 2]), &
+    weight(most_along, 2) = reshape([5/9.0_wp, 8/9.0_wp, 5/9.0_wp, 0.0_wp, 0.0_wp, &
+                                     light, heavy, 128/225.0_wp, heavy, light], [most_along, 2])
+
+  real(wp), parameter :: full_turn = 2.0_wp*acos(-1.0_wp)
+
+  !> Points of integration of a kind of elements.
+  type :: mass_rule
+    integer :: points = 0
+    real(wp) :: weight(most_along**2) = 0.0_wp               !! parts of the local area
+    real(wp) :: values(most_nodes, most_along**2) = 0.0_wp   !! shape functions
+    real(wp) :: slopes(directions, most_nodes, most_along**2) = 0.0_wp   !! by the local coordinates
+  end type mass_rule
+
+contains
+
+  !> Sections that have elements, but no mass [sections].
+  pure function are_massless(model) result(massless)
+    type(model_type), intent(in) :: model   !! the scene
+    logical :: massless(size(model%density))
+    integer :: e
+
+    massless = .false.
+    do e = 1, model%elements
+      if (model%section(e) > 0) massless(model%section(e)) = model%density(model%section(e)) <= 0.0_wp
+    end do
+  end function are_massless
+
+  !> Find the mass of each node and its moments: integrals of rho N and rho N (x - x of the node).
+  pure subroutine weigh_nodes(model)
+    type(model_type), intent(inout) :: model   !! the scene
+    type(mass_rule) :: rule(size(model%kinds))
+    integer :: e, k
+
+    do k = 1, size(model%kinds)
+      rule(k) = new_mass_rule(model%kinds(k))
+    end do
+    if (allocated(model%mass)) deallocate (model%mass)
+    allocate (model%mass(1 + directions, model%nodes), source=0.0_wp)
+    do e = 1, model%elements
+      call weigh_element(model, e, rule(model%kind(e)))
+    end do
+  end subroutine weigh_nodes
+
+  !> The points of a kind.
+  pure function new_mass_rule(kind) result(rule)
+    type(element_kind), intent(in) :: kind
+    type(mass_rule) :: rule
+    real(wp) :: at(directions), part
+    integer :: i, j
+
+    associate (d => kind%degree, p => rule%points)
+      do j = 1, along(d)
+        do i = 1, along(d)
+          p = p + 1
+          at = [place(i, d), place(j, d)]
+          part = weight(i, d)*weight(j, d)
+          if (kind%corners == 3) then
+            part = part*0.125_wp*(1.0_wp - at(2))
+            at = 0.5_wp*[0.5_wp*(1.0_wp + at(1))*(1.0_wp - at(2)), 1.0_wp + at(2)]
+          end if
+          rule%weight(p) = part
+          call kind%shape(at, rule%values(:, p), rule%slopes(:, :, p))
+        end do
+      end do
+    end associate
+  end function new_mass_rule
+
+  !> Add the mass of an element to its nodes.
+  pure subroutine weigh_element(model, element, rule)
+    type(model_type), intent(inout) :: model
+    integer, intent(in) :: element
+    type(mass_rule), intent(in) :: rule
+    real(wp) :: from_first(directions, most_nodes)   ! far from the origin sums of x would lose digits
+    real(wp) :: at(directions), jacobian(directions, directions), mass, node_mass
+    integer :: c, k, n, p
+
+    n = model%node_count(element)
+    associate (node => model%connectivity(:n, element))
+      from_first(:, :n) = model%x(:, node) - spread(model%x(:, node(1)), 2, n)
+      do p = 1, rule%points
+        do c = 1, directions
+          at(c) = dot_product(from_first(c, :n), rule%values(:n, p))
+          jacobian(1, c) = dot_product(from_first(c, :n), rule%slopes(1, :n, p))
+          jacobian(2, c) = dot_product(from_first(c, :n), rule%slopes(2, :n, p))
+        end do
+        mass = model%density(model%section(element))*model%depth(element, model%x(1, node(1)) + at(1))* &
+               rule%weight(p)*(jacobian(1, 1)*jacobian(2, 2) - jacobian(1, 2)*jacobian(2, 1))
+        do k = 1, n
+          node_mass = mass*rule%values(k, p)
+          model%mass(:, node(k)) = model%mass(:, node(k)) + node_mass*[1.0_wp, at - from_first(:, k)]
+        end do
+      end do
+    end associate
+  end subroutine weigh_element
+
+  !> Nodal forces of a body load on a scene whose nodes are weighed [force] [2, nodes].
+  pure function body_forces(model, load) result(force)
+    type(model_type), intent(in) :: model   !! the scene
+    type(body_load), intent(in) :: load     !! what acts on its mass
+    real(wp) :: force(directions, model%nodes)
+    real(wp) :: arm(directions)   ! mass times its distance from the axis of the spin
+    logical :: rings
+    integer :: i
+
+    rings = model%has_rings()
+    do i = 1, model%nodes
+      arm = model%mass(1, i)*(model%x(:, i) - load%centre) + model%mass(2:, i)
+      if (rings) arm(2) = 0.0_wp
+      force(:, i) = load%factor*(model%mass(1, i)*load%acceleration + (full_turn*load%spin)**2*arm + &
+                                 full_turn*load%spin_up*[-arm(2), arm(1)])
+    end do
+  end function body_forces
+
+  !> Add the nodal forces of all body loads to the loads of the scene.
+  pure subroutine put_body_forces(model)
+    type(model_type), intent(inout) :: model   !! the scene
+    integer :: k
+
+    if (allocated(model%body_force)) deallocate (model%body_force)
+    if (all(model%body_load%factor == 0.0_wp)) return
+    if (.not. allocated(model%mass)) call weigh_nodes(model)
+    allocate (model%body_force(directions, model%nodes), source=0.0_wp)
+    do k = 1, size(model%body_load)
+      model%body_force = model%body_force + body_forces(model, model%body_load(k))
+    end do
+    model%load = model%load + model%body_force
+  end subroutine put_body_forces
+end module epcont_model_body_forces
