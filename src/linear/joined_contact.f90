@@ -23,7 +23,7 @@ module epcont_linear_joined_contact
   use epcont_flexibility_flexibility, only: gap_opening, pair_forces, terms_of_openings
   use epcont_flexibility_motion_matrix, only: motion_matrix
   use epcont_linear_contact_ends, only: reach_ends
-  use epcont_linear_joined_springs, only: find_springs, half_plane, of_pairs
+  use epcont_linear_joined_springs, only: find_springs, put_on_nodes, half_plane, of_pairs
   use epcont_linear_line_search, only: least_at
   use epcont_linear_scene_state, only: scene_state
   use epcont_plan_planned_scene, only: planned_scene
@@ -361,39 +361,20 @@ contains
     !> As far as known, for what springs at SUPORT freedoms bear [length] [directions, any, nodes]
     real(wp), intent(inout) :: u(:, :, :)
     type(force_fields) :: loads
-    integer, allocatable :: pair(:)
-    integer :: k
+    integer :: c, k
 
-    pair = pack([(k, k=1, size(self%closed))], self%closed)
-    loads%node = [scene%motions%node, [(scene%model%row_node(scene%model%row_start(pair(k)): &
-                                    scene%model%row_start(pair(k) + 1) - 1), k=1, size(pair))]]
-    allocate (loads%force(directions, size(load, 2), size(loads%node)), source=0.0_wp)
-    call put_loads()
+    do k = 1, size(self%gamma)
+      if (self%closed(k)) force(k, :) = force(k, :) - self%gamma(k)*opening(k, :)
+    end do
+    call put_on_nodes(scene, self%closed, force, loads)
+    do k = 1, scene%motions%count
+      c = scene%motions%component(k)
+      loads%force(c, :, k) = load(k, :) + self%hold(k)*u(c, :, scene%motions%node(k))
+    end do
     call bodies%body_displacements(scene, 1, loads, [(k, k=1, scene%model%nodes)], u)
     do k = 1, size(load, 2)
       where (self%closed) force(:, k) = force(:, k) - self%gamma*gap_opening(scene%model, u(:, k, :))
     end do
-
-  contains
-
-    subroutine put_loads()
-      integer :: c, i, n
-
-      do n = 1, scene%motions%count
-        c = scene%motions%component(n)
-        loads%force(c, :, n) = load(n, :) + self%hold(n)*u(c, :, scene%motions%node(n))
-      end do
-      n = scene%motions%count
-      do k = 1, size(pair)
-        force(pair(k), :) = force(pair(k), :) - self%gamma(pair(k))*opening(pair(k), :)
-        do i = scene%model%row_start(pair(k)), scene%model%row_start(pair(k) + 1) - 1
-          n = n + 1
-          do c = 1, directions
-            loads%force(c, :, n) = scene%model%row_weight(i)*scene%model%normal(c, pair(k))*force(pair(k), :)
-          end do
-        end do
-      end do
-    end subroutine put_loads
   end subroutine respond
 
   !> Are the contact forces the only ones? Forces that open no gaps are what a solve leaves of any; of two

@@ -1,13 +1,13 @@
-!> How stiff the springs of joined bodies are, measured on their elements.
+!> How stiff the springs of joined bodies are, measured on their elements, and what pairs put on the nodes.
 module epcont_linear_joined_springs
-  use epcont_assembly_bodies, only: factored_bodies
+  use epcont_assembly_bodies, only: factored_bodies, force_fields
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: directions
   use epcont_plan_numbering, only: most_freedoms
   use epcont_plan_planned_scene, only: planned_scene
   implicit none
   private
-  public :: find_springs
+  public :: find_springs, put_on_nodes
 
   !> Stiffness of a spring over that of the softer body at its pair. A step leaves 1E-3 of the gaps, mostly
   !! 1E-4; more would cost digits of the factor, of which steps bring back as many each.
@@ -82,6 +82,32 @@ contains
       if (softer >= huge(1.0_wp)) softer = 0.0_wp
     end function softer_side
   end subroutine find_springs
+
+  !> Forces of the chosen pairs on the nodes of their rows, behind room for one at each SUPORT freedom.
+  subroutine put_on_nodes(scene, chosen, force, loads)
+    type(planned_scene), intent(in) :: scene     !! numbered as one system
+    logical, intent(in) :: chosen(:)             !! [pairs]
+    real(wp), intent(in) :: force(:, :)          !! [force] [pairs, fields]
+    type(force_fields), intent(out) :: loads     !! none at the SUPORT freedoms
+    integer, allocatable :: pair(:)
+    integer :: c, i, k, n
+
+    pair = pack([(k, k=1, size(chosen))], chosen)
+    associate (model => scene%model, start => scene%model%row_start)
+      loads%node = [scene%motions%node, [(model%row_node(start(pair(k)):start(pair(k) + 1) - 1), &
+                                          k=1, size(pair))]]
+      allocate (loads%force(directions, size(force, 2), size(loads%node)), source=0.0_wp)
+      n = scene%motions%count
+      do k = 1, size(pair)
+        do i = start(pair(k)), start(pair(k) + 1) - 1
+          n = n + 1
+          do c = 1, directions
+            loads%force(c, :, n) = model%row_weight(i)*model%normal(c, pair(k))*force(pair(k), :)
+          end do
+        end do
+      end do
+    end associate
+  end subroutine put_on_nodes
 
   !> The spring of the SUPORT freedom that measures a motion.
   pure integer function spring_of_motion(scene, motion)
