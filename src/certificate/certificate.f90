@@ -7,7 +7,7 @@ module epcont_certificate_certificate
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: valid_to
   use epcont_certificate_free_expansion, only: expansion_type, free_strains, held_stress, part_of_held
-  use epcont_certificate_mass_force, only: find_body_force
+  use epcont_certificate_mass_force, only: given_load
   use epcont_certificate_scene, only: scene_type
   use epcont_certificate_unit_strains, only: find_slopes, unit_strains
   use epcont_certificate_yielding, only: stress_on_curve, von_mises_stress
@@ -97,7 +97,7 @@ contains
     real(wp) :: forces, largest_force, largest_stress, length
 
     found%tolerance = max(valid_to, rounding_errors*answer%rounding_error)
-    load = answer%load_factor*given_load()
+    load = answer%load_factor*given_load(model)
     largest_stress = max(maxval(abs(answer%point_stress)), &
                          part_of_held*held_stress(model, answer%load_factor))
     residual = 0.0_wp
@@ -134,16 +134,6 @@ contains
     found%balanced = all(within_limits(found) .or. figure_name == off_the_curve)
 
   contains
-
-    !> The loads, body forces by their own sum instead of those that were solved for.
-    pure function given_load() result(load)
-      real(wp) :: load(directions, model%nodes), own(directions, model%nodes)
-
-      load = model%load
-      if (.not. allocated(model%body_force)) return
-      call find_body_force(model, own)
-      load = load + (own - model%body_force)
-    end function given_load
 
     !> The largest contact force over the largest depth and modulus: how far it pushes in, at least.
     pure real(wp) function least_indentation() result(length)

@@ -7,7 +7,7 @@ module epcont_certificate_mass_force
   use epcont_model_model, only: model_type
   implicit none
   private
-  public :: find_body_force
+  public :: find_body_force, given_load
 
   !> Lobatto's places along a line, exact to degree 5 and 9, and their weights: from one end to the middle;
   !! the other half lies opposite.
@@ -146,4 +146,15 @@ contains
       end associate
     end do
   end function acceleration
+
+  !> The loads of a scene, body forces by the sum above instead of those that were solved for.
+  pure function given_load(model) result(load)
+    type(model_type), intent(in) :: model   !! the scene
+    real(wp) :: load(directions, model%nodes), own(directions, model%nodes)
+
+    load = model%load
+    if (.not. allocated(model%body_force)) return
+    call find_body_force(model, own)
+    load = load + (own - model%body_force)
+  end function given_load
 end module epcont_certificate_mass_force
