@@ -66,7 +66,7 @@ class Page(unittest.TestCase):
             deck = pathlib.Path(place, "hertz44.dat")
             text = pathlib.Path(DECK).read_text(encoding="ascii")
             deck.write_text("SUBCASE 1\nLOAD = 1\nSUBCASE 2\nLOAD = 1\n" + text[text.index("BEGIN BULK"):], encoding="ascii")
-            subprocess.run([PROGRAM, deck, "--vtk", "--quiet"], check=True)
+            subprocess.run([PROGRAM, deck, "-o", place, "--vtk", "--quiet"], check=True)
             written |= {f".{path.name.split('.', 1)[1]}": path.read_bytes() for path in pathlib.Path(place).iterdir()
                         if re.search(r"\.(cases\.csv|pvd)$", path.name)}
             self.assertTrue(pathlib.Path(place, "hertz44.case2.contact.vtu").exists())
