@@ -1,6 +1,6 @@
 !> The story of one scene: from the model to a certified answer.
 module epcont_solution
-  use epcont_accuracy_accuracy, only: accuracy_type, assess
+  use epcont_accuracy_accuracy, only: accuracy_type, assess, kept_estimates
   use epcont_base_error, only: error_type
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: lost_digits
@@ -47,6 +47,7 @@ module epcont_solution
     logical :: another = .false.         !! case follows
     integer :: precision = precision_double   !! of the factors
     type(linear_problem), allocatable :: linear, virgin
+    type(kept_estimates) :: estimates
   contains
     procedure :: forget
   end type kept_factors
@@ -102,11 +103,13 @@ contains
   end subroutine solve
 
   !> Factors are made anew for the next solve, or are no longer wanted.
-  pure subroutine forget(self)
+  subroutine forget(self)
     class(kept_factors), intent(inout) :: self
+    type(kept_estimates) :: none
 
     if (allocated(self%linear)) deallocate (self%linear)
     if (allocated(self%virgin)) deallocate (self%virgin)
+    self%estimates = none
   end subroutine forget
 
   !> Solve the scene as it is.
@@ -139,7 +142,7 @@ contains
       call evaluate_refined()
     end if
     call use_tangent()
-    call assess(scene, kept%linear, line, answer, accuracy)
+    call assess(scene, kept%linear, line, kept%estimates, answer, accuracy)
     ! An open pair does not press.
     where (.not. answer%contact%touching .and. answer%pressure > 0.0_wp) answer%pressure = -1.0_wp
     call watch%lap(stage_accuracy)

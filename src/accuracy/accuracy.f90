@@ -2,7 +2,7 @@
 !> total contact force and what of it each body bears, in the largest pressure and the half-width of each
 !> zone; what rounding may have done to the contact forces; pairs that may as well be open.
 module epcont_accuracy_accuracy
-  use epcont_accuracy_error_fields, only: compare_fields, error_fields
+  use epcont_accuracy_error_fields, only: body_fields, compare_fields, error_fields
   use epcont_accuracy_joined_loads, only: contact_sensitivity
   use epcont_accuracy_narrow_zone, only: find_turned, shifted_loads, too_near
   use epcont_accuracy_passed_loads, only: dense_loads
@@ -21,7 +21,7 @@ module epcont_accuracy_accuracy
   use epcont_result_contact_line, only: contact_line
   implicit none
   private
-  public :: accuracy_type, assess
+  public :: accuracy_type, assess, kept_estimates
 
   !> Elements that are named as the worst.
   integer, parameter :: worst_count = 5
@@ -47,32 +47,46 @@ module epcont_accuracy_accuracy
     logical, allocatable :: weak(:)                !! pairs that errors may open, or close [pairs]
   end type accuracy_type
 
+  !> What estimates of one load case leave to those of the next.
+  type :: kept_estimates
+    type(patch_table) :: table
+    type(unit_loads) :: loads
+    type(body_fields), allocatable :: field(:)   !! of these loads [bodies]
+  end type kept_estimates
+
 contains
 
   !> What the figures of an answer are worth.
-  subroutine assess(scene, linear, line, answer, accuracy)
+  subroutine assess(scene, linear, line, kept, answer, accuracy)
     type(planned_scene), intent(in) :: scene       !! that was solved
     !> Of the last solve; the basis of its contact is taken over
     type(linear_problem), intent(inout), target :: linear
     type(contact_line), intent(in) :: line         !! of the pairs
+    type(kept_estimates), intent(inout) :: kept    !! of the load case before, if any; of this
     !> With its pressures and zones; the condition is added to it
     type(answer_type), intent(inout) :: answer
     type(accuracy_type), intent(out) :: accuracy   !! of its figures
-    type(patch_table) :: table
-    type(unit_loads) :: loads
+    type(kept_estimates) :: none
     type(error_fields) :: field
     type(surface_line) :: surface
     logical :: carried, pressed
+    logical :: same   ! unit loads as before
     logical, allocatable :: point_load(:)   ! the motion's SUPORT freedom bears one [motions]
     integer :: motions
 
     pressed = any(answer%contact%force > 0.0_wp)
     ! Else the scene is that of a load that was not carried, or nothing tells what its stiffness is.
     carried = pressed .and. answer%converged .and. answer%condition < huge(1.0_wp)
+    same = .false.
     if (carried) then
-      call find_unit_loads(scene, linear, answer, loads)
+      call find_unit_loads(scene, linear, answer, kept%loads, same)
     else
-      call dense_loads(reshape([real(wp) ::], [scene%model%pairs, 0]), loads%passed)
+      kept%loads = none%loads
+      call dense_loads(reshape([real(wp) ::], [scene%model%pairs, 0]), kept%loads%passed)
+    end if
+    if (.not. same) then
+      if (allocated(kept%field)) deallocate (kept%field)
+      allocate (kept%field(scene%model%bodies))
     end if
     motions = scene%motions%count
     point_load = find_point_loads()
@@ -106,8 +120,8 @@ contains
 
     !> The error of the mesh in the energy norm, and the elements that have the most of it.
     subroutine assess_mesh()
-      table = new_patch_table(scene%model)
-      call compare_fields(scene, linear, answer, table, loads%passed, field)
+      if (kept%table%places == 0) kept%table = new_patch_table(scene%model)
+      call compare_fields(scene, linear, answer, kept%table, kept%loads%passed, kept%field, field)
       accuracy%element = field%element
       associate (error => sum(field%element))
         if (error > least_difference**2*held_energy()) &
@@ -155,20 +169,20 @@ contains
     !> Approaches and forces, and what errors may do to pairs.
     subroutine assess_sums()
       !> Error of each approach, of the sum of forces, of what bodies bear
-      real(wp) :: off(loads%passed%loads)
+      real(wp) :: off(kept%loads%passed%loads)
       integer :: j
 
-      accuracy%sensitivity = loads%sensitivity
+      accuracy%sensitivity = kept%loads%sensitivity
       if (.not. scene%numbering%joined) &
         accuracy%sensitivity = find_sensitivity( &
-          loads%problem, loads%basis, answer%contact%force, &
+          kept%loads%problem, kept%loads%basis, answer%contact%force, &
           abs(linear%problem%initial_gap) + abs(linear%problem%load_gap) &
           + linear%problem%motion%times(answer%contact%approach, magnitudes=.true.), answer%condition)
       ! What the last step of refinement has not changed is right.
       accuracy%sensitivity%rounding = min(accuracy%sensitivity%rounding, answer%last_correction)
       off = errors()
       do j = 1, motions
-        if (.not. loads%told(j)) cycle
+        if (.not. kept%loads%told(j)) cycle
         accuracy%approach(j) = off(j)
         accuracy%approach_unbounded(j) = point_load(j)
       end do
@@ -183,11 +197,11 @@ contains
 
     !> Errors of approaches, then of sums of forces.
     pure function errors() result(off)
-      real(wp) :: off(loads%passed%loads)
+      real(wp) :: off(kept%loads%passed%loads)
       !> What a force at each pair adds of what contact at nodes alone lets the bodies come too near, and of
       !! what its ends leave open [length] [pairs]
       real(wp), dimension(scene%model%pairs) :: near, at_ends
-      real(wp), dimension(loads%passed%loads) :: near_sum, end_sum   !! of these, under each load
+      real(wp), dimension(kept%loads%passed%loads) :: near_sum, end_sum   !! of these, under each load
       real(wp) :: at_end
       integer :: j, z
 
@@ -206,15 +220,15 @@ contains
         end associate
       end do
       ! Of a tilt of either sign the ends count, not the sum.
-      near_sum = loads%passed%weighed(near)
-      end_sum = loads%passed%weighed(at_ends, magnitudes=.true.)
+      near_sum = kept%loads%passed%weighed(near)
+      end_sum = kept%loads%passed%weighed(at_ends, magnitudes=.true.)
       off = 0.0_wp
       do j = 1, size(off)
-        if (loads%told(j)) off(j) = error_along(j, near_sum(j), end_sum(j))
+        if (kept%loads%told(j)) off(j) = error_along(j, near_sum(j), end_sum(j))
       end do
       associate (shifted => shifted_loads(scene%model, line, scene%motions, answer))
-        do j = 1, size(loads%share, 2)
-          associate (shared => loads%passed%weighed(loads%share(:, j)))
+        do j = 1, size(kept%loads%share, 2)
+          associate (shared => kept%loads%passed%weighed(kept%loads%share(:, j)))
             off(motions + j) = off(motions + j) + sum(abs(matmul(shared(:motions), shifted)))
           end associate
         end do
@@ -247,16 +261,16 @@ contains
       integer :: c, i
 
       given = .false.
-      given(:, answer%bodies%body) = loads%column == 0
+      given(:, answer%bodies%body) = kept%loads%column == 0
       if (scene%model%has_rings()) given(1, :) = .false.
       call find_turned(scene%model, line, answer, given, turned, turned_on)
-      where (loads%column == 0) accuracy%body_force = 0.0_wp
-      if (.not. loads%basis%sound) return
+      where (kept%loads%column == 0) accuracy%body_force = 0.0_wp
+      if (.not. kept%loads%basis%sound) return
       accuracy%total_force = with_waves(off, 1) + turned
       do i = 1, size(answer%bodies)
         do c = 1, directions
-          if (loads%column(c, i) > 0) accuracy%body_force(c, i) = &
-            with_waves(off, loads%column(c, i)) + turned_on(c, answer%bodies(i)%body)
+          if (kept%loads%column(c, i) > 0) accuracy%body_force(c, i) = &
+            with_waves(off, kept%loads%column(c, i)) + turned_on(c, answer%bodies(i)%body)
         end do
       end do
     end subroutine assess_forces
@@ -273,7 +287,7 @@ contains
       if (off(k) <= least_difference*sum(answer%contact%force)) return   ! that is rounding
       do z = 1, size(accuracy%zone)
         force = force + min(1.0_wp, accuracy%zone(z)%waviness**3)* &
-                        sum(abs(loads%share(answer%zones(z)%pairs, k))* &
+                        sum(abs(kept%loads%share(answer%zones(z)%pairs, k))* &
                             answer%contact%force(answer%zones(z)%pairs))
       end do
       force = off(k) + force
@@ -315,7 +329,7 @@ contains
       beside = .false.
       do j = 1, motions
         if (.not. point_load(j)) cycle
-        call wide_patch(scene%model, table, scene%motions%node(j), patch)
+        call wide_patch(scene%model, kept%table, scene%motions%node(j), patch)
         beside(patch) = .true.
       end do
     end function beside_point_loads

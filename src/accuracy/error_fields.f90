@@ -19,10 +19,16 @@ module epcont_accuracy_error_fields
   use epcont_system_threads, only: threads_over, use_one_thread_each
   implicit none
   private
-  public :: compare_fields, error_fields
+  public :: body_fields, compare_fields, error_fields
 
   !> Elements that a thread takes at once.
   integer, parameter :: at_once = 8192
+
+  !> The unit loads of a body that is no part of others, where one batch tells of all, for the next load case.
+  type :: body_fields
+    type(load_batch) :: batch
+    real(wp), allocatable :: u(:, :, :)   !! not allocated: they are not known
+  end type body_fields
 
   !> Strains less smooth ones are errors: their energies, and their products with those of unit loads.
   type :: error_fields
@@ -36,12 +42,13 @@ module epcont_accuracy_error_fields
 contains
 
   !> Errors of the answer's strains, and what they have in common with those of unit loads.
-  subroutine compare_fields(scene, linear, answer, table, passed, field)
+  subroutine compare_fields(scene, linear, answer, table, passed, known, field)
     type(planned_scene), intent(in) :: scene     !! that was solved
     type(linear_problem), intent(inout) :: linear   !! of the last solve
     class(scene_state), intent(in) :: answer     !! to it
     type(patch_table), intent(in) :: table       !! of its elements
     type(passed_loads), intent(in) :: passed     !! contact forces under unit loads
+    type(body_fields), intent(inout) :: known(:) !! of the load case before, if the same; of these [bodies]
     type(error_fields), intent(out) :: field     !! what is off
     type(incidence) :: elements, pairs           ! of each body
     type(body_loads) :: loads
@@ -65,12 +72,22 @@ contains
         element = scene%numbering%body(b)%element
       end if
       if (size(element) == 0) cycle
+      if (allocated(known(b)%u)) then
+        batch = known(b)%batch
+        call move_alloc(known(b)%u, u)
+        call compare_on_body(element, table%of_body%of(b))
+        call move_alloc(u, known(b)%u)
+        cycle
+      end if
       loads = new_body_loads(pairs%of(b), passed)
-      do
+      do k = 1, size(passed%unit) + 1
         call find_fields(table%of_body%of(b))
         call compare_on_body(element, table%of_body%of(b))
         if (size(loads%load) == 0) exit
       end do
+      if (k > 1 .or. scene%numbering%joined) cycle
+      known(b)%batch = batch
+      call move_alloc(u, known(b)%u)
     end do
     total = passed%add_up(sum_of*spread(passed%unit, 1, 4)**spread([1, 1, 2, 2], 2, size(passed%unit)))
     field%along = total(:2, :)

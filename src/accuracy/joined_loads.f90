@@ -25,14 +25,18 @@ contains
   !> Unit loads along the motions, then closing gaps; behind them two columns that tell the 1-norms of D M
   !! (`unit_loads`) by Higham and Tisseur. The second solve makes the loads better, and has the columns that
   !! the first has led to. What the contact forces open gaps by, body by body, is taken from the deformation.
-  subroutine find_joined_loads(scene, linear, answer, share, passed, sensitivity)
+  !> Of another load case with the same contacts the loads are known: those columns alone are new.
+  subroutine find_joined_loads(scene, linear, answer, share, passed, probe, sensitivity)
     type(planned_scene), intent(in) :: scene         !! that was solved
     type(linear_problem), intent(inout) :: linear    !! of the last solve
     type(answer_type), intent(in) :: answer          !! with some contact
     real(wp), intent(in) :: share(:, :)              !! by which gaps close [pairs, loads of that kind]
-    type(passed_loads), intent(out) :: passed        !! contact forces and displacements
+    type(passed_loads), intent(inout) :: passed      !! contact forces and displacements
+    !> What the first solve has for the two columns; not allocated: nothing is known [pairs, 2]
+    real(wp), allocatable, intent(inout) :: probe(:, :)
     type(contact_sensitivity), intent(out) :: sensitivity
-    real(wp) :: load(scene%motions%count, scene%motions%count + size(share, 2) + 2)
+    real(wp) :: load(scene%motions%count, &
+                     merge(2, scene%motions%count + size(share, 2) + 2, allocated(probe)))
     real(wp), dimension(scene%model%pairs, size(load, 2)) :: force, opening
     real(wp) :: u(directions, size(load, 2), scene%model%nodes)
     !> Sums that the gaps come from, of deformations and of travels; what these change of a force, if they are
@@ -47,18 +51,23 @@ contains
     opening = 0.0_wp
     force = 0.0_wp
     u = 0.0_wp
-    do j = 1, scene%motions%count
-      load(j, j) = 1.0_wp
-    end do
-    opening(:, scene%motions%count + 1:loads) = -share
-    call begin_probes(opening(:, loads + 1:))
-    call linear%joined%respond(scene, linear%factored_bodies, load, opening, force, u)
-    call turn_probes(opening(:, loads + 1:), force(:, loads + 1:))
+    if (.not. allocated(probe)) then
+      do j = 1, scene%motions%count
+        load(j, j) = 1.0_wp
+      end do
+      opening(:, scene%motions%count + 1:loads) = -share
+      call begin_probes(opening(:, loads + 1:))
+      call linear%joined%respond(scene, linear%factored_bodies, load, opening, force, u)
+      probe = force(:, loads + 1:)
+    end if
+    call turn_probes(opening(:, loads + 1:))
+    force(:, loads + 1:) = 0.0_wp
     u(:, loads + 1:, :) = 0.0_wp
     call linear%joined%respond(scene, linear%factored_bodies, load, opening, force, u)
     change = max(change, maxval(abs(force(pressed, loads + 1:)), dim=1)/maxval(answer%contact%force))
     call linear%estimate_condition(scene, condition)
     sensitivity = contact_sensitivity(.true., change(1), rounding())
+    if (loads == 0) return
     do j = scene%motions%count + 1, loads
       if (give_way(opening(:, j))) force(:, j) = 0.0_wp
     end do
@@ -88,21 +97,19 @@ contains
 
     !> What a solve has told of the norms, and for each of them the column that is next: of M'D the largest
     !! entry is a bound, too.
-    subroutine turn_probes(x, product)
+    subroutine turn_probes(x)
       real(wp), intent(out) :: x(:, :)
-      real(wp), intent(inout) :: product(:, :)   !! M x, then zero
       real(wp) :: of_column(2, 2)   ! by sums and columns
 
       sums(:, 1) = terms_of_openings(scene%model, answer%deformation)
       sums(:, 2) = abs(linear%problem%initial_gap) + &
                    linear%problem%motion%times(answer%contact%approach, magnitudes=.true.)
       where (spread(answer%contact%force <= 0.0_wp, 2, 2)) sums = 0.0_wp
-      of_column = matmul(transpose(sums), abs(product))/maxval(answer%contact%force)
+      of_column = matmul(transpose(sums), abs(probe))/maxval(answer%contact%force)
       change = maxval(of_column, dim=2)
       do k = 1, 2
-        x(:, k) = sums(:, k)*sign(1.0_wp, product(:, maxloc(of_column(k, :), dim=1)))
+        x(:, k) = sums(:, k)*sign(1.0_wp, probe(:, maxloc(of_column(k, :), dim=1)))
       end do
-      product = 0.0_wp
     end subroutine turn_probes
 
     !> Do motions open the gaps of the pressed pairs so? Then no forces come of it. The motions' part is taken

@@ -45,22 +45,41 @@ module epcont_accuracy_unit_loads
     !> There, of each component of what contact exerts on each body; 0: loads alone make it; negative: not
     !! known [directions, bodies]
     integer, allocatable :: column(:, :)
+    !> The contacts that they are of
+    logical, allocatable, private :: pressed(:), touching(:), motion_free(:)
+    real(wp), allocatable, private :: probe(:, :)   !! of joined bodies (`find_joined_loads`)
+  contains
+    procedure, private :: are_of
   end type unit_loads
 
 contains
 
-  !> Unit loads on a scene whose contact has been found.
-  subroutine find_unit_loads(scene, linear, answer, loads)
+  !> Unit loads on a scene whose contact has been found. Those of the load case before are kept where it had
+  !> the same contacts, and nothing yields.
+  subroutine find_unit_loads(scene, linear, answer, loads, kept)
     type(planned_scene), intent(in) :: scene     !! that was solved
     !> Of the last solve; the basis of its contact is taken over, and its flexibility must remain
     type(linear_problem), intent(inout), target :: linear
     type(answer_type), intent(in) :: answer      !! with some contact
-    type(unit_loads), intent(out) :: loads       !! and what they do
+    type(unit_loads), intent(inout) :: loads     !! of the load case before; and what they do
+    logical, intent(out) :: kept                 !! they are those of the case before
+    type(unit_loads) :: none
     integer :: j
 
+    kept = loads%are_of(answer) .and. .not. linear%materials%yields
+    if (kept) then
+      if (scene%numbering%joined) call find_joined_loads(scene, linear, answer, loads%share, loads%passed, &
+                                                         loads%probe, loads%sensitivity)
+      return
+    end if
+    loads = none
+    loads%pressed = answer%contact%force > 0.0_wp
+    loads%touching = answer%contact%touching
+    loads%motion_free = answer%contact%motion_free
     call find_shares()
     if (scene%numbering%joined) then
-      call find_joined_loads(scene, linear, answer, loads%share, loads%passed, loads%sensitivity)
+      call find_joined_loads(scene, linear, answer, loads%share, loads%passed, loads%probe, &
+                             loads%sensitivity)
       loads%basis%sound = .true.
     else
       call put_on_pairs()
@@ -145,6 +164,18 @@ contains
       end do
     end function is_free
   end subroutine find_unit_loads
+
+  !> Are these the contacts of an answer?
+  pure logical function are_of(self, answer)
+    class(unit_loads), intent(in) :: self
+    type(answer_type), intent(in) :: answer
+
+    are_of = allocated(self%pressed)
+    if (.not. are_of) return
+    are_of = all(self%pressed .eqv. answer%contact%force > 0.0_wp) .and. &
+             all(self%touching .eqv. answer%contact%touching) .and. &
+             all(self%motion_free .eqv. answer%contact%motion_free)
+  end function are_of
 
   !> Contact forces when the gap of each pair shrinks by its weight; none where motions give way to that
   !! [force/length] [pairs, any].

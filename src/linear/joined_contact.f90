@@ -49,6 +49,7 @@ module epcont_linear_joined_contact
     real(wp), allocatable, private :: hold(:)      !! springs of SUPORT freedoms [force/length] [motions]
     logical, allocatable, private :: closed(:)     !! whose springs are to be in the factor [pairs]
     type(scene_state), allocatable, private :: last   !! from which the next contact is sought
+    logical, private :: unique = .false.           !! forces are found to be, with the factor that there is
     type(motion_matrix), private :: motion         !! A, closing of the gaps by the motions [length]
     type(rigid_start), private :: rigid            !! whether rigid bodies can carry the loads
   contains
@@ -121,6 +122,7 @@ contains
     if (any(bodies%spring%changed) .or. any(bodies%law%changed)) then
       call watch%lap(stage_contact)
       call bodies%factor_system(scene, self%threads)
+      self%unique = .false.
       call watch%lap(stage_factor)
     end if
     sound = bodies%body(1)%is_sound()
@@ -380,7 +382,7 @@ contains
   !> Are the contact forces the only ones? Forces that open no gaps are what a solve leaves of any; of two
   !! that are given no one is likely to have none of these.
   logical function are_unique(self, scene, bodies)
-    class(joined_contact), intent(in) :: self
+    class(joined_contact), intent(inout) :: self
     type(planned_scene), intent(in) :: scene
     class(factored_bodies), intent(in) :: bodies    !! factored with the set of contacts
     type(half_solved_body), allocatable :: half(:)
@@ -388,6 +390,7 @@ contains
     integer :: j, k
 
     are_unique = .true.
+    if (self%unique) return   ! as in the load case before
     do j = 1, 2
       force = merge(cos([(k*sqrt(real(j, wp)), k=1, size(force))]), 0.0_wp, self%closed)
       if (j > 1) deallocate (half)
@@ -395,5 +398,6 @@ contains
       force = force - self%gamma*gap_opening(scene%model, bodies%finish(scene, half, 0.0_wp, .true.))
       are_unique = are_unique .and. all(abs(force) <= most_left .or. .not. self%closed)
     end do
+    self%unique = are_unique
   end function are_unique
 end module epcont_linear_joined_contact
