@@ -25,6 +25,7 @@ module epcont_linear_joined_contact
   use epcont_linear_contact_ends, only: reach_ends
   use epcont_linear_joined_springs, only: find_springs, put_on_nodes, half_plane, of_pairs
   use epcont_linear_line_search, only: least_at
+  use epcont_linear_load_line, only: load_line
   use epcont_linear_scene_state, only: scene_state
   use epcont_plan_planned_scene, only: planned_scene
   use epcont_system_stopwatch, only: stage_contact, stage_factor, stopwatch
@@ -48,7 +49,7 @@ module epcont_linear_joined_contact
     real(wp), allocatable, private :: gamma(:)     !! springs of the pairs [force/length] [pairs]
     real(wp), allocatable, private :: hold(:)      !! springs of SUPORT freedoms [force/length] [motions]
     logical, allocatable, private :: closed(:)     !! whose springs are to be in the factor [pairs]
-    type(scene_state), allocatable, private :: last   !! from which the next contact is sought
+    type(load_line), private :: line        !! from whose states the next contact is sought
     logical, private :: unique = .false.           !! forces are found to be, with the factor that there is
     type(motion_matrix), private :: motion         !! A, closing of the gaps by the motions [length]
     type(rigid_start), private :: rigid            !! whether rigid bodies can carry the loads
@@ -87,6 +88,7 @@ contains
     logical, allocatable :: redundant(:)               ! of the case before
 
     self%failed = .false.
+    call self%line%take_load(scene%model%load)
     if (allocated(self%gamma)) redundant = self%rigid%redundant
     associate (unit => self%motion%units())
       call find_rigid_start(self%motion%over(unit), resultant/unit, spread(0.0_wp, 1, self%motion%pairs), &
@@ -96,7 +98,7 @@ contains
     if (allocated(redundant)) then
       if (all(redundant .eqv. self%rigid%redundant)) return
     end if
-    if (allocated(self%last)) deallocate (self%last)
+    if (allocated(self%line%last)) deallocate (self%line%last)
     call find_springs(scene, bodies, self%rigid%redundant, self%gamma, self%hold)
     self%compliance = half_plane*of_pairs/self%gamma
     self%closed = spread(.true., 1, scene%model%pairs)
@@ -138,8 +140,12 @@ contains
     type(scene_state), intent(inout) :: state    !! what is found
     class(stopwatch), intent(inout) :: watch     !! takes the time
 
-    if (allocated(self%last)) then
-      state = self%last
+    if (allocated(self%line%last)) then
+      state = self%line%next()
+      associate (opened => gap + gap_opening(scene%model, state%deformation) - &
+                           self%motion%times(state%contact%approach))
+        if (any(state%contact%force > self%gamma*opened .neqv. self%closed)) state = self%line%last
+      end associate
     else
       allocate (state%deformation(directions, scene%model%nodes), source=0.0_wp)
       state%contact = new_solution(scene%model%pairs, scene%motions%count)
@@ -151,7 +157,7 @@ contains
     end if
     call self%find_set(scene, bodies, gap, load_factor, state, watch)
     if (state%contact%state == contact_solved) call self%settle(scene, gap, state)
-    if (state%contact%state == contact_solved) self%last = state
+    if (state%contact%state == contact_solved) call self%line%keep(state)
     if (state%contact%state /= contact_solved) self%failed = .true.
     call watch%lap(stage_contact)
   end subroutine solve
@@ -192,8 +198,8 @@ contains
     call balance()
     call begin_at_state()
     wanted = pull > 0.0_wp
-    if (allocated(self%last)) call choose_set()
-    if (.not. allocated(self%last)) call begin_set()
+    if (allocated(self%line%last)) call choose_set()
+    if (.not. allocated(self%line%last)) call begin_set()
     do taken = 1, step_limit
       call self%factor(scene, bodies, sound, watch)
       if (.not. sound) exit

@@ -10,6 +10,7 @@ module epcont_linear_linear_problem
   use epcont_contact_solver, only: solve_contact
   use epcont_element_kinematics, only: directions
   use epcont_flexibility_flexibility, only: gap_opening, pair_forces, see_motions, terms_of_openings
+  use epcont_linear_borne_loads, only: borne_loads
   use epcont_linear_joined_contact, only: joined_contact, new_joined
   use epcont_linear_scene_state, only: force_change, relative_change, scene_state
   use epcont_linear_whole_flexibility, only: add_flexibilities
@@ -37,6 +38,7 @@ module epcont_linear_linear_problem
     type(scene_state), allocatable, private :: last  !! found by refinement, from which the next begins
     type(contact_basis) :: basis   !! of the last contact with this flexibility
     logical, allocatable :: touching(:)      !! pairs in contact then: the next begins with them [pairs]
+    type(borne_loads) :: borne               !! in a load case before
     type(joined_contact) :: joined   !! instead, where bodies are one system
     real(wp), allocatable, private :: travel_gap(:)  !! opened by what supports travel [length] [pairs]
     real(wp), allocatable, private :: resultant(:)   !! of all loads along the free motions [motions]
@@ -186,7 +188,7 @@ contains
 
     !> Contact with the gaps that the loads open alone, then the deformation under loads and contact forces.
     subroutine solve_once()
-      real(wp), allocatable :: force(:, :)
+      real(wp), allocatable :: force(:, :), opening(:)
       type(half_solved_body), allocatable :: half(:)
 
       force = load_factor*scene%model%load
@@ -196,10 +198,9 @@ contains
       else if (any(self%law%initial_stress /= 0.0_wp)) then
         force = force - self%operator%nodal_forces(scene%model, self%law%initial_stress)
       end if
-      call self%add_forces(scene, force, load_factor, half)
+      call self%borne%bear(scene, self%factored_bodies, force, load_factor, half, opening)
       if (allocated(self%problem%known_gap)) deallocate (self%problem%known_force, self%problem%known_gap)
-      self%problem%load_gap = gap_opening(scene%model, self%finish(scene, half, load_factor, .true.)) + &
-                              load_factor*self%travel_gap
+      self%problem%load_gap = opening + load_factor*self%travel_gap
       self%problem%resultant = load_factor*self%resultant
       call watch%lap(stage_displacements)
       call solve_contact(self%problem, state%contact, start, self%plan%by_blocks, self%basis)

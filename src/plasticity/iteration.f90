@@ -131,6 +131,7 @@ contains
         allocate (linear)
         call new_linear_problem(scene, plan, linear)
       end if
+      linear%borne%keeps = keeps .and. .not. linear%materials%yields
       factored_before = linear%factorizations
       allocate (about%displacement(directions, scene%model%nodes), source=0.0_wp)
       allocate (about%strain(components, scene%model%points), source=0.0_wp)

@@ -1,0 +1,66 @@
+!> Loads that bodies have been solved for: load cases with as many times the same need no solve of their own.
+!> Of bodies that cannot yield what loads do is linear, but for what prescribed displacements add.
+module epcont_linear_borne_loads
+  use epcont_assembly_bodies, only: factored_bodies, half_solved_body
+  use epcont_base_kinds, only: wp
+  use epcont_flexibility_flexibility, only: gap_opening
+  use epcont_linear_multiple, only: multiple_of
+  use epcont_plan_planned_scene, only: planned_scene
+  implicit none
+  private
+  public :: borne_loads
+
+  type :: borne_loads
+    logical :: keeps = .false.                         !! the bodies cannot yield, and a load case may follow
+    real(wp), allocatable :: force(:, :)               !! not allocated: none [force] [directions, nodes]
+    type(half_solved_body), allocatable :: half(:)     !! what is halfway solved with them [bodies]
+    real(wp), allocatable :: opening(:)                !! of gaps, by them alone [length] [pairs]
+  contains
+    procedure :: bear
+    procedure, private :: give
+  end type borne_loads
+
+contains
+
+  !> Half of the solve for loads, and what gaps they open.
+  subroutine bear(self, scene, bodies, force, load_factor, half, opening)
+    class(borne_loads), intent(inout) :: self
+    type(planned_scene), intent(in) :: scene
+    class(factored_bodies), intent(in) :: bodies                     !! factored
+    real(wp), intent(in) :: force(:, :)                              !! [force] [directions, nodes]
+    real(wp), intent(in) :: load_factor                              !! of the prescribed displacements
+    type(half_solved_body), allocatable, intent(out) :: half(:)      !! [bodies]
+    real(wp), allocatable, intent(out) :: opening(:)                 !! [length] [pairs]
+    logical :: moved   ! supports
+
+    moved = any(scene%model%beyond_travel /= 0.0_wp)
+    if (.not. moved) call self%give(force, half, opening)
+    if (allocated(half)) return
+    call bodies%add_forces(scene, force, load_factor, half)
+    opening = gap_opening(scene%model, bodies%finish(scene, half, load_factor, .true.))
+    if (moved .or. .not. self%keeps) return
+    self%force = force
+    self%half = half
+    self%opening = opening
+  end subroutine bear
+
+  !> What follows of loads, where they are a multiple of these; else it is left unallocated.
+  pure subroutine give(self, force, half, opening)
+    class(borne_loads), intent(in) :: self
+    real(wp), intent(in) :: force(:, :)                              !! [force] [directions, nodes]
+    type(half_solved_body), allocatable, intent(out) :: half(:)      !! [bodies]
+    real(wp), allocatable, intent(out) :: opening(:)                 !! [length] [pairs]
+    real(wp) :: times
+    integer :: b
+
+    if (.not. allocated(self%force)) return
+    times = multiple_of(force, self%force)
+    if (times == 0.0_wp) return
+    half = self%half
+    do b = 1, size(half)
+      half(b)%inner = times*half(b)%inner
+      half(b)%border = times*half(b)%border
+    end do
+    opening = times*self%opening
+  end subroutine give
+end module epcont_linear_borne_loads

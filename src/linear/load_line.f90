@@ -1,0 +1,64 @@
+!> Load cases that have, one after the other, times as much of the same loads. As long as the contacts stay
+!> their states are on one line: from two of them follows the next.
+module epcont_linear_load_line
+  use epcont_base_kinds, only: wp
+  use epcont_linear_multiple, only: multiple_of
+  use epcont_linear_scene_state, only: scene_state
+  implicit none
+  private
+  public :: load_line
+
+  type :: load_line
+    type(scene_state), allocatable :: last     !! what was found last
+    real(wp), allocatable, private :: before(:, :), force(:), approach(:)   !! the state on the line before it
+    real(wp), allocatable, private :: load(:, :)   !! of the load case [force] [directions, nodes]
+    !> The case's load over that of `last`, that of the state before over that; 0: they are not on one line
+    real(wp), private :: times = 0.0_wp, times_before = 0.0_wp
+  contains
+    procedure :: take_load
+    procedure :: keep
+    procedure :: next
+  end type load_line
+
+contains
+
+  !> Another load case.
+  pure subroutine take_load(self, load)
+    class(load_line), intent(inout) :: self
+    real(wp), intent(in) :: load(:, :)   !! [force] [directions, nodes]
+
+    self%times = 0.0_wp
+    if (allocated(self%last)) self%times = multiple_of(load, self%load)
+    self%load = load
+  end subroutine take_load
+
+  !> Keep what was found for it, and the state before where that is on the line.
+  pure subroutine keep(self, state)
+    class(load_line), intent(inout) :: self
+    type(scene_state), intent(in) :: state
+
+    self%times_before = 0.0_wp
+    if (self%times /= 0.0_wp .and. self%times /= 1.0_wp) then
+      self%before = self%last%deformation
+      self%force = self%last%contact%force
+      self%approach = self%last%contact%approach
+      self%times_before = 1.0_wp/self%times
+    end if
+    self%times = 0.0_wp
+    self%last = state
+  end subroutine keep
+
+  !> The state that the last two lead to; the last itself where they lead nowhere.
+  pure function next(self) result(state)
+    class(load_line), intent(in) :: self
+    type(scene_state) :: state
+    real(wp) :: share
+
+    state = self%last
+    if (self%times == 0.0_wp .or. self%times_before == 0.0_wp) return
+    share = (self%times - 1.0_wp)/(1.0_wp - self%times_before)
+    state%deformation = state%deformation + share*(state%deformation - self%before)
+    state%contact%force = state%contact%force + share*(state%contact%force - self%force)
+    state%contact%approach = state%contact%approach + share*(state%contact%approach - self%approach)
+  end function next
+end module epcont_linear_load_line
