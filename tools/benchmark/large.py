@@ -39,6 +39,7 @@ class Scene:
     lean: float = None      # of its memory
     quick: bool = True
     threads: int = 1        # more: the ratio is that of wall clock on one over that on so many, and `part` its least
+    cases: int = 1          # more: load cases from 1/cases of the loads to all; the ratio is to all loads alone, and `part` its largest
 
 
 SCENES = (
@@ -53,6 +54,8 @@ SCENES = (
     Scene("331 000 unknowns, yielding", lambda: cylinder(165000, True), 5.0, part=0.51, quick=False),
     Scene("strip 200:1, 2 800 pairs", many.strip, 3.0, part=0.34),
     Scene("200 load steps, 900 nodes", lambda: cylinder(900, True, 200), part=0.9),
+    Scene("100 load cases of two cylinders, 11 000 nodes", lambda: cylinder(11000), part=4.0, cases=100),
+    Scene("100 load cases of the dovetail", many.dovetail, part=8.0, cases=100),
     Scene("one body of 85 000 nodes on two threads", lambda: cylinder(85000), part=1.6, threads=2),
 )
 
@@ -104,18 +107,33 @@ def size_of(program, place):
     return dict(zip(("nodes", "pairs", "bodies"), map(int, found.groups())))
 
 
+def in_cases(text, cases):
+    """A deck with load cases from 1/cases of its loads to all of them."""
+    head, bulk = text.split("BEGIN BULK\n")
+    loads = re.search(r"^LOAD = (\d+)\n", head, re.MULTILINE)
+    head = head.replace(loads.group(), "").replace("SOL 106", "SOL 101")
+    numbers = range(1, cases + 1)
+    return (head + "".join(f"SUBCASE {k}\n LOAD = {1000 + k}\n" for k in numbers) + "BEGIN BULK\n"
+            + "".join(f"LOAD,{1000 + k},1.0,{k / cases!r},{loads.group(1)}\n" for k in numbers) + bulk)
+
+
 def one(scene, place, program, other, turns, most, say):
     """A scene by both programs: times, ratios to the other's, and what is wanted."""
     place.mkdir()
     deck = place / "scene.dat"
-    deck.write_text(scene.make().text(), encoding="ascii")
+    text = scene.make().text()
+    deck.write_text(in_cases(text, scene.cases) if scene.cases > 1 else text, encoding="ascii")
     ours = Program(program, deck, scene.threads)
-    beside = [Program(other, deck)] if other else []
+    beside = [Program(other, deck)] if other and scene.cases == 1 else []
     alone = [Program(program, deck)] if scene.threads > 1 else []
+    if scene.cases > 1:
+        case = place / "case.dat"
+        case.write_text(text, encoding="ascii")
+        alone = [Program(program, case)]
     in_turns([ours, *alone, *beside], place, turns, most)
     row = {"scene": scene.name, **size_of(ours, place), "runs": len(ours.cpu), "ours": ours.row(),
-           "beside": beside[0].row() if beside else None, "threads": scene.threads,
-           "part": of(alone[0].wall, ours.wall) if alone else of(ours.cpu, beside[0].cpu) if beside else None,
+           "beside": beside[0].row() if beside else None, "threads": scene.threads, "cases": scene.cases,
+           "part": of(alone[0].wall, ours.wall) if scene.threads > 1 else of(ours.cpu, (alone + beside)[0].cpu) if alone + beside else None,
            "lean": ours.memory / beside[0].memory if beside and beside[0].cpu and ours.cpu else None,
            "wanted": {"cpu": scene.seconds, "memory": scene.memory, "part": scene.part, "lean": scene.lean}}
     say(f"{scene.name}: {row['ours']}, beside {row['beside']}, ratio {row['part']}")

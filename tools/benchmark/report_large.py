@@ -26,16 +26,17 @@ def verdict(found, wanted, least=False):
 def scenes(rows, version):
     lines = []
     for row in rows:
-        ours, wanted, several = row["ours"], row["wanted"], row["threads"] > 1
+        ours, wanted, several, cases = row["ours"], row["wanted"], row["threads"] > 1, row.get("cases", 1) > 1
         lines.append([row["scene"], row["nodes"], row["pairs"], row["bodies"], row["runs"], own(ours, "cpu", wanted["cpu"]), result(ours, "wall"),
                       own(ours, "memory", wanted["memory"]), result(row["beside"], "cpu"), result(row["beside"], "memory"),
-                      "" if several else verdict(row["part"], wanted["part"]), "" if several else verdict(row["lean"], wanted["lean"]),
-                      verdict(row["part"], wanted["part"], least=True) if several else ""])
+                      "" if several or cases else verdict(row["part"], wanted["part"]), "" if several else verdict(row["lean"], wanted["lean"]),
+                      verdict(row["part"], wanted["part"], least=True) if several else "",
+                      verdict(row["part"], wanted["part"]) if cases else ""])
     other = f"version {version}" if version else "none"
     return ["### Scenes", "Whole runs: seconds of processor and of wall, peak memory in MB; medians, and ratios of the medians of each turn, "
             f"over another epcont beside it ({other}). What was wanted and is not met stands in brackets; runs of a minute or more are made once. Status 124: not ended in 20 minutes (with `--quick` in one).",
             table(["scene", "nodes", "pairs", "bodies", "runs", "CPU, s", "wall, s", "MB", "beside, CPU s", "MB", "ratio of CPU", "of memory",
-                   "times as fast on two threads, by the clock"], lines)]
+                   "times as fast on two threads, by the clock", "CPU of all load cases over one"], lines)]
 
 
 def growth(found):
