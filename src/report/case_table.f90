@@ -2,7 +2,7 @@
 module epcont_report_case_table
   use epcont_base_kinds, only: wp
   use epcont_report_columns, only: column, columns_text, estimate, known, length, number, part, rounding, &
-      stress, table_type, whole, word
+      stress, table_type, unknown, whole, word
   use epcont_report_outcome, only: limit_of_pressure
   use epcont_report_run, only: run_results
   implicit none
@@ -12,14 +12,15 @@ module epcont_report_case_table
   !> What came of a case. Numbers are those of its summary; negative where they are not known.
   type :: case_row
     integer :: subcase = 0                     !! its number
+    logical :: has_answer = .false.            !! else nothing below is known, but for its status
     character(len=20) :: status = ''           !! in a word
     character(len=12) :: limit = ''            !! bounded, unbounded or not resolved, of the largest pressure
     integer :: touching = 0, plastic = 0       !! pairs, elements
     real(wp) :: pressure = -1.0_wp, pressure_error = -1.0_wp   !! the largest [stress]
     real(wp) :: half_width = -1.0_wp           !! of the zone that has it [length]
-    real(wp) :: approach = 0.0_wp              !! of the first free motion [length]
-    real(wp) :: residual = -1.0_wp             !! of the certificate's equilibrium, relative
-    real(wp) :: energy_norm = -1.0_wp          !! error of the mesh, relative
+    real(wp) :: approach = unknown             !! of the first free motion [length]
+    real(wp) :: residual = unknown             !! of the certificate's equilibrium, relative
+    real(wp) :: energy_norm = unknown          !! error of the mesh, relative
   end type case_row
 
   type(column), parameter :: case_columns(*) = [ &
@@ -50,7 +51,8 @@ contains
 
     row%subcase = run%deck%subcase(run%case)%id
     row%status = run%outcome%word
-    if (.not. run%outcome%has_answer) return
+    row%has_answer = run%outcome%has_answer
+    if (.not. row%has_answer) return
     row%touching = count(run%answer%contact%touching)
     row%plastic = count(run%answer%plastic)
     if (run%model%pairs > 0) then
@@ -73,7 +75,7 @@ contains
     table%mark = ''
     call table%begin('LOAD CASES', case_columns, &
                      [maxval(row%pressure), maxval(row%pressure), maxval(row%half_width), &
-                      maxval(abs(row%approach)), 1.0_wp, 1.0_wp])
+                      maxval(abs(row%approach), mask=row%approach > unknown), 1.0_wp, 1.0_wp])
     do k = 1, size(row)
       call table%row([row(k)%subcase, row(k)%touching, row(k)%plastic], &
                      [row(k)%pressure, row(k)%pressure_error, row(k)%half_width, row(k)%approach, &

@@ -26,6 +26,9 @@ module epcont_report_columns
     part = 8, &        !! per cent
     no_number = 9      !! there is none in this scene
 
+  !> A number, of any of these kinds, that is not known.
+  real(wp), parameter, public :: unknown = -huge(1.0_wp)
+
   !> Units.
   character(len=*), parameter, public :: length = 'length', force = 'force', stress = 'force/length2'
 
@@ -35,10 +38,10 @@ module epcont_report_columns
   !> One column.
   type :: column
     integer :: kind = whole            !! one of those above
-    character(len=21) :: name = ''     !! in the file; empty: the listing alone has this column
+    character(len=23) :: name = ''     !! in the file; empty: the listing alone has this column
     character(len=14) :: unit = ''     !! empty: none
     character(len=64) :: meaning = ''  !! for the manual page; empty: that of the column before, and its unit
-    character(len=21) :: head = ''     !! in the listing; empty: the name
+    character(len=23) :: head = ''     !! in the listing; empty: the name
     integer :: width = 13              !! in the listing; 0: the file alone has this column
   end type column
 
@@ -201,6 +204,7 @@ contains
     character(len=:), allocatable :: text
 
     text = '-'
+    if (value <= unknown) return
     select case (kind)
     case (number, known)
       if (kind == number .or. value >= 0.0_wp) text = column_number(value, scale)
@@ -235,7 +239,7 @@ contains
     text = adjustl(text)
     do k = 1, size(values)
       if (any(kinds(k) == [known, estimate, factor, part]) .and. .not. values(k) >= 0.0_wp .or. &
-          kinds(k) == no_number) text(k) = ''
+          kinds(k) == no_number .or. values(k) <= unknown) text(k) = ''
     end do
   end function full_numbers
 

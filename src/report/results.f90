@@ -5,6 +5,7 @@ module epcont_report_results
   use epcont_base_error, only: error_type
   use epcont_base_text, only: text_of
   use epcont_report_case_table, only: case_row, put_cases, row_of_case
+  use epcont_base_text, only: text_of
   use epcont_report_columns, only: table_type
   use epcont_report_file, only: new_text_file, remove_file, text_file
   use epcont_report_listing, only: list_case, list_scene
@@ -13,7 +14,7 @@ module epcont_report_results
   use epcont_report_run, only: run_results
   use epcont_report_summary, only: figure_type, summarise
   use epcont_report_tables, only: put_table
-  use epcont_report_vtk, only: write_collection, write_vtk
+  use epcont_report_vtk, only: collected, write_collection, write_vtk
   implicit none
   private
   public :: results_type, remove_results
@@ -105,6 +106,10 @@ contains
     integer :: k
 
     if (run%case == 1) call remove_results(self%stem)
+    ! Of a run that is stopped, too, the next one finds what to remove.
+    if (run%case == 1 .and. self%vtk .and. run%has_cases()) &
+      call write_collection(self%stem, run%deck%subcase%id, error)
+    if (allocated(error)) return
     figures = summarise(run)
     if (run%has_cases()) then
       call hold_case(self%case(run%case))
@@ -215,7 +220,8 @@ contains
       call write_table(k)
     end do
     if (.not. self%brief) call write_cases()
-    if (self%vtk .and. .not. allocated(error)) call write_collection(run, self%stem, error)
+    if (self%vtk .and. .not. allocated(error)) &
+      call write_collection(self%stem, pack(self%case%row%subcase, self%case%row%has_answer), error)
 
   contains
 
@@ -266,8 +272,14 @@ contains
   !> Remove what an earlier run has left, also where this one is stopped, or has nothing to say.
   subroutine remove_results(stem)
     character(len=*), intent(in) :: stem   !! path of the files, without their suffixes
+    integer, allocatable :: drawn(:)       ! load cases
     integer :: i
 
+    drawn = collected(stem)
+    do i = 1, size(drawn)
+      call remove_file(stem//'.case'//text_of(drawn(i))//'.vtu')
+      call remove_file(stem//'.case'//text_of(drawn(i))//'.contact.vtu')
+    end do
     do i = 1, size(result_files)
       call remove_file(stem//trim(result_files(i)%suffix))
     end do

@@ -17,7 +17,7 @@ module epcont_report_vtk
   use epcont_result_contact_line, only: contact_line, find_contact_line
   implicit none
   private
-  public :: write_collection, write_vtk
+  public :: collected, write_collection, write_vtk
 
   !> Kinds of cells (vtkCellType.h).
   integer, parameter :: vtk_vertex = 1, vtk_line = 3
@@ -28,6 +28,9 @@ module epcont_report_vtk
     integer, allocatable :: last(:)     !! of the points of each cell [cells]
     integer, allocatable :: point(:)    !! of one cell after the other, counted from 1
   end type vtk_cells
+
+  !> Begins the line of a load case in DECK.pvd.
+  character(len=*), parameter :: data_set = '<DataSet timestep="'
 
 contains
 
@@ -232,13 +235,12 @@ contains
     cells%point = [segment(:, :segments), alone]
   end function cells_along
 
-  !> DECK.pvd: the files of all load cases, which ParaView steps through.
-  subroutine write_collection(run, stem, error)
-    type(run_results), intent(in) :: run                  !! what is known of the run
+  !> DECK.pvd: the files of load cases, which ParaView steps through.
+  subroutine write_collection(stem, id, error)
     character(len=*), intent(in) :: stem                  !! path of the files, without their suffixes
+    integer, intent(in) :: id(:)                          !! of the cases
     type(error_type), allocatable, intent(out) :: error   !! the file cannot be written
     type(text_file) :: file
-    character(len=:), allocatable :: id
     integer :: k
 
     call new_text_file(stem//'.pvd', file, error)
@@ -246,13 +248,33 @@ contains
     call file%line('<?xml version="1.0"?>')
     call file%line('<VTKFile type="Collection" version="1.0">')
     call file%line('<Collection>')
-    do k = 1, size(run%deck%subcase)
-      id = text_of(run%deck%subcase(k)%id)
-      call file%line('<DataSet timestep="'//id//'" file="'//stem(index(stem, '/', back=.true.) + 1:)// &
-                     '.case'//id//'.vtu"/>')
+    do k = 1, size(id)
+      call file%line(data_set//text_of(id(k))//'" file="'//stem(index(stem, '/', back=.true.) + 1:)// &
+                     '.case'//text_of(id(k))//'.vtu"/>')
     end do
     call file%line('</Collection>')
     call file%line('</VTKFile>')
     call file%finish(error)
   end subroutine write_collection
+
+  !> The load cases that an earlier run has left in DECK.pvd; none where there is no such file.
+  function collected(stem) result(id)
+    character(len=*), intent(in) :: stem   !! path of the files, without their suffixes
+    integer, allocatable :: id(:)
+    character(len=80) :: line
+    integer :: at, status, unit
+
+    allocate (id(0))
+    open (newunit=unit, file=stem//'.pvd', status='old', action='read', iostat=status)
+    if (status /= 0) return
+    do
+      read (unit, '(a)', iostat=status) line
+      if (status /= 0) exit
+      if (index(line, data_set) /= 1) cycle
+      line = line(len(data_set) + 1:)
+      read (line(:scan(line, '"') - 1), '(i20)', iostat=status) at
+      if (status == 0) id = [id, at]
+    end do
+    close (unit)
+  end function collected
 end module epcont_report_vtk

@@ -141,6 +141,26 @@ class LoadCases(unittest.TestCase):
         touching = [row for row in tables["contact"] if row["status"] == "touching"]
         self.assertEqual({row["subcase"] for row in touching}, {"1", "3"})
 
+    def test_files_of_an_earlier_run(self):
+        """What ParaView steps through is what has an answer; the next run of the deck, with other cases or none, leaves nothing of it."""
+        cards, loads = bulk(INPUT / "hertz/hertz44_elastic.dat")
+        cases = f"SUBCASE 4\nLOAD = {loads}\nSUBCASE 7\nLOAD = 99\nBEGIN BULK\nLOAD,99,-1.0,1.0,{loads}\n{cards}"
+        with tempfile.TemporaryDirectory() as folder:
+            deck = pathlib.Path(folder) / "deck.dat"
+
+            def vtk(text):
+                deck.write_text(text)
+                subprocess.run([PROGRAM, deck, "--vtk", "--quiet"], capture_output=True, cwd=folder, check=False)
+                return sorted(path.name for path in deck.parent.glob("*.vtu"))
+
+            self.assertEqual(vtk(cases), ["deck.case4.contact.vtu", "deck.case4.vtu"])
+            self.assertEqual(re.findall('file="(.*)"', deck.with_suffix(".pvd").read_text()), ["deck.case4.vtu"])
+            row = list(csv.DictReader(deck.with_suffix(".cases.csv").read_text().splitlines()))[1]
+            self.assertEqual([row["approach"], row["equilibrium_residual"], row["mesh_error_energy_norm"], row["mesh_error_max_pressure"]], [""] * 4)
+            self.assertEqual(vtk(cases.replace("SUBCASE 4", "SUBCASE 5")), ["deck.case5.contact.vtu", "deck.case5.vtu"])
+            self.assertEqual(vtk(f"BEGIN BULK\n{cards}".replace("LOAD,99", "$")), ["deck.contact.vtu", "deck.vtu"])
+            self.assertFalse(deck.with_suffix(".pvd").exists())
+
 
 if __name__ == "__main__":
     unittest.main()
