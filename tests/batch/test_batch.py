@@ -51,6 +51,20 @@ class Whole(Case):
         self.assertIn("\n  c_rejected.dat: rejected: c_rejected.dat:77:1-4: the body", run.stdout)
         self.assertIn("\n  missing.dat: refused: no such file", run.stdout)
 
+    def test_load_cases(self):
+        """A row a case; a deck without any has one, without a number."""
+        cards = SMALL.read_text().split("BEGIN BULK")[1]
+        (self.place / "cases.dat").write_text(f"SUBCASE 7\nLOAD = 1\nSUBCASE 3\nLOAD = 99\nBEGIN BULK\nLOAD,99,-1.0,1.0,1{cards}")
+        self.decks("plain.dat")
+        for options in [], ["--one-table"]:
+            with self.subTest(options):
+                run = self.run_it(1, "cases.dat", "plain.dat", "-o", "out", *options)
+                rows = self.table("out")
+                self.assertEqual([(row["subcase"], row["status"]) for row in rows], [("7", "valid"), ("3", "no equilibrium"), ("", "valid")])
+                self.assertEqual([row["p_max"] == rows[2]["p_max"] for row in rows], [True, False, True])
+                self.assertIn("2 decks, 3 load cases in ", run.stdout)
+                self.assertIn("cases.dat SUBCASE 3: no equilibrium: the body of GRID 1 moves off", run.stdout)
+
     def test_figures_are_those_of_the_summary(self):
         self.decks("a.dat")
         self.run_it(0, "a.dat", "-o", "out")

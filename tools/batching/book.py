@@ -102,12 +102,14 @@ class Book:
             lost = plan.get("lost", {}).get(deck.place)
             if lost and row["status"] in (NOT_RUN, KILLED):
                 row = {**row, "status": "lost", "message": lost}
-            found += [(number, {**row, **values}) for number, values in deck.rows or [(0, {})]]
+            cases = row.get("cases", [{}])   # load cases
+            found += [(number, {**row, **case, **values}) for number, values in deck.rows or [(0, {})] for case in cases]
         return [row for _, row in sorted(found, key=lambda each: each[0])]
 
     def write_table(self, plan, ends):
         rows, first = self.rows(plan, ends), plan["decks"][0].rows
-        columns = COLUMNS[:1] + (list(first[0][1]) if first else []) + COLUMNS[1:]
+        cases = ["subcase"] if any("subcase" in row for row in rows) else []
+        columns = COLUMNS[:1] + cases + (list(first[0][1]) if first else []) + COLUMNS[1:]
         columns += dict.fromkeys(key for row in rows for key in row if key.startswith(SUMMARY) and key not in columns)
         text = io.StringIO()
         table = csv.writer(text, lineterminator="\n")

@@ -4,8 +4,6 @@ import os
 import re
 import signal
 
-import tables
-
 COLUMNS = ["deck", "status", "exit_status", "message", "seconds", "memory_MB", "nodes", "p_max", "p_max_is", "approach", "p_max_error",
            "certificate", "certificate_part", "warnings", "first_warning"]
 #: With --one-table: what stands before a figure of the summary, and those that have a column already.
@@ -26,17 +24,36 @@ def row_of(deck, stem, ended, one_table=False):
     row = dict.fromkeys(COLUMNS, "")
     row.update(deck=deck.path, exit_status=ended.code if ended.code >= 0 else "",
                seconds=f"{ended.seconds:.3f}", memory_MB=f"{ended.memory / 1024:.1f}" if ended.memory else "")
-    listing, summary = read_text(stem + ".lst"), read_summary(stem + ".summary.csv")
-    row["status"], row["message"] = judge(ended, listing, summary)
+    listing, cases = read_text(stem + ".lst"), read_summary(stem + ".summary.csv")
+    words = [summary.get("status", "") for summary in cases.values()] or [""]
+    row["status"], row["message"] = judge(ended, listing, next((word for word in words if word != "valid"), "valid"))
     if row["status"] in ANSWERED:
-        row.update(figures(listing, summary))
-        if one_table:
-            row.update((f"{SUMMARY}{key}", value) for key, value in summary.items() if key not in TAKEN)
+        found = [case_row(case, listing, summary, ended, one_table) for case, summary in cases.items()]
+        row.update({"cases": found} if len(cases) > 1 else found[0])
     return row
 
 
-def judge(ended, listing, summary):
-    """Status and message."""
+def case_row(case, listing, summary, ended, one_table):
+    """The columns of a load case; `case`: its number, empty where the deck has not several."""
+    row = {}
+    if case:
+        row = {"subcase": case, "status": summary.get("status", ""),
+               "message": first_fault("\n".join(line for line in ended.said.splitlines() if f" SUBCASE {case}: " in line))}
+        listing = part_of(listing, case)
+    row.update(figures(listing, summary))
+    if one_table:
+        row.update((f"{SUMMARY}{key}", value) for key, value in summary.items() if key not in TAKEN)
+    return row
+
+
+def part_of(listing, case):
+    """What a listing says of all load cases, and of one."""
+    parts = re.split(r"^(?=SUBCASE \d+$)", listing, flags=re.MULTILINE)
+    return parts[0] + next((part for part in parts[1:] if part.startswith(f"SUBCASE {case}\n")), "")
+
+
+def judge(ended, listing, word):
+    """Status and message; `word`: the status of a summary, of several load cases that of the first that is not valid."""
     said = first_fault(ended.said)
     if ended.limit:
         return "timed out", f"no end within {ended.limit:g} s"
@@ -52,7 +69,6 @@ def judge(ended, listing, summary):
         return "refused", said
     if ended.code not in (0, 1, 4):
         return "internal error", said or f"exit status {ended.code}"
-    word = summary.get("status", "")
     if not whole(listing, word) or (word == "valid") != (ended.code == 0):
         return "incomplete", f"exit status {ended.code} without a whole listing" + (f": {said}" if said else "")
     return word, said
@@ -127,15 +143,18 @@ def number(text):
 
 
 def read_summary(path):
-    """Values by key. Few values are words that a comma could be in; the others need no reader of tables, which is slow."""
-    text = read_text(path)
-    if '"' not in text:
-        rows = [line.split(",") for line in text.splitlines()[1:]]
-        return {row[0]: row[1] for row in rows if len(row) > 1}
+    """Values by key, by load case; the number of the only one is empty. Few values are words that a comma could be in; the others need no
+    reader of tables, which is slow."""
+    text, cases = read_text(path), {}
     try:
-        return tables.summary(path)
-    except (OSError, csv.Error):
+        rows = [line.split(",") for line in text.splitlines()] if '"' not in text else list(csv.reader(text.splitlines()))
+    except csv.Error:
         return {}
+    several = bool(rows) and rows[0][0] == "subcase"
+    for row in rows[1:]:
+        if len(row) > several + 1:
+            cases.setdefault(row[0] if several else "", {})[row[several]] = row[several + 1]
+    return cases
 
 
 def read_text(path):
