@@ -25,17 +25,20 @@ from deck import KINDS, DeckError
 from solve import NoEquilibrium, solve
 
 
-def read(path):
+def read(path, case):
+    """Rows of a load case, of all where there are not several."""
+    if not path.exists():
+        return []
     with open(path, newline="", encoding="ascii") as file:
-        return list(csv.DictReader(file))
+        return [row for row in csv.DictReader(file) if case is None or row["subcase"] == str(case)]
 
 
-def compare(found, directory, stem):
+def compare(found, directory, stem, case):
     """(kind, relative difference, where) of every kind of number, and the faults of structure."""
     worst, faults, pieces = {}, [], {}
     for name, kinds in KINDS.items():
         header, rows = found[name]
-        theirs = {row[header[0]]: row for row in read(directory / f"{stem}.{name}.csv")}
+        theirs = {row[header[0]]: row for row in read(directory / f"{stem}.{name}.csv", case)}
         if {str(row[0]) for row in rows} != set(theirs):
             faults.append(f"{name}: not the same {header[0]}s")
             continue
@@ -53,7 +56,7 @@ def compare(found, directory, stem):
         if name == "elements":
             off = [row[0] for row in rows if theirs[str(row[0])]["state"] != row[10]]
             faults += [f"element {element}: elastic in one, plastic in the other" for element in off]
-    summary = {row["key"]: row["value"] for row in read(directory / f"{stem}.summary.csv")}
+    summary = {row["key"]: row["value"] for row in read(directory / f"{stem}.summary.csv", case)}
     for key, value, _ in found["summary"][1]:
         kind = {"max_pressure": "pressure", "total_contact_force": "force", "max_equivalent_stress": "stress",
                 "max_displacement": "length"}.get(key, "length" if key.startswith("approach") else None)
@@ -86,6 +89,20 @@ def tightened(path, place):
     return copy
 
 
+def differs(path, place, case, found, tolerance):
+    """Do the two differ in a load case? Says by how much."""
+    name = f"{path}" + (f" SUBCASE {case}" if case is not None else "")
+    if found is None:
+        answered = case is not None and ["valid"] == [row["value"] for row in read(place / f"{path.stem}.summary.csv", case) if row["key"] == "status"]
+        print(f"{name}: " + ("answered there, not here" if answered else "both refuse"))
+        return answered
+    worst, faults = compare(found, place, path.stem, case)
+    wrong = [f"{kind} {value:.1e} at {where}" for kind, (value, where) in worst.items() if not value <= tolerance]
+    print(f"{name}: " + ("; ".join(faults[:3] + wrong) if faults or wrong else
+                         ", ".join(f"{kind} {value:.0e}" for kind, (value, _) in worst.items())))
+    return bool(faults or wrong)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("program", type=pathlib.Path)
@@ -97,25 +114,17 @@ def main():
         with tempfile.TemporaryDirectory() as place:
             run = subprocess.run([options.program.resolve(), tightened(path, place), "-o", place, "--tables", "all"], capture_output=True,
                                  text=True)
-            expected = 0
             try:
-                found, _ = solve(path)
-            except NoEquilibrium:
-                expected = 1
-            except DeckError:
-                expected = 2
+                cases = list(solve(path))
+            except DeckError as error:
+                cases = [(None, None, error)]
+            expected = max(0 if found else 1 if isinstance(problem, NoEquilibrium) else 2 for _, found, problem in cases)
             if run.returncode != expected:
                 print(f"{path}: exit status {run.returncode}, expected {expected}\n{run.stdout}{run.stderr}")
                 bad += 1
                 continue
-            if expected:
-                print(f"{path}: both refuse ({expected})")
-                continue
-            worst, faults = compare(found, pathlib.Path(place), path.stem)
-        wrong = [f"{kind} {value:.1e} at {where}" for kind, (value, where) in worst.items() if not value <= options.tolerance]
-        print(f"{path}: " + ("; ".join(faults[:3] + wrong) if faults or wrong else
-                             ", ".join(f"{kind} {value:.0e}" for kind, (value, _) in worst.items())))
-        bad += bool(faults or wrong)
+            for case, found, _ in cases:
+                bad += differs(path, pathlib.Path(place), case, found, options.tolerance)
     return 1 if bad else 0
 
 

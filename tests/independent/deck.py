@@ -1,4 +1,4 @@
-"""A reader of plane decks that has nothing in common with epcont's: small, large and free fields, INCLUDE, one case.
+"""A reader of plane decks that has nothing in common with epcont's: small, large and free fields, INCLUDE, load cases.
 
 It trusts the deck: whatever it does not understand raises DeckError, without place or remedy.
 """
@@ -8,8 +8,8 @@ import re
 from dataclasses import dataclass, field
 
 KNOWN = {"GRID", "CTRIA3", "CTRIA6", "CQUAD4", "CQUAD8", "CTRAX3", "CTRAX6", "PSHELL", "PSOLID", "MAT1", "SPC", "SPC1", "FORCE", "PLOADX1",
-         "RBE2", "SUPORT", "CORD2R", "CGAP", "PGAP", "CBAR", "PARAM", "SPCADD", "LOAD", "MATS1", "TABLES1", "BLSEG", "BCONP", "TEMP", "TEMPD",
-         "GRAV", "RFORCE"}
+         "RBE2", "SUPORT", "CORD2R", "CGAP", "PGAP", "CBAR", "PARAM", "SPCADD", "LOAD", "MATS1", "TABLES1", "BLSEG", "BCONP", "SPCD", "TEMP",
+         "TEMPD", "GRAV", "RFORCE"}
 
 #: Columns of the tables, by what their largest is the measure of.
 KINDS = {"contact": {"force": ["force"], "length": ["initial_gap", "gap"], "pressure": ["pressure"], "normal": ["nx", "ny"],
@@ -27,11 +27,47 @@ class DeckError(Exception):
 
 @dataclass
 class Deck:
+    """`case`: what case control says of the one that it is of, by statement; `cases`: of all, where there are several."""
     case: dict = field(default_factory=dict)
     cards: list = field(default_factory=list)
+    cases: list = field(default_factory=list)
 
     def of(self, name):
         return [card for card in self.cards if card[0] == name]
+
+    def by_case(self):
+        """A deck of each load case, with the contacts that it has."""
+        for case in self.cases or [self.case]:
+            contact = case.get("BCON", "ALL")
+            keep = [card for card in self.cards
+                    if contact == "ALL" or card[0] not in ("CGAP", "BCONP") or card[0] == "BCONP" and card[1] == str(contact)]
+            yield Deck(case, keep)
+
+    @property
+    def number(self):
+        """Of the load case; None where there are not several, and None is written."""
+        return self.case.get("SUBCASE") if self.case.get("several") else None
+
+    def loads(self):
+        """Factors of the sets of loads, by their ids."""
+        sets = [int(card[1]) for name in ("FORCE", "PLOADX1", "SPCD", "GRAV", "RFORCE", "LOAD") for card in self.of(name)]
+        chosen = self.case.get("LOAD", 0 if "several" in self.case else next(iter(sets), 0))
+        if not chosen and len(set(sets)) > 1 and "several" not in self.case:
+            raise DeckError("several sets of loads and no choice")
+        factors = {}
+        for card in self.of("LOAD"):
+            if int(card[1]) == chosen:
+                for i in range(3, len(card) - 1, 2):
+                    if card[i]:
+                        factors[int(card[i + 1])] = factors.get(int(card[i + 1]), 0.0) + real(card[2]) * real(card[i])
+        return factors or {chosen: 1.0}
+
+    def supports(self):
+        """The set of supports."""
+        sets = {int(card[1]): None for card in self.of("SPC") + self.of("SPC1")}
+        if not self.case.get("any SPC", "SPC" in self.case) and len(sets) > 1:
+            raise DeckError("several sets of supports and no choice")
+        return self.case.get("SPC", 0 if self.case.get("any SPC") else next(iter(sets), 0))
 
     def moduli(self):
         """(E, nu) by MAT1."""
@@ -91,14 +127,19 @@ class Deck:
                               axis * real(at(card, 4)), axis * real(at(card, 9))))
         return found
 
-    def held(self, chosen):
-        """(node, digits, value) of GRID and of the SPC1 and SPC of the set."""
-        found = [(int(card[1]), at(card, 8), 0.0) for card in self.of("GRID")]
+    def held(self):
+        """(node, digits, value) of GRID, of the SPC1 and SPC of the case, and of its SPCDs, which stand in place of these."""
+        found, chosen, moved = [(int(card[1]), at(card, 8), 0.0) for card in self.of("GRID")], self.supports(), {}
         for card in self.of("SPC1") + self.of("SPC"):
             if int(card[1]) == chosen:
                 found += ([(node, card[2], 0.0) for node in ids(card[3:])] if card[0] == "SPC1"
                           else [(int(card[i]), card[i + 1], real(at(card, i + 2))) for i in (2, 5) if at(card, i)])
-        return found
+        for card in self.of("SPCD"):
+            factor = self.loads().get(int(card[1]), 0.0)
+            for node, digit, value in [(int(card[i]), digit, real(at(card, i + 2))) for i in (2, 5) if at(card, i) for digit in card[i + 1]]:
+                if factor:
+                    moved[node, digit] = moved.get((node, digit), 0.0) + factor * value
+        return found + [(node, digit, value) for (node, digit), value in moved.items()]
 
     def frames(self):
         """x-axes in the plane, by CORD2R; that of the basic system is 0."""
@@ -143,10 +184,7 @@ def read(path):
     lines = lines[:lines.index("ENDDATA")]
     begin = [i for i, line in enumerate(lines) if line.split()[:2] == ["BEGIN", "BULK"]]
     if begin:
-        for line in lines[:begin[0]]:
-            match = re.match(r"\s*(SPC|LOAD|TEMP)(?:[A-Z]*)(?:\((?:LOAD|BOTH)\))?\s*=\s*(\d+)\s*$", line)
-            if match:
-                deck.case[match[1]] = int(match[2])
+        take_case_control(deck, lines[:begin[0]])
         lines = lines[begin[0] + 1:]
     for line in lines:
         name, data = fields_of(line)
@@ -158,6 +196,24 @@ def read(path):
         if card[0] not in KNOWN:
             raise DeckError(f"unknown card {card[0]}")
     return deck
+
+
+def take_case_control(deck, lines):
+    """What stands above the first SUBCASE holds for all."""
+    now = deck.case
+    for line in lines:
+        match = re.match(r"\s*(?:(SPC|LOAD)|(TEMP|BCON|SUBC)[A-Z]*)(?:\((?:LOAD|BOTH)\))?[\s=]\s*=?\s*(\d+)\s*$", line)
+        off = re.match(r"\s*BCON[A-Z]*[\s=]\s*=?\s*(ALL|NONE)\s*$", line)
+        if match and match[2] == "SUBC":
+            now = dict(deck.case, SUBCASE=int(match[3]))
+            deck.cases.append(now)
+        elif match or off:
+            now["BCON" if off else match[1] or match[2]] = off[1] if off else int(match[3])
+    if len(deck.cases) > 1:
+        for case in deck.cases:
+            case["several"], case["any SPC"] = True, any("SPC" in other for other in deck.cases)
+    elif deck.cases:
+        deck.case, deck.cases = deck.cases[0], []
 
 
 def real(text, default=0.0):

@@ -139,20 +139,12 @@ class Model:
             total = total + sp.csr_matrix((values.ravel(), (rows.ravel(), columns.ravel())), shape=(n, n))
         return total
 
-    def chosen(self, kind, cards):
-        sets = {int(card[1]) for card in cards}
-        if kind in self.deck.case:
-            return self.deck.case[kind]
-        if len(sets) > 1:
-            raise DeckError(f"several {kind} sets and no choice")
-        return next(iter(sets), None)
-
     def freedoms(self):
         """u = tie @ v + held: v the freedoms left."""
         n = 2 * len(self.node)
         held = np.full(n, np.nan)
         master = np.arange(n)
-        for g, digits, value in self.deck.held(self.chosen("SPC", self.deck.of("SPC") + self.deck.of("SPC1"))):
+        for g, digits, value in self.deck.held():
             for digit in set(digits) & {"1", "2"}:
                 held[2 * self.row[g] + int(digit) - 1] = value
         for card in self.deck.of("RBE2"):
@@ -213,22 +205,21 @@ class Model:
 
     def load(self):
         self.force = np.zeros(2 * len(self.node))
-        cards = self.deck.of("FORCE") + self.deck.of("PLOADX1")
-        chosen = self.chosen("LOAD", cards + self.deck.of("GRAV") + self.deck.of("RFORCE"))
-        loads, density = self.deck.body_loads(chosen, lambda node: self.x[self.row[node]]), self.deck.densities()
-        for kind, members, section in zip(self.kind, self.members, self.property) if loads else ():
-            forces = body_forces(kind, self.x[members].tolist(), self.section[section][0], density[section], loads)
-            for row, force in zip(members, forces):
-                self.force[2 * row:2 * row + 2] += force
-        for card in cards:
-            if int(card[1]) != chosen:
-                continue
+        factors, density = self.deck.loads(), self.deck.densities()
+        for chosen, factor in factors.items():
+            loads = self.deck.body_loads(chosen, lambda node: self.x[self.row[node]])
+            for kind, members, section in zip(self.kind, self.members, self.property) if loads else ():
+                forces = body_forces(kind, self.x[members].tolist(), self.section[section][0], density[section], loads)
+                for row, force in zip(members, forces):
+                    self.force[2 * row:2 * row + 2] += factor * np.array(force)
+        for card in self.deck.of("FORCE") + self.deck.of("PLOADX1"):
+            factor = factors.get(int(card[1]), 0.0)
             if card[0] == "FORCE":
                 i = 2 * self.row[int(card[2])]
-                self.force[i:i + 2] += real(card[4]) * np.array([real(at(card, 5)), real(at(card, 6))])
+                self.force[i:i + 2] += factor * real(card[4]) * np.array([real(at(card, 5)), real(at(card, 6))])
             else:
                 pa = real(card[3])
                 ends = self.row[int(card[5])], self.row[int(card[6])]
                 side = self.boundary[frozenset(ends)]
                 for node, c, force in edge_forces(side, self.x, ends[0], (pa, real(card[4], pa)), real(at(card, 7))):
-                    self.force[2 * node + c] += force
+                    self.force[2 * node + c] += factor * force

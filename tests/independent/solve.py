@@ -235,6 +235,8 @@ def tables(problem, v, force, gap, touching):
                ["max_equivalent_stress", float(mises.max(initial=0.0)), ""],
                ["max_displacement", float(np.hypot(*u.T).max()), ""]]
     for node, digit in model.support:
+        if model.is_held[2 * model.row[node] + digit - 1]:
+            continue
         summary.append([f"approach_{node}_{digit}", u[model.row[node], digit - 1], ""])
     return {"summary": (["key", "value", "unit"], summary),
             "contact": ("pair ga gb x y nx ny initial_gap force pressure gap status".split(), contact),
@@ -247,8 +249,37 @@ def text(value):
 
 
 def solve(path):
-    problem = Problem(Model(read(path)))
-    return tables(problem, *problem.answer()), problem
+    """(number of the load case, its tables, its problem), or in their place None and why not, of each case of a deck."""
+    for deck in read(path).by_case():
+        try:
+            problem = Problem(Model(deck))
+            yield deck.number, tables(problem, *problem.answer()), problem
+        except (DeckError, NoEquilibrium) as error:
+            yield deck.number, None, error
+
+
+def say(name, found, problem):
+    """A line of what came of a load case; its exit status."""
+    if found is None:
+        print(f"{name}: {'deck' if isinstance(problem, DeckError) else 'no equilibrium'}: {problem}")
+        return 2 if isinstance(problem, DeckError) else 1
+    summary = {row[0]: row[1] for row in found["summary"][1]}
+    last = [row for row in found["contact"][1] if row[11] == "touching"]
+    print(f"{name}: p_max {summary.get('max_pressure', 0.0):.6g}, " +
+          ", ".join(f"{key} {value:.6g}" for key, value in summary.items() if key.startswith("approach")) +
+          f", {len(last)} of {len(found['contact'][1])} touching, {problem.exchanges} factorizations")
+    return 0
+
+
+def write(place, stem, cases):
+    """The tables of all load cases that are answered, with a column that tells them apart where there are several."""
+    place.mkdir(parents=True, exist_ok=True)
+    for name in cases[0][1]:
+        with open(place / f"{stem}.{name}.csv", "w", newline="", encoding="ascii") as file:
+            writer = csv.writer(file, lineterminator="\n")
+            writer.writerow(["subcase"] * (cases[0][0] is not None) + list(cases[0][1][name][0]))
+            for number, found in cases:
+                writer.writerows([[str(number)] * (number is not None) + [text(value) for value in row] for row in found[name][1]])
 
 
 def main():
@@ -258,28 +289,15 @@ def main():
     options = parser.parse_args()
     worst = 0
     for path in options.decks:
+        cases = []
         try:
-            found, problem = solve(path)
+            for number, found, problem in solve(path):
+                worst = max(worst, say(path.stem + (f" SUBCASE {number}" if number is not None else ""), found, problem))
+                cases += [(number, found)] if found else []
         except DeckError as error:
-            print(f"{path.stem}: deck: {error}")
-            worst = max(worst, 2)
-            continue
-        except NoEquilibrium as error:
-            print(f"{path.stem}: no equilibrium: {error}")
-            worst = max(worst, 1)
-            continue
-        summary = {row[0]: row[1] for row in found["summary"][1]}
-        last = [row for row in found["contact"][1] if row[11] == "touching"]
-        print(f"{path.stem}: p_max {summary.get('max_pressure', 0.0):.6g}, " +
-              ", ".join(f"{key} {value:.6g}" for key, value in summary.items() if key.startswith("approach")) +
-              f", {len(last)} of {len(found['contact'][1])} touching, {problem.exchanges} factorizations")
-        if options.output:
-            options.output.mkdir(parents=True, exist_ok=True)
-            for name, (header, rows) in found.items():
-                with open(options.output / f"{path.stem}.{name}.csv", "w", newline="", encoding="ascii") as file:
-                    writer = csv.writer(file, lineterminator="\n")
-                    writer.writerow(header)
-                    writer.writerows([[text(value) for value in row] for row in rows])
+            worst = max(worst, say(path.stem, None, error))
+        if options.output and cases:
+            write(options.output, path.stem, cases)
     return worst
 
 

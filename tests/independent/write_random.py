@@ -127,10 +127,33 @@ class Scene:
         self.pairs += 1
         self.add("CGAP", 100000 + self.pairs, 900, a, b, "", "", "", 1)
 
+    def cases(self, chance):
+        """Several load cases in half of all scenes, in any order of their numbers: sets of loads times factors, one with displacements
+        of what is held; other supports, which hold the SUPORT freedoms too, with contact or without. What case control says."""
+        if chance.random() < 0.5:
+            return []
+        held = [line for k, line in enumerate(self.lines) if line.startswith("SPC1,1,")
+                or line.startswith(",") and [own for own in self.lines[:k] if own[0] != ","][-1].startswith("SPC1,1,")]
+        self.lines += [line.replace("SPC1,1,", "SPC1,2,") for line in held]
+        for card in [line.split(",") for line in self.lines if line.startswith("SUPORT")]:
+            self.lines += [f"SPC1,2,{digit},{node}" for node, digit in zip(card[1::2], card[2::2])]
+        forces = [line.replace("FORCE,1,", "FORCE,2,") for line in self.lines if line.startswith("FORCE,1,")]
+        self.lines += forces
+        digits, node = next(line for line in held if line.startswith(f"SPC1,1,{2 if self.rings else ''}")).split(",")[2:4]
+        self.add("SPCD", 3, node, digits[0], chance.uniform(-1e-4, 1e-4))
+        statements = []
+        for number in chance.sample(range(1, 100), chance.randint(2, 4)):
+            self.add("LOAD", 1000 + number, chance.choice([1.0, 0.5]), chance.uniform(0.1, 1.2), 1,
+                     *chance.choice([(), (chance.uniform(-0.5, 0.5), 2 if forces else 1), (chance.uniform(0.5, 1.0), 3)]))
+            statements += [f"SUBCASE {number}", f"LOAD = {1000 + number}", f"SPC = {chance.choice([1, 1, 2]) if statements else 1}"]
+            statements += ["BCONTACT = NONE"] * (statements[-1] == "SPC = 2" and chance.random() < 0.5)
+        return statements
+
     def text(self):
         if self.heated:
             self.warm()
-        return "\n".join(["TEMPERATURE(LOAD) = 7"] * self.heated + ["BEGIN BULK"] + self.lines + ["ENDDATA", ""])
+        cases = self.cases(random.Random(self.chance.random()))
+        return "\n".join(["TEMPERATURE(LOAD) = 7"] * self.heated + cases + ["BEGIN BULK"] + self.lines + ["ENDDATA", ""])
 
 
 def places(rng, low, high, parts, uneven=0.4):

@@ -249,7 +249,7 @@ def check(scene, tables, tolerance, found=None):
     for c in scene.deck.of("SUPORT"):
         for i in range(1, len(c) - 1, 2):
             for digit in (c[i + 1] if c[i] else ""):
-                if digit in "12":
+                if digit in "12" and (integer(c[i]), int(digit) - 1) not in scene.held:
                     key = f"approach_{integer(c[i])}_{digit}"
                     ours = float(tables.nodes[int(c[i])]["ux" if digit == "1" else "uy"])
                     told = tables.summary.get(key, "nan")

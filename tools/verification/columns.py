@@ -5,6 +5,7 @@ rounding makes it the sum of, so that a small one that is wrong is found, too.
 """
 import math
 
+from tables import rows as table_rows
 from verification.material import von_mises
 from verification.run import number
 from verification.scene import node_of
@@ -227,6 +228,8 @@ def check_summary(report, scene, tables, found, tolerance):
         good = told == str(ours) if isinstance(ours, int) else told != "missing" and abs(number(told, tables.path("summary"), key) - ours) <= tolerance * abs(ours)
         report.line(key, ours, told, good)
     check_highest(report, tables, tolerance)
+    if tables.case is not None:
+        check_case(report, tables)
     if tables.history:
         last = tables.history[max(tables.history)]
         for key in ("pairs_in_contact", "plastic_elements"):
@@ -251,6 +254,17 @@ def check_summary(report, scene, tables, found, tolerance):
     report.line("status", "valid", summary.get("status", "missing"), summary.get("status") == "valid")
 
 
+def check_case(report, tables):
+    """The row of the table of load cases says what the summary says, and the zone with the largest pressure."""
+    rows = [row for row in table_rows(tables.path("cases")) if row["subcase"] == str(tables.case)]
+    row = rows[0] if len(rows) == 1 else {}
+    leading = [zone for zone in tables.zones.values() if zone["max_pressure"] == tables.summary.get("max_pressure")]
+    wanted = {"approach": next((value for key, value in tables.summary.items() if key.startswith("approach_")), ""), **tables.summary}
+    wrong = [key for key, told in row.items() if key != "subcase" and told != wanted.get(key, "")
+             and not (key == "half_width" and (told == "" or told in [zone[key] for zone in leading]))]
+    report.line("cases.csv", len(rows), " ".join(wrong), len(rows) == 1 and not wrong)
+
+
 def check_highest(report, tables, tolerance):
     """The element with the largest stress, of equals either, and where in it that is."""
     if not any("max_x" in own for own in tables.elements.values()):
@@ -268,7 +282,7 @@ def not_read(tables):
     """Lines that name what nothing here looks at, and what is held to a bound only."""
     keys = [key for key in tables.summary if key not in UNITS and not key.startswith("approach_")]
     files = sorted(path.name for path in tables.directory.glob(f"{glob_safe(tables.stem)}.*")
-                   if path.name not in {tables.path(name).name for name in ("summary", "nodes", "elements", "contact", "zones", "bodies", "history")})
+                   if path.name not in {tables.path(name).name for name in ("summary", "nodes", "elements", "contact", "zones", "bodies", "history", "cases")})
     lines = [f"not read: {name}.csv {', '.join(columns)}" for name, columns in (("summary", keys), *tables.unread.items()) if columns]
     if len(tables.history) > 1:
         lines.append("not read: history.csv pairs_in_contact, plastic_elements, load_factor, but of its last row")

@@ -29,10 +29,11 @@ class TableFault(ValueError):
 
 
 class Tables:
-    """Rows of each table by number; `summary`: values by key, `units` likewise; `unread`: columns that are not known here, by table."""
+    """Rows of each table by number; `summary`: values by key, `units` likewise; `unread`: columns that are not known here, by table.
+    `case`: number of the load case that they are of; None where the deck has not several."""
 
-    def __init__(self, directory, stem):
-        self.directory, self.stem, self.unread = pathlib.Path(directory), stem, {}
+    def __init__(self, directory, stem, case=None):
+        self.directory, self.stem, self.case, self.unread = pathlib.Path(directory), stem, case, {}
         self.summary, self.units = self.read_summary()
         for name in COLUMNS:
             setattr(self, name, self.read(name) if name in ("nodes", "elements") or self.path(name).exists() else {})
@@ -40,9 +41,17 @@ class Tables:
     def path(self, name):
         return self.directory / f"{self.stem}.{name}.csv"
 
+    def rows(self, path):
+        """Lines and rows of the load case."""
+        for line, row in enumerate(tables.rows(path), 2):
+            if ("subcase" in row) != (self.case is not None):
+                raise TableFault(f"{path}: {'a' if self.case is None else 'no'} column subcase: the table of another deck")
+            if row.pop("subcase", None) == (None if self.case is None else str(self.case)):
+                yield line, row
+
     def read_summary(self):
         path, values, units = self.path("summary"), {}, {}
-        for line, row in enumerate(tables.rows(path), 2):
+        for line, row in self.rows(path):
             if None in row or not all(row.get(column) is not None for column in ("key", "value", "unit")):
                 raise TableFault(f"{path}:{line}: the line is cut off, or longer than the first")
             if row["key"] in values:
@@ -56,7 +65,7 @@ class Tables:
         """Rows by number; one row a number, and numbers in the columns that are some."""
         key, needed, may_be_empty, words = COLUMNS[name]
         path, found = self.path(name), {}
-        for line, row in enumerate(tables.rows(path), 2):
+        for line, row in self.rows(path):
             if None in row or None in row.values():
                 raise TableFault(f"{path}:{line}: the line is cut off, or longer than the first")
             some = [column for column in SOME.get(name, []) if column in row]
@@ -90,9 +99,10 @@ class Tables:
                 raise TableFault(f"{self.path(name)}: no such file")
 
 
-def told_tolerance(listing, least):
-    """That of the certificate in a listing: single precision has a larger one."""
-    found = re.search(r"(?m)^CERTIFICATE .*; tolerance +(\S+)\)", listing.read_text(encoding="latin-1"))
+def told_tolerance(listing, least, case=None):
+    """That of the certificate in a listing, of a load case: single precision has a larger one."""
+    text = listing.read_text(encoding="latin-1")
+    found = re.search((rf"(?ms)^SUBCASE {case}\b.*?" if case is not None else "(?m)") + r"^CERTIFICATE [^\n]*; tolerance +(\S+)\)", text)
     return max(least, float(found[1])) if found else least
 
 

@@ -70,9 +70,7 @@ class Scene:
 
     def supports(self):
         """Held directions with their displacements, and the leaders of tied ones."""
-        cards = self.deck.of("SPC1") + self.deck.of("SPC")
-        chosen = self.deck.case.get("SPC", next((int(c[1]) for c in cards), 0))
-        self.given = {(node, int(digit) - 1): value for node, digits, value in self.deck.held(chosen) for digit in set(digits) & {"1", "2"}}
+        self.given = {(node, int(digit) - 1): value for node, digits, value in self.deck.held() for digit in set(digits) & {"1", "2"}}
         self.held = set(self.given)
         self.leader = {}
         for c in self.deck.of("RBE2"):
@@ -141,27 +139,28 @@ class Scene:
 
     def loads(self):
         self.load = {}
-        cards = self.deck.of("FORCE") + self.deck.of("PLOADX1")
-        chosen = self.deck.case.get("LOAD", next((int(c[1]) for c in cards + self.deck.of("GRAV") + self.deck.of("RFORCE")), 0))
-        loads = self.deck.body_loads(chosen, self.x.get)
-        for name, nodes, section in self.element.values() if loads else ():
-            forces = body_forces(KINDS[name], [self.x[node] for node in nodes], section.thickness, section.density, loads)
-            for node, force in zip(nodes, forces):
-                for i in (0, 1):
-                    self.add(node, i, force[i])
-        for c in cards:
-            if int(c[1]) != chosen:
+        factors = self.deck.loads()
+        for chosen, factor in factors.items():
+            loads = self.deck.body_loads(chosen, self.x.get)
+            for name, nodes, section in self.element.values() if loads else ():
+                forces = body_forces(KINDS[name], [self.x[node] for node in nodes], section.thickness, section.density, loads)
+                for node, force in zip(nodes, forces):
+                    for i in (0, 1):
+                        self.add(node, i, factor * force[i])
+        for c in self.deck.of("FORCE") + self.deck.of("PLOADX1"):
+            factor = factors.get(int(c[1]), 0.0)
+            if not factor:
                 continue
             if c[0] == "FORCE":
                 for i in (0, 1):
-                    self.add(int(c[2]), i, real(c[4]) * real(at(c, 5 + i)))
+                    self.add(int(c[2]), i, factor * real(c[4]) * real(at(c, 5 + i)))
             else:
                 first, pa = int(c[5]), real(c[3])
                 side = self.side.get(frozenset((first, int(c[6]))))
                 if side is None:
                     raise DeckError(f"PLOADX1 between {first} and {c[6]}: inside a body")
                 for node, i, value in edge_forces(side, self.x, first, (pa, real(c[4], pa)), real(at(c, 7))):
-                    self.add(node, i, value)
+                    self.add(node, i, factor * value)
 
     def add(self, node, i, value):
         self.load.setdefault((node, i), []).append(value)
