@@ -10,12 +10,11 @@
 !> the flexibility, thousands, with each step: of gamma nothing is left in the answer. SUPORT freedoms have
 !> springs, too, so weak that they matter where no pair holds a body yet; each step has them where it begins.
 !>
-!> Lambda waits until the set stays, so that each step is one of that function. Where full ones run in circles
-!> they are cut where it is least along them: then each makes it less.
+!> Lambda waits until the set stays: each step is one of that function, cut where full ones run in circles.
 module epcont_linear_joined_contact
   use epcont_assembly_bodies, only: factored_bodies, force_fields, half_solved_body, prescribe
   use epcont_base_kinds, only: wp
-  use epcont_base_tolerances, only: lost_digits, negligible, no_effect
+  use epcont_base_tolerances, only: lost_digits, negligible
   use epcont_contact_equilibrium, only: find_rigid_start, rigid_start
   use epcont_contact_problem, only: contact_no_equilibrium, contact_solved, contact_stalled, new_solution
   use epcont_contact_uniqueness, only: find_free_motions
@@ -24,7 +23,7 @@ module epcont_linear_joined_contact
   use epcont_flexibility_motion_matrix, only: motion_matrix
   use epcont_linear_contact_ends, only: reach_ends
   use epcont_linear_joined_springs, only: find_springs, put_on_nodes, half_plane, of_pairs
-  use epcont_linear_line_search, only: least_at
+  use epcont_linear_line_search, only: has_settled, least_at
   use epcont_linear_load_line, only: load_line
   use epcont_linear_scene_state, only: scene_state
   use epcont_plan_planned_scene, only: planned_scene
@@ -326,14 +325,6 @@ contains
       length = least_at(max(0.0_wp, curvature), descent, pull, self%gamma*opening, opening)
     end function length_of_step
   end subroutine find_set
-
-  !> Has what steps change come to an end? The next step would change as much less, or it is rounding.
-  elemental logical function has_settled(change, before)
-    real(wp), intent(in) :: change, before   !! by the last step and the one before, of the largest
-
-    has_settled = change*merge(min(1.0_wp, change/max(before, tiny(1.0_wp))), 1.0_wp, before <= 1.0_wp) &
-                  <= negligible .or. change <= no_effect .and. change > 0.5_wp*before
-  end function has_settled
 
   !> What follows from the forces and gaps that were found: which pairs touch, and which motions are free.
   subroutine settle(self, scene, fixed_gap, state)

@@ -1,10 +1,11 @@
-!> How far to go along a step of joined bodies (`linear/joined_contact.f90`).
+!> How far to go along a step of joined bodies (`linear/joined_contact.f90`), and whether it is the last.
 module epcont_linear_line_search
   use epcont_base_bracket, only: bracket
   use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: negligible, no_effect
   implicit none
   private
-  public :: least_at
+  public :: has_settled, least_at
 
   !> A step is cut where the slope at its end is more than this part of that where it begins.
   real(wp), parameter :: flat_enough = 0.1_wp
@@ -46,4 +47,12 @@ contains
       slope = t*curvature - descent - sum(max(0.0_wp, pull - t*loss)*opening)
     end function slope
   end function least_at
+
+  !> Has what steps change come to an end? The next step would change as much less, or it is rounding.
+  elemental logical function has_settled(change, before)
+    real(wp), intent(in) :: change, before   !! by the last step and the one before, of the largest
+
+    has_settled = change*merge(min(1.0_wp, change/max(before, tiny(1.0_wp))), 1.0_wp, before <= 1.0_wp) &
+                  <= negligible .or. change <= no_effect .and. change > 0.5_wp*before
+  end function has_settled
 end module epcont_linear_line_search
