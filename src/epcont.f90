@@ -9,8 +9,8 @@ module epcont
   use epcont_base_version, only: program_version
   use epcont_contact_geometry_complete, only: complete_model
   use epcont_element_kinematics, only: axisymmetric, plane_strain, plane_stress
-  use epcont_model_arrays, only: add_elements, body_load, line_couple, named_line, new_scene, scene_type, &
-      set_pairs, set_sections, side_pressure
+  use epcont_model_arrays, only: add_elements, body_load, line_couple, linear_equation, named_line, &
+      new_scene, scene_type, set_pairs, set_sections, side_pressure, spring_type, turning_platen
   use epcont_model_controls, only: controls_type, method_auto, method_inistr, method_modsec, method_newton, &
       method_secant, precision_double, precision_mixed, precision_open, &
       precision_single, rule_auto, rule_block, rule_conry, rule_joined, solver_auto, &
@@ -27,7 +27,7 @@ module epcont
   public :: wp, program_version
   ! A scene.
   public :: scene_type, new_scene, add_elements, set_sections, set_pairs
-  public :: side_pressure, body_load, named_line, line_couple
+  public :: side_pressure, body_load, named_line, line_couple, turning_platen, linear_equation, spring_type
   public :: plane_strain, plane_stress, axisymmetric, uniaxial_curve, bilinear_curve
   ! What a deck says by PARAM.
   public :: controls_type, method_auto, method_secant, method_modsec, method_inistr, method_newton, &

@@ -16,6 +16,7 @@ module epcont_accuracy_accuracy
   use epcont_base_tolerances, only: least_difference, no_effect
   use epcont_element_kinematics, only: directions
   use epcont_linear_linear_problem, only: linear_problem
+  use epcont_model_arrays, only: angle
   use epcont_plan_planned_scene, only: planned_scene
   use epcont_result_answer, only: answer_type
   use epcont_result_contact_line, only: contact_line
@@ -312,6 +313,8 @@ contains
         end do
         do j = 1, motions
           associate (node => scene%motions%node(j), c => scene%motions%component(j))
+            is_one(j) = .false.
+            if (c == angle) cycle
             is_one(j) = abs(own(c, node)) > concentrated*on_body(c, model%body(node)) .and. &
                         followers(c, node) == 1 .and. first_element(model, node) > 0
           end associate

@@ -4,7 +4,9 @@ module epcont_assembly_bodies
   use epcont_assembly_strain_operator, only: new_strain_operator, strain_operator
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: directions
+  use epcont_linalg_assembled, only: sparse_rows
   use epcont_material_linear_law, only: linear_law
+  use epcont_model_springs, only: spring_forces
   use epcont_plan_planned_scene, only: planned_scene
   use epcont_system_threads, only: threads_over, use_one_thread_each
   implicit none
@@ -88,11 +90,13 @@ contains
     real(wp), allocatable :: prescribed(:, :)
 
     self%settlement = 0.0_wp
-    if (all(scene%model%beyond_travel == 0.0_wp)) return
+    if (all(scene%model%beyond_travel == 0.0_wp) .and. all(scene%model%platen%prescribed == 0.0_wp)) return
     allocate (prescribed(directions, scene%model%nodes), source=0.0_wp)
     call prescribe(scene, 1.0_wp, prescribed)
     self%settlement = -self%operator%nodal_forces( &
                       scene%model, self%law%increment(self%operator%strains(scene%model, prescribed, 0.0_wp)))
+    if (size(scene%model%spring) > 0) &
+      self%settlement = self%settlement - spring_forces(scene%model, prescribed)
   end subroutine settle
 
   !> A part of the prescribed displacements, put in its place; nothing else is touched.
@@ -105,8 +109,11 @@ contains
     do node = 1, scene%model%nodes
       do c = 1, directions
         leader = scene%model%leader(c, node)
-        if (scene%model%held(c, leader)) &
+        if (scene%model%sum_of(c, node) > 0) then
+          displacement(c, node) = load_factor*scene%model%prescribed_sum(c, node)
+        else if (scene%model%held(c, leader)) then
           displacement(c, node) = load_factor*scene%model%beyond_travel(c, leader)
+        end if
       end do
     end do
   end subroutine prescribe
@@ -195,7 +202,7 @@ contains
             do c = 1, directions
               associate (number => scene%numbering%equation(c, node))
                 if (number > 0) inner(number, 1) = inner(number, 1) + own(c)
-                if (number < 0) border(-number, 1) = border(-number, 1) + own(c)
+                if (number < 0) call add_tied(body%tied, -number, own(c:c), border)
               end associate
             end do
           end associate
@@ -241,7 +248,7 @@ contains
             do c = 1, directions
               associate (number => scene%numbering%equation(c, node))
                 if (number > 0) u(c, node) = merge(inner(number, 1), 0.0_wp, number >= first)
-                if (number < 0) u(c, node) = border(-number, 1)
+                if (number < 0) u(c, node) = u(c, node) + sum(tied_value(body%tied, -number, border(:, 1:1)))
               end associate
             end do
             if (axes%turn(node) > 0) u(:, node) = axes%back(node, u(:, node))
@@ -251,6 +258,33 @@ contains
       end associate
     end do
   end function finish
+
+  !> Put forces on what a tied freedom is a sum of.
+  pure subroutine add_tied(tied, row, force, border)
+    type(sparse_rows), intent(in) :: tied       !! of a body
+    integer, intent(in) :: row                  !! of the freedom
+    real(wp), intent(in) :: force(:)            !! [fields]
+    real(wp), intent(inout) :: border(:, :)     !! [border, fields]
+    integer :: e
+
+    do e = tied%start(row), tied%start(row + 1) - 1
+      border(tied%equation(e), :) = border(tied%equation(e), :) + tied%weight(e)*force
+    end do
+  end subroutine add_tied
+
+  !> Displacements of a tied freedom [fields].
+  pure function tied_value(tied, row, border) result(u)
+    type(sparse_rows), intent(in) :: tied       !! of a body
+    integer, intent(in) :: row                  !! of the freedom
+    real(wp), intent(in) :: border(:, :)        !! [border, fields]
+    real(wp) :: u(size(border, 2))
+    integer :: e
+
+    u = 0.0_wp
+    do e = tied%start(row), tied%start(row + 1) - 1
+      u = u + tied%weight(e)*border(tied%equation(e), :)
+    end do
+  end function tied_value
 
   !> Displacements of nodes of one body under several fields of forces on some of its nodes, supports at zero.
   !! All fields are solved for at once, and what is left of the estimate of the condition: so the factor is
@@ -276,7 +310,7 @@ contains
       do c = 1, directions
         associate (number => scene%numbering%equation(c, loads%node(i)))
           if (number > 0) inner(number, :fields) = inner(number, :fields) + own(c, :)
-          if (number < 0) border(-number, :fields) = border(-number, :fields) + own(c, :)
+          if (number < 0) call add_tied(scene%numbering%body(b)%tied, -number, own(c, :), border(:, :fields))
         end associate
       end do
     end do
@@ -286,7 +320,7 @@ contains
       do c = 1, directions
         associate (number => scene%numbering%equation(c, node(i)))
           if (number > 0) own(c, :) = inner(number, :fields)
-          if (number < 0) own(c, :) = border(-number, :fields)
+          if (number < 0) own(c, :) = tied_value(scene%numbering%body(b)%tied, -number, border(:, :fields))
         end associate
       end do
       call turn(node(i), .false.)

@@ -8,7 +8,7 @@ module epcont_assembly_stiffness
   use epcont_assembly_strain_operator, only: strain_operator
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: directions
-  use epcont_linalg_assembled, only: assembled_matrix
+  use epcont_linalg_assembled, only: assembled_matrix, sparse_rows
   use epcont_linalg_dense, only: cholesky_factor, cholesky_solve
   use epcont_linalg_factors, only: front_matrix, panel_matrix
   use epcont_linalg_single_factors, only: single_front_matrix => front_matrix, &
@@ -65,7 +65,7 @@ contains
     logical, allocatable :: stale(:)                 ! the equation is to be filled [-border:equations]
 
     associate (body => scene%numbering%body(b))
-      allocate (stale(-body%border:body%equations), source=.true.)
+      allocate (stale(1 - size(body%tied%start):body%equations), source=.true.)
       stale(0) = .false.
       if (.not. allocated(self%matrix)) then
         call begin()
@@ -83,6 +83,7 @@ contains
       else
         call fill(1, 1, size(body%part))
       end if
+      call add_springs()
     end associate
 
   contains
@@ -155,7 +156,7 @@ contains
       call scene%numbering%axes%turn_stiffness(scene%model%connectivity(:, element), n, k)
       if (self%single) k(:n**2) = k(:n**2)/self%unit
       call self%matrix%add(n, number, k)
-      if (size(self%schur) > 0) call add_to_border(n, number, k, self)
+      if (size(self%schur) > 0) call add_to_border(n, number, k, scene%numbering%body(b)%tied, self)
     end subroutine add_element
 
     subroutine add_spring(k)
@@ -170,6 +171,31 @@ contains
         end associate
       end associate
     end subroutine add_spring
+
+    !> Springs of the scene, whose ends are in the border.
+    subroutine add_springs()
+      real(wp) :: row(size(self%schur, 1))
+      integer :: e, i, k, number
+
+      do k = 1, size(scene%model%spring)
+        associate (own => scene%model%spring(k))
+          if (scene%model%body(maxval(own%node)) /= b) cycle
+          row = 0.0_wp
+          do i = 1, 2
+            number = 0
+            if (own%node(i) > 0) number = scene%numbering%equation(own%component(i), own%node(i))
+            if (number == 0) cycle
+            associate (tied => scene%numbering%body(b)%tied)
+              do e = tied%start(-number), tied%start(1 - number) - 1
+                row(tied%equation(e)) = row(tied%equation(e)) + (2*i - 3)*tied%weight(e)
+              end do
+            end associate
+          end do
+          self%schur = self%schur + &
+                       own%stiffness/self%unit*spread(row, 1, size(row))*spread(row, 2, size(row))
+        end associate
+      end do
+    end subroutine add_springs
 
     !> A matrix of zeros, of the kind that the plan has chosen.
     subroutine begin()
@@ -243,21 +269,28 @@ contains
     end function unit_of
   end subroutine assemble
 
-  !> Add an element matrix to the coupling and the border.
-  pure subroutine add_to_border(n, number, k, stiffness)
+  !> Add an element matrix to the coupling and the border, by what its freedoms are there.
+  pure subroutine add_to_border(n, number, k, tied, stiffness)
     integer, intent(in) :: n, number(n)
     real(wp), intent(in) :: k(n, n)
+    type(sparse_rows), intent(in) :: tied
     type(body_stiffness), intent(inout) :: stiffness
-    integer :: i, j
+    integer :: e, f, i, j
 
     do j = 1, n
       if (number(j) >= 0) cycle
-      associate (coupling => stiffness%coupling(:, -number(j)), schur => stiffness%schur(:, -number(j)))
-        do i = 1, n
-          if (number(i) > 0) coupling(number(i)) = coupling(number(i)) + k(i, j)
-          if (number(i) < 0) schur(-number(i)) = schur(-number(i)) + k(i, j)
-        end do
-      end associate
+      do e = tied%start(-number(j)), tied%start(1 - number(j)) - 1
+        associate (coupling => stiffness%coupling(:, tied%equation(e)), &
+                   schur => stiffness%schur(:, tied%equation(e)), weight => tied%weight(e))
+          do i = 1, n
+            if (number(i) > 0) coupling(number(i)) = coupling(number(i)) + weight*k(i, j)
+            if (number(i) >= 0) cycle
+            do f = tied%start(-number(i)), tied%start(1 - number(i)) - 1
+              schur(tied%equation(f)) = schur(tied%equation(f)) + weight*tied%weight(f)*k(i, j)
+            end do
+          end do
+        end associate
+      end do
     end do
   end subroutine add_to_border
 

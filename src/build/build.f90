@@ -13,9 +13,9 @@ module epcont_build_build
   use epcont_build_temperatures, only: build_temperatures
   use epcont_contact_geometry_complete, only: check_controls, finish_model
   use epcont_contact_geometry_line_contacts, only: find_contacts
-  use epcont_deck_card_kinds, only: card_bconp, card_blseg, card_cgap, card_cord2r, card_grav, card_grid, &
-      card_mat1, card_mats1, card_param, card_pgap, card_pshell, card_psolid, card_rbe2, card_rforce, &
-      card_spc, card_spc1, card_tables1
+  use epcont_deck_card_kinds, only: card_bconp, card_blseg, card_celas1, card_celas2, card_cgap, &
+      card_cord2r, card_grav, card_grid, card_mat1, card_mats1, card_mpc, card_param, card_pgap, &
+      card_pshell, card_psolid, card_rbe2, card_rforce, card_spc, card_spc1, card_tables1
   use epcont_deck_deck, only: deck_type
   use epcont_deck_entry, only: least_cause
   use epcont_element_element_kind, only: element_kind
@@ -23,8 +23,9 @@ module epcont_build_build
   use epcont_element_kinematics, only: directions
   use epcont_model_body_checks, only: check_body_loads
   use epcont_model_element_shapes, only: check_axis
-  use epcont_model_finding, only: findings, of_body, of_body_load, of_couple, of_element, of_line, of_node, &
-      of_pair, of_paper_ratio, of_scene
+  use epcont_model_arrays, only: angle
+  use epcont_model_finding, only: findings, of_body, of_body_load, of_couple, of_element, of_equation, &
+      of_line, of_node, of_pair, of_paper_ratio, of_scene
   use epcont_model_load_cases, only: contact_all, load_cases, put_case
   use epcont_model_model, only: model_type
   implicit none
@@ -57,7 +58,8 @@ contains
       call check_unique(deck, own_ids(k:k), faults)
     end do
     call check_unique(deck, [card_pshell, card_psolid], faults)
-    call check_unique(deck, [element_cards(deck, model%kinds), card_rbe2, card_cgap], faults)
+    call check_unique(deck, [element_cards(deck, model%kinds), card_rbe2, card_cgap, card_celas1, &
+                            card_celas2], faults)
     nodes = index_of(deck, card_grid)
     call build_mesh(deck, nodes, model, faults)
     model%controls = read_controls(deck)
@@ -90,16 +92,16 @@ contains
 
     !> The patterns of the load cases: of the freedoms that their supports hold, and of their contacts.
     subroutine hold_patterns()
-      logical, allocatable :: held(:, :, :)   ! by each pattern [2, nodes, patterns]
+      logical, allocatable :: held(:, :, :)   ! by each pattern, as `held_now` has them
       integer, allocatable :: first(:)        ! case of each pattern
       integer :: k
 
-      allocate (held(directions, model%nodes, 0), first(0))
+      allocate (held(angle, model%nodes, 0), first(0))
       do k = 1, size(cases%case)
         call take_pattern(k, held, first)
       end do
       cases%patterns = size(first)
-      model%held = held(:, :, min(pattern, cases%patterns))
+      call hold(held(:, :, min(pattern, cases%patterns)))
     end subroutine hold_patterns
 
     !> The pattern of a load case.
@@ -112,16 +114,33 @@ contains
       associate (case => cases%case)
         before = findloc(case(:k - 1)%supports, case(k)%supports, dim=1)
         if (before == 0) call hold_nodes(deck, nodes, case(k)%supports, model, faults)
-        if (before > 0) model%held = held(:, :, case(before)%pattern)
+        if (before > 0) call hold(held(:, :, case(before)%pattern))
         do p = 1, size(first)
-          if (case(k)%contact == case(first(p))%contact .and. all(held(:, :, p) .eqv. model%held)) exit
+          if (case(k)%contact == case(first(p))%contact .and. all(held(:, :, p) .eqv. held_now())) exit
         end do
         case(k)%pattern = p
       end associate
       if (p <= size(first)) return
       first = [first, k]
-      held = reshape([held, model%held], [shape(model%held), p])
+      held = reshape([held, held_now()], [angle, model%nodes, p])
     end subroutine take_pattern
+
+    !> The freedoms of all nodes that are held, and the angles of those that lead and turn [angle, nodes].
+    pure function held_now() result(held)
+      logical, allocatable :: held(:, :)
+
+      allocate (held(angle, model%nodes), source=.false.)
+      held(:directions, :) = model%held
+      held(angle, model%platen%leader) = model%platen%held
+    end function held_now
+
+    !> Hold them.
+    subroutine hold(held)
+      logical, intent(in) :: held(:, :)
+
+      model%held = held(:directions, :)
+      model%platen%held = held(angle, model%platen%leader)
+    end subroutine hold
 
     !> Of contacts the only one is chosen: what is found of it is of its card.
     subroutine find_card_of_contact()
@@ -194,6 +213,8 @@ contains
         card(1) = card_grav
         if (card(2) > deck%card(card_grav)%count) &
           card(:2) = [card_rforce, card(2) - deck%card(card_grav)%count]
+      case (of_equation)
+        card(1) = card_mpc
       case (of_paper_ratio)
         card(:2) = [card_param, max(deck%parameter_row('MUP'), deck%parameter_row('ORIGINAL'))]
       end select

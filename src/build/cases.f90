@@ -6,11 +6,12 @@ module epcont_build_cases
   use epcont_base_text, only: short_real, text_of
   use epcont_build_mass_loads, only: build_mass_loads
   use epcont_build_reference, only: card_index, chosen_sets, note_unused, resolve
-  use epcont_deck_card_kinds, only: card_bconp, card_force, card_grav, card_load, card_ploadx1, card_rforce, &
-      card_spc, card_spc1, card_spcd
+  use epcont_deck_card_kinds, only: card_bconp, card_force, card_grav, card_load, card_moment, card_ploadx1, &
+      card_rforce, card_spc, card_spc1, card_spcd
   use epcont_deck_deck, only: deck_type
   use epcont_deck_entry, only: farthest, least_cause
-  use epcont_model_arrays, only: side_pressure
+  use epcont_build_tie_cards, only: find_moments, find_platens, names, turn
+  use epcont_model_arrays, only: angle, side_pressure
   use epcont_model_finding, only: and_more, findings, of_element
   use epcont_model_load_cases, only: load_case, load_cases, nodal_force, set_displacement, set_pressure
   use epcont_model_model, only: model_type
@@ -20,7 +21,8 @@ module epcont_build_cases
   public :: build_cases
 
   !> Cards whose first field is a set of loads, which LOAD may combine; and of supports.
-  integer, parameter :: load_cards(*) = [card_force, card_ploadx1, card_spcd, card_grav, card_rforce]
+  integer, parameter :: load_cards(*) = [card_force, card_ploadx1, card_spcd, card_grav, card_rforce, &
+                                         card_moment]
   integer, parameter :: support_cards(*) = [card_spc, card_spc1]
 
 contains
@@ -29,7 +31,7 @@ contains
   subroutine build_cases(deck, nodes, model, cases, found)
     type(deck_type), intent(in) :: deck        !! its cards
     type(card_index), intent(in) :: nodes      !! ids of GRID
-    type(model_type), intent(in) :: model      !! the scene: its mesh
+    type(model_type), intent(inout) :: model   !! the scene: its mesh; gets the RBE2 leaders that turn
     type(load_cases), intent(out) :: cases     !! of the scene
     type(findings), intent(inout) :: found     !! what is wrong with it is added
     integer, dimension(size(deck%subcase)) :: loads, supports
@@ -52,6 +54,8 @@ contains
     call check_contacts()
     call note_unused(deck, load_cards, used, found)
     call note_unused(deck, [card_load], loads, found)
+    call find_platens(deck, nodes, supports, used, model, found)
+    call find_moments(deck, nodes, used, model, cases%moment, found)
     call add_forces()
     call add_pressures()
     call build_mass_loads(deck, nodes, model, used, cases%body, found)
@@ -95,7 +99,7 @@ contains
             set = nint(combined%list(item)%number(2))
             if (any(id == set)) cycle
             call found%add_error(card_load, i, -item, ': there is no set '//text_of(set)//' of loads', &
-                                 'the set of FORCE, PLOADX1, GRAV, RFORCE or SPCD cards')
+                                 'the set of FORCE, PLOADX1, MOMENT, GRAV, RFORCE or SPCD cards')
           end do
         end do
       end associate
@@ -193,10 +197,10 @@ contains
       integer, intent(in) :: card, sets(:)
       type(set_displacement), allocatable, intent(out) :: displacements(:)
       type(findings) :: unheard   ! of SPC all is told by the supports
-      integer :: c, i, k, last, node(deck%card(card)%count)
+      integer :: c, i, k, last, node(deck%card(card)%count), platen
 
       last = 0
-      allocate (displacements(4*size(node)))   ! two nodes a card, in two directions
+      allocate (displacements(6*size(node)))   ! two nodes a card, in two directions, or an angle
       do k = 2, 5, 3
         if (card == card_spc) call resolve(deck, card, k, nodes, unheard, node)
         if (card == card_spcd) call resolve(deck, card, k, nodes, found, node)
@@ -208,6 +212,10 @@ contains
               last = last + 1
               displacements(last) = set_displacement(nint(value(1)), c, node(i), value(k + 2))
             end do
+            platen = findloc(model%platen%leader, node(i), dim=1)
+            if (platen == 0 .or. .not. names(value(k + 1), turn)) cycle
+            last = last + 1
+            displacements(last) = set_displacement(nint(value(1)), angle, platen, value(k + 2))
           end associate
         end do
       end do

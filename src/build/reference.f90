@@ -84,13 +84,13 @@ contains
     end associate
   end subroutine resolve
 
-  !> The set that SPC = or LOAD = names in each load case; where none does, the only set there is, of loads if
-  !! the deck has no more than one case.
+  !> The set that SPC =, MPC = or LOAD = names in each load case; where none does, the only set there is, of
+  !! loads if the deck has no more than one case.
   pure subroutine chosen_sets(deck, cards, choice, word, found, set)
     type(deck_type), intent(in) :: deck      !! its cards
     integer, intent(in) :: cards(:)          !! tables whose first field is the set
     type(set_choice), intent(in) :: choice(:)   !! [cases]
-    character(len=*), intent(in) :: word     !! SPC or LOAD
+    character(len=*), intent(in) :: word     !! SPC, MPC or LOAD
     type(findings), intent(inout) :: found   !! what is wrong with it is added
     integer, intent(out) :: set(:)           !! 0: there is none [cases]
     integer, allocatable :: id(:), row(:), table(:)   ! of all cards, as far as they are given
@@ -101,7 +101,7 @@ contains
     row = [((i, i=1, deck%card(cards(c))%count), c=1, size(cards))]
     id = merge(id, 0, [(deck%card(table(i))%given(1, row(i)), i=1, size(row))])
     set = choice%id
-    if (all(choice%id == 0) .and. (size(choice) == 1 .or. word == 'SPC') .and. any(id > 0)) then
+    if (all(choice%id == 0) .and. (size(choice) == 1 .or. word /= 'LOAD') .and. any(id > 0)) then
       set = id(findloc(id > 0, .true., dim=1))
       i = findloc(id > 0 .and. id /= set(1), .true., dim=1)
       if (i > 0) then

@@ -1,14 +1,17 @@
-!> Supports, ties and reference freedoms from GRID PS, SPC, SPC1, RBE2 and SUPORT.
+!> Supports, ties and reference freedoms from GRID PS, SPC, SPC1, RBE2, SUPORT, MPC and springs.
 module epcont_build_supports
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of
+  use epcont_build_tie_cards, only: build_equations, build_springs, names, turn
   use epcont_build_reference, only: card_index, resolve
   use epcont_deck_card_kinds, only: card_grid, card_rbe2, card_spc, card_spc1, card_suport
   use epcont_deck_deck, only: deck_type
   use epcont_element_kinematics, only: directions
   use epcont_model_finding, only: findings
+  use epcont_model_arrays, only: angle
   use epcont_model_freedoms, only: follow_to_the_end, freedom, set_reference, tie
   use epcont_model_model, only: model_type
+  use epcont_model_ties, only: complete_ties, turn_with
   implicit none
   private
   public :: build_ties, hold_nodes
@@ -34,6 +37,8 @@ contains
 
     model%held = .false.
     model%prescribed = 0.0_wp
+    model%platen%held = .false.
+    model%platen%prescribed = 0.0_wp
     associate (grid => deck%card(card_grid))
       ps = grid%column('PS')
       do i = 1, grid%count
@@ -52,7 +57,7 @@ contains
     !! is told.
     subroutine hold(named)
       type(named_node), intent(in) :: named
-      integer :: c, conflict
+      integer :: c, conflict, i
       real(wp) :: displacement
 
       conflict = 0
@@ -66,6 +71,14 @@ contains
           if (model%held(c, node) .and. model%prescribed(c, node) /= displacement) conflict = c
           model%held(c, node) = .true.
           model%prescribed(c, node) = displacement
+        end do
+        do i = 1, size(model%platen)
+          associate (platen => model%platen(i))
+            if (platen%leader /= node .or. .not. names(value(named%digits), turn)) cycle
+            if (platen%held .and. platen%prescribed /= displacement) conflict = angle
+            platen%held = .true.
+            platen%prescribed = displacement
+          end associate
         end do
         if (conflict > 0) call found%add_error( &
           card(1), card(2), card(3), ': '//freedom(model, conflict, node)// &
@@ -84,13 +97,16 @@ contains
     type(model_type), intent(inout) :: model   !! the scene, with its supports
     type(findings), intent(inout) :: found     !! what is wrong with it is added
     type(named_node), allocatable :: named(:)
-    integer :: c, i, leader(deck%card(card_rbe2)%count)
+    integer :: c, i, leader(deck%card(card_rbe2)%count), platen
 
+    model%sum_of = spread([0, 0], 2, model%nodes)
     call resolve(deck, card_rbe2, 2, nodes, found, leader)
     named = nodes_of_lists(deck, card_rbe2, nodes, found)
     do i = 1, size(named)
       associate (card => named(i)%card, node => named(i)%node)
-        do c = 1, directions
+        platen = findloc(model%platen%leader, leader(card(2)), dim=1)
+        if (platen > 0) call turn_with(model, platen, node, card, found)
+        do c = 1, merge(directions, 0, platen == 0)
           if (leader(card(2)) > 0 .and. names(deck%card(card_rbe2)%value(named(i)%digits, card(2)), c)) &
             call tie(model, c, node, leader(card(2)), card, found)
         end do
@@ -105,17 +121,17 @@ contains
           if (names(deck%card(card_suport)%value(named(i)%digits, card(2)), c)) &
             call set_reference(model, c, node, card, found)
         end do
+        platen = findloc(model%platen%leader, node, dim=1)
+        if (platen == 0) cycle
+        if (model%platen(platen)%held .and. .not. of_all) cycle
+        if (names(deck%card(card_suport)%value(named(i)%digits, card(2)), turn)) &
+          call set_reference(model, angle, node, card, found)
       end associate
     end do
+    call build_equations(deck, nodes, model, found)
+    call complete_ties(model, found)
+    call build_springs(deck, nodes, model, found)
   end subroutine build_ties
-
-  !> Is a direction among the digits of a field?
-  elemental logical function names(digits, c)
-    real(wp), intent(in) :: digits
-    integer, intent(in) :: c
-
-    names = any(mod(nint(digits)/10**[0, 1, 2, 3, 4, 5], 10) == c)
-  end function names
 
   !> SPC and SUPORT: nodes, each with its directions in the next field.
   function nodes_of_fields(deck, card, columns, nodes, found) result(named)

@@ -9,6 +9,7 @@ module epcont_certificate_certificate
   use epcont_certificate_free_expansion, only: expansion_type, free_strains, held_stress, part_of_held
   use epcont_certificate_mass_force, only: given_load
   use epcont_certificate_scene, only: scene_type
+  use epcont_certificate_tied, only: check_springs, check_ties, gather_ties, longest_arms
   use epcont_certificate_unit_strains, only: find_slopes, unit_strains
   use epcont_certificate_yielding, only: stress_on_curve, von_mises_stress
   use epcont_element_element_kind, only: most_nodes, most_points
@@ -47,6 +48,7 @@ module epcont_certificate_certificate
     real(wp) :: off_curve = 0.0_wp        !! largest distance of a stress from its curve (`measure_stress`)
     real(wp) :: motion_strain = 0.0_wp    !! largest strain of the rigid motions / its rounding
     real(wp) :: lost_stress = 0.0_wp      !! largest stress that rounding of displacements makes, relative
+    real(wp) :: ties = 0.0_wp             !! what RBE2 that turns, or MPC, is off by / largest displacement
     real(wp) :: energy = 0.0_wp           !! |work of the forces - of the stresses| / sum of |terms|
     real(wp) :: force_scale = 1.0_wp      !! largest contact force [force]
     real(wp) :: length_scale = 1.0_wp     !! work over forces: how far the bodies give way [length]
@@ -73,11 +75,12 @@ module epcont_certificate_certificate
 
   !> Figures that a limit is set to, and what they say.
   character(len=*), parameter :: off_the_curve = 'stresses are off their curve by'
-  character(len=*), parameter, public :: figure_name(8) = [character(len=70) :: &
+  character(len=*), parameter, public :: figure_name(9) = [character(len=70) :: &
     'equilibrium is off by', off_the_curve, 'energy is off by', 'contact forces pull, by', &
     'gaps overlap, by', 'pressed gaps are open, by', &
     'the rounding of gaps and travels is, of what the bodies give way,', &
-    'rigid motions strain the bodies; their roundings are']
+    'rigid motions strain the bodies; their roundings are', &
+    'what RBE2 or MPC ties is apart by']
 
 contains
 
@@ -95,6 +98,7 @@ contains
     type(expansion_type) :: expansion
     real(wp) :: terms                        ! sum of the sizes of all that these two are sums of
     real(wp) :: forces, largest_force, largest_stress, length
+    real(wp), dimension(size(model%platen)) :: torque, turn   ! of those that turn
 
     found%tolerance = max(valid_to, rounding_errors*answer%rounding_error)
     load = answer%load_factor*given_load(model)
@@ -104,6 +108,7 @@ contains
     element_force = 0.0_wp
     stored = 0.0_wp
     call add_elements()
+    call check_springs(model, answer%displacement, residual, element_force, stored)
     residual = residual - load - answer%reaction
     ! A rigid travel says nothing of how exact the gaps must be: only what the bodies give way does.
     ! Nor does a load that a support takes at once.
@@ -122,10 +127,15 @@ contains
               part_of_held*expansion%held_work
     end associate
     if (model%pairs > 0) call add_pairs()
-    call gather_ties()
     largest_force = max(maxval(element_force), maxval(abs(load)), part_of_held*expansion%held_force)
     if (any(answer%contact%force > 0.0_wp)) largest_force = max(largest_force, found%force_scale)
-    found%equilibrium = ratio(maxval(abs(residual)), largest_force)
+    call gather_ties(model, residual, torque)
+    call check_ties(model, answer%displacement, turn, found%ties)
+    work = work + sum(answer%moment*turn)
+    terms = terms + sum(abs(answer%moment*turn))
+    found%equilibrium = maxval([ratio(abs(torque - answer%moment), largest_force*longest_arms(model)), &
+                                0.0_wp])
+    found%equilibrium = max(found%equilibrium, ratio(maxval(abs(residual)), largest_force))
     ! On its curve no stress does less than no work; as far off it as the iteration may leave it, it can.
     found%energy = ratio(max(abs(work - stored), expansion%work - stored), terms)
     found%curve_tolerance = max(found%tolerance, curve_tolerance)
@@ -319,20 +329,6 @@ contains
         end associate
       end do
     end subroutine add_pairs
-
-    !> A tied freedom hands its forces to its leader.
-    subroutine gather_ties()
-      integer :: c, leader, node
-
-      do node = 1, model%nodes
-        do c = 1, directions
-          leader = model%leader(c, node)
-          if (leader == node) cycle
-          residual(c, leader) = residual(c, leader) + residual(c, node)
-          residual(c, node) = 0.0_wp
-        end do
-      end do
-    end subroutine gather_ties
   end subroutine certify
 
   !> Strain at one place of an element. What its nodes share along y, and in a plane along x, is a travel
@@ -360,9 +356,9 @@ contains
     exact = self%tolerance*self%length_scale + self%gap_rounding
     figure = [self%equilibrium, self%off_curve, self%energy, ratio(-self%smallest_force, self%force_scale), &
               self%overlap, ratio(self%force_gap, self%force_scale), self%gap_rounding/self%length_scale, &
-              self%motion_strain]
+              self%motion_strain, self%ties]
     largest = [self%tolerance, self%off_curve_limit, self%tolerance, self%tolerance, exact, exact, &
-               largest_rounding, most_roundings]
+               largest_rounding, most_roundings, self%tolerance]
   end subroutine figures
 
   !> Is a figure beyond its limit that was not before?
@@ -384,7 +380,7 @@ contains
   end function within_limits
 
   !> a/b, 0 where both are 0, or a is below; finite, but of what is no number.
-  pure real(wp) function ratio(a, b)
+  elemental real(wp) function ratio(a, b)
     real(wp), intent(in) :: a, b
 
     ratio = 0.0_wp

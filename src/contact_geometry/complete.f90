@@ -20,6 +20,7 @@ module epcont_contact_geometry_complete
   use epcont_model_given, only: check_given, number_parts
   use epcont_model_model, only: model_type
   use epcont_model_pressure, only: add_pressure, find_side
+  use epcont_model_ties, only: add_moment, check_equation, complete_ties, turn_with
   use epcont_model_single_pairs, only: complete_pairs
   implicit none
   private
@@ -86,22 +87,46 @@ contains
 
     !> Ties and reference freedoms, one by one: each is checked against those before it.
     subroutine complete_freedoms()
-      integer :: c
+      integer :: c, k
 
       call move_alloc(model%leader, leader)
+      model%sum_of = spread([0, 0], 2, model%nodes)
       model%leader = spread([(i, i=1, model%nodes)], 1, directions)
       do i = 1, model%nodes
         do c = 1, directions
           if (leader(c, i) /= i) call tie(model, c, i, leader(c, i), [of_node, i, 0], found)
         end do
       end do
+      call complete_platens()
       call follow_to_the_end(model%leader)
       do i = 1, model%nodes
         do c = 1, directions
           if (model%reference(c, i)) call set_reference(model, c, i, [of_node, i, 0], found)
         end do
       end do
+      do k = 1, size(model%equation)
+        call check_equation(model, model%equation(k), [of_node, model%equation(k)%node(1), 0], found)
+        model%equation(k)%card = model%equation(k)%node(1)
+      end do
+      call complete_ties(model, found)
+      do k = 1, size(model%platen)
+        call add_moment(model, k, model%platen(k)%moment, model%load)
+      end do
     end subroutine complete_freedoms
+
+    !> Those that follow leaders which turn.
+    subroutine complete_platens()
+      integer, allocatable :: follower(:)
+      integer :: k
+
+      do k = 1, size(model%platen)
+        call move_alloc(model%platen(k)%follower, follower)
+        allocate (model%platen(k)%follower(0))
+        do i = 1, size(follower)
+          call turn_with(model, k, follower(i), [of_node, follower(i), 0], found)
+        end do
+      end do
+    end subroutine complete_platens
   end subroutine complete_model
 
   !> What a scene without errors must still be refused or warned of.

@@ -11,6 +11,7 @@ module epcont_deck_bulk
   use epcont_deck_catalogue, only: catalogue, parameters
   use epcont_deck_entry, only: card_entry, field_entry, kind_word
   use epcont_deck_field, only: scan_sound, scan_word
+  use epcont_deck_refused, only: refused_card
   use epcont_deck_source, only: source
   use epcont_deck_spelling, only: suggestion
   use epcont_deck_table, only: card_table
@@ -175,7 +176,7 @@ contains
 
     !> The card has a name that is not in the catalogue.
     subroutine refuse_name()
-      character(len=:), allocatable :: name, remedy, word
+      character(len=:), allocatable :: name, remedy, why, word
 
       name = upper(card%text(card%name_first:card%name_last))
       if (scan(card%text(1:1), '+*') > 0 .or. name == '') then
@@ -184,6 +185,11 @@ contains
         return
       end if
       word = name(:scan(name//' ', ' =(;') - 1)
+      call refused_card(name, why, remedy)
+      if (len(why) > 0) then
+        call faults%add_error(card%place(0), name//' is not here:'//why, remedy)
+        return
+      end if
       remedy = suggestion(name, names, 'epcont --cards lists the cards that are read')
       if (name == 'CQUAD9' .or. name == 'CQUAD') remedy = 'CTRIA6, CQUAD4 or CQUAD8'
       if (name == 'MATT1' .or. index(name, 'TABLEM') == 1) &

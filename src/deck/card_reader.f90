@@ -273,9 +273,10 @@ contains
     !! wrong field.
     subroutine read_records()
       type(list_item) :: item
-      integer :: first, k
+      integer :: first, k, record
       logical :: sound
 
+      record = 1
       first = table%entry%list_slot
       do while (.not. at_end(first))
         item%place = card%place(first)
@@ -284,7 +285,11 @@ contains
           if (.not. sound) return
         end do
         call table%add_item(row, item)
-        first = first + size(table%entry%record)
+        record = record + 1
+        do k = first + size(table%entry%record), table%entry%record_slot(record) - 1
+          if (card%filled(k)) call refuse(k, 'must be blank', 'blank: the next follows on the next line')
+        end do
+        first = table%entry%record_slot(record)
       end do
       if (table%entry%end_word == '') return
       do slot = first + 1, card%count

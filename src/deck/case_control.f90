@@ -23,7 +23,7 @@ module epcont_deck_case_control
     integer :: id = 0                                        !! 0: the deck has no SUBCASE
     type(place_type) :: place                                !! of its SUBCASE
     character(len=:), allocatable :: subtitle, label         !! empty where not given
-    type(set_choice) :: spc, load, temperature
+    type(set_choice) :: spc, load, mpc, temperature
     type(set_choice) :: contact                              !! the only BCONP; 0: all; -1: none
     logical :: displacement = .false., stress = .false., spcforces = .false.  !! tables wanted
   end type subcase_control
@@ -36,9 +36,9 @@ module epcont_deck_case_control
   end type case_control
 
   !> Their words. From the first on that a load case may have for itself, all are its own.
-  character(len=*), parameter, public :: keyword(16) = [character(len=12) :: &
-    'SOL', 'CEND', 'TITLE', 'ECHO', 'CNTNLSUB', 'SUBCASE', 'SUBTITLE', 'LABEL', 'SPC', 'LOAD', 'BCONTACT', &
-    'DISPLACEMENT', 'STRESS', 'SPCFORCES', 'NLPARM', 'TEMPERATURE']
+  character(len=*), parameter, public :: keyword(17) = [character(len=12) :: &
+    'SOL', 'CEND', 'TITLE', 'ECHO', 'CNTNLSUB', 'SUBCASE', 'SUBTITLE', 'LABEL', 'SPC', 'LOAD', 'MPC', &
+    'BCONTACT', 'DISPLACEMENT', 'STRESS', 'SPCFORCES', 'NLPARM', 'TEMPERATURE']
   integer, parameter :: first_own = 7
   !> Those of SOL that are static, linear or not.
   character(len=*), parameter :: static = &
@@ -151,6 +151,8 @@ contains
         else
           call refuse_option()
         end if
+      case ('MPC')
+        call take_set(now%mpc)
       case ('BCONTACT')
         now%contact%place = parts%value_place
         if (all(upper(parts%value) /= ['ALL ', 'NONE'])) call take_set(now%contact)

@@ -10,7 +10,8 @@ module epcont_deck_catalogue
   !> All cards, in the order of `epcont_deck_card_kinds`: name and meaning of each, and under it its fields in
   !! their order, fields 2 to 9, then 12 to 19, and so on, each as `new_field` takes it; the first so many may
   !! be `like` those of a card before. Behind them there may be a list, of `ids`, some of which are `ranges`,
-  !! with `steps`, or of records, whose fields are there for `each`; ENDT stands behind the last.
+  !! with `steps`, or of records, whose fields are there for `each`, all behind each other or
+  !! `two_a_line`; ENDT stands behind the last.
   character(len=*), parameter :: cards(*) = [character(len=140) :: &
     'GRID: node', &
     '  ID; id; node', &
@@ -241,7 +242,48 @@ module epcont_deck_catalogue
     '  METHOD; whole from=1 to=2 noted; forces are those of the mass where it is', &
     '  RACC; real zero cause; factor of what the spin gains in a unit of time; forces go along it', &
     '  MB; any noted; of superelements', &
-    '  IDRF; system only_zero; elements: all']
+    '  IDRF; system only_zero; elements: all', &
+    'MOMENT: moment M*N3 about z at a node that leads an RBE2: it turns', &
+    '  SID; id; set', &
+    '  G; id; node', &
+    '  CID; system only_zero; system of N1 to N3: the basic one', &
+    '  M; real needed cause; factor [force*length]', &
+    '  N1; real zero; direction x; 0.0 in plane scenes', &
+    '  N2; real zero; direction y; 0.0 in plane scenes', &
+    '  N3; real zero; direction z', &
+    'MPC: equation, sum of A times displacement = 0; the first follows the others', &
+    '  SID; id; set', &
+    '  G; id each; node', &
+    '  C; whole from=1 to=6 needed each; direction: 1 or 2 in plane scenes', &
+    '  A; real needed each two_a_line; coefficient; of the first not 0.0', &
+    'MPCADD: sets of MPC under one id', &
+    '  SID; id; set', &
+    '  S; ids; sets of MPC', &
+    'CELAS1: spring between two freedoms, or one and the ground', &
+    '  EID; id; spring', &
+    '  PID; id; its PELAS', &
+    '  G1; system; node; 0 or blank: the ground', &
+    '  C1; whole zero from=0 to=2; its direction', &
+    '  G2; system; node; 0 or blank: the ground', &
+    '  C2; whole zero from=0 to=2; its direction', &
+    'CELAS2: the same, with its stiffness', &
+    '  EID; id; spring', &
+    '  K; real needed positive; stiffness [force/length]', &
+    '  G1; system; node; 0 or blank: the ground', &
+    '  C1; whole zero from=0 to=2; its direction', &
+    '  G2; system; node; 0 or blank: the ground', &
+    '  C2; whole zero from=0 to=2; its direction', &
+    '  GE; real noted; damping', &
+    '  S; real noted; stress coefficient', &
+    'PELAS: stiffness of springs; two a card', &
+    '  PID1; id; property', &
+    '  K1; real needed positive; stiffness [force/length]', &
+    '  GE1; real noted; damping', &
+    '  S1; real noted; stress coefficient', &
+    '  PID2; id with_next; second property', &
+    '  K2; real positive; stiffness [force/length]', &
+    '  GE2; real noted; damping', &
+    '  S2; real noted; stress coefficient']
 
   !> All PARAMs: the field VALUE for each NAME.
   character(len=*), parameter :: choices(*) = [character(len=180) :: &
@@ -310,6 +352,7 @@ contains
           card(k)%list_slot = size(card(k)%field) + 1
           card(k)%record = [card(k)%record, field]
           if (index(line, ' each ENDT') > 0) card(k)%end_word = 'ENDT'
+          if (index(line, ' two_a_line') > 0) card(k)%records_a_line = 2
         else
           card(k)%field = [card(k)%field, spread(field, 1, field%times)]
         end if

@@ -59,9 +59,11 @@ module epcont_deck_entry
     !> Or the list is of records, such as `X1 Y1 X2 Y2 ..`: their fields, and the word behind the last record
     type(field_entry), allocatable :: record(:)
     character(len=4) :: end_word = ''            !! blank: the end of the card
+    integer :: records_a_line = 0                !! blanks follow them there; 0: no line ends between them
   contains
     procedure :: field_name
     procedure :: field_text
+    procedure :: record_slot
   end type card_entry
 
 contains
@@ -79,18 +81,34 @@ contains
     class(card_entry), intent(in) :: self
     integer, intent(in) :: slot   !! which data field
     character(len=:), allocatable :: name
-    integer :: k
+    integer :: k, r
 
     name = ''
     k = slot - self%list_slot
     if (k >= 0 .and. allocated(self%record)) then
-      name = trim(self%record(1 + mod(k, size(self%record)))%name)//text_of(k/size(self%record) + 1)
+      r = 1
+      do while (self%record_slot(r + 1) <= slot)
+        r = r + 1
+      end do
+      k = slot - self%record_slot(r) + 1
+      if (k <= size(self%record)) name = trim(self%record(k)%name)//text_of(r)
     else if (k >= 0) then
       name = self%list_name//text_of(k + 1)
     else if (slot <= size(self%field)) then
       name = trim(self%field(slot)%name)
     end if
   end function field_name
+
+  !> Where a record of the list begins.
+  pure integer function record_slot(self, record) result(slot)
+    class(card_entry), intent(in) :: self
+    integer, intent(in) :: record   !! which one, from 1
+
+    associate (fields => size(self%record), n => self%records_a_line)
+      slot = self%list_slot + (record - 1)*fields
+      if (n > 0) slot = self%list_slot + (record - 1)/n*fields_a_line + mod(record - 1, n)*fields
+    end associate
+  end function record_slot
 
   !> The field in a slot as messages name it: `field 4 (X1)`.
   pure function field_text(self, slot) result(text)

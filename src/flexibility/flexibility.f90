@@ -81,19 +81,23 @@ contains
     pure function border_part() result(flexibility)
       real(wp), allocatable :: flexibility(:, :), solved(:, :)
       real(wp) :: response(size(part%pair), size(stiffness%schur, 1))
-      integer :: equation, i, k
+      integer :: e, equation, i, k
 
       response = 0.0_wp
-      do k = 1, size(part%pair)
-        do i = rows%start(k), rows%start(k + 1) - 1
-          equation = rows%equation(i)
-          if (equation > 0) then
-            response(k, :) = response(k, :) + rows%weight(i)*stiffness%coupling(equation, :)
-          else
-            response(k, -equation) = response(k, -equation) - rows%weight(i)
-          end if
+      associate (tied => numbering%body(b)%tied)
+        do k = 1, size(part%pair)
+          do i = rows%start(k), rows%start(k + 1) - 1
+            equation = rows%equation(i)
+            if (equation > 0) then
+              response(k, :) = response(k, :) + rows%weight(i)*stiffness%coupling(equation, :)
+            else
+              do e = tied%start(-equation), tied%start(1 - equation) - 1
+                response(k, tied%equation(e)) = response(k, tied%equation(e)) - rows%weight(i)*tied%weight(e)
+              end do
+            end if
+          end do
         end do
-      end do
+      end associate
       solved = transpose(response)
       call cholesky_solve(stiffness%schur, solved)
       flexibility = matmul(response, solved)

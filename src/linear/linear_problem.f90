@@ -1,5 +1,4 @@
-!> The bodies of a scene with a linear law of the material, their contact solved exactly: one step of every
-!> iteration, and all of an elastic analysis.
+!> The bodies of a scene with a linear law, their contact solved exactly: one step of every iteration.
 module epcont_linear_linear_problem
   use epcont_assembly_bodies, only: factored_bodies, half_solved_body, new_bodies, prescribe
   use epcont_base_kinds, only: wp
@@ -16,6 +15,7 @@ module epcont_linear_linear_problem
   use epcont_linear_whole_flexibility, only: add_flexibilities
   use epcont_material_scene_materials, only: find_materials, scene_materials
   use epcont_model_controls, only: precision_double, precision_mixed, solver_frontal
+  use epcont_model_springs, only: spring_forces
   use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_plan_planned_scene, only: planned_scene
   use epcont_plan_side_by_side, only: heaviest_first, threads_for
@@ -218,7 +218,7 @@ contains
       real(wp) :: change, before(2)   ! of this step, of the two before
       integer :: step
 
-      if (allocated(self%last)) then
+      if (allocated(self%last) .and. size(scene%model%sum%first) == 0) then
         state = self%last
       else
         allocate (state%deformation(directions, scene%model%nodes), state%contact%force(scene%model%pairs), &
@@ -235,8 +235,7 @@ contains
         call correct(self, scene, load_factor, state, change)
         call watch%lap(stage_displacements)
         if (step > 1 .and. change <= negligible) exit
-        ! Steps come in pairs: what one has refined moves the contact forces, and those the next; the first
-        ! brings them in.
+        ! In pairs: what one has refined moves the contact forces, which the first brings in, for the next.
         if (step > 4 .and. .not. change <= slowest_rate*before(1)) then
           if (change <= solved_to) exit
           state%contact%state = contact_stalled
@@ -313,7 +312,8 @@ contains
     real(wp), intent(out) :: change             !! largest of a strain / largest strain
 
     call deform(self, scene, load_factor*scene%model%load + pair_forces(scene%model, state%contact%force) &
-                - self%operator%nodal_forces(scene%model, self%law%stress(state%strain)), state, change)
+                - self%operator%nodal_forces(scene%model, self%law%stress(state%strain)) &
+                - spring_forces(scene%model, state%deformation), state, change)
   end subroutine correct
 
   !> Add the deformation under some forces.

@@ -7,7 +7,11 @@ module epcont_model_arrays
   implicit none
   private
   public :: scene_type, new_scene, set_sections, add_elements, set_pairs, count_from_one
-  public :: body_load, element_block, line_couple, named_line, side_pressure
+  public :: body_load, element_block, line_couple, linear_equation, named_line, side_pressure, spring_type
+  public :: turning_platen
+
+  !> The component of what turns: behind those of displacements.
+  integer, parameter, public :: angle = directions + 1
 
   !> Elements of one kind.
   type :: element_block
@@ -53,6 +57,31 @@ module epcont_model_arrays
     integer :: id = 0                         !! of its card
   end type line_couple
 
+  !> A node that leads others as a rigid body does (RBE2), and turns: its angle is one more unknown.
+  type :: turning_platen
+    integer :: leader = 0                     !! the node
+    integer, allocatable :: follower(:)       !! u = u of the leader + angle x arm
+    logical :: held = .false.                 !! the angle is prescribed
+    real(wp) :: prescribed = 0.0_wp           !! that angle, counter-clockwise [radian]
+    logical :: reference = .false.            !! it is a SUPORT freedom
+    real(wp) :: moment = 0.0_wp               !! at the leader, counter-clockwise [force*length]
+  end type turning_platen
+
+  !> Sum of coefficients times displacements = 0 (MPC); the first freedom follows the others.
+  type :: linear_equation
+    integer, allocatable :: component(:), node(:)
+    real(wp), allocatable :: coefficient(:)
+    integer :: card = 0                       !! that it is of, by its position
+  end type linear_equation
+
+  !> A spring between two freedoms, or one and the ground (CELAS1, CELAS2).
+  type :: spring_type
+    integer :: component(2) = 0               !! 1: x, 2: y, of each end
+    integer :: node(2) = 0                    !! 0: the ground
+    real(wp) :: stiffness = 0.0_wp            !! [force/length]
+    integer :: id = 0                         !! of its card
+  end type spring_type
+
   type :: scene_type
     real(wp), allocatable :: x(:, :)            !! coordinates [length] [2, nodes]
     type(element_block), allocatable :: block(:)   !! elements, numbered through all blocks [any]
@@ -74,6 +103,9 @@ module epcont_model_arrays
     !> Not allocated: that of reference everywhere [temperature] [nodes]
     real(wp), allocatable :: temperature(:)
     type(body_load), allocatable :: body_load(:)      !! and to those [any]
+    type(turning_platen), allocatable :: platen(:)    !! nodes that lead others and turn [any]
+    type(linear_equation), allocatable :: equation(:) !! between displacements [any]
+    type(spring_type), allocatable :: spring(:)       !! [any]
     integer, allocatable :: pair_node(:, :)     !! nodes A and B that name the pair [2, pairs]
     real(wp), allocatable :: normal(:, :)       !! unit, along which B is pushed [2, pairs]
     real(wp), allocatable :: initial_gap(:)     !! [length] [pairs]
@@ -97,6 +129,7 @@ contains
     allocate (scene%held(directions, nodes), scene%reference(directions, nodes), source=.false.)
     allocate (scene%prescribed(directions, nodes), scene%load(directions, nodes), source=0.0_wp)
     allocate (scene%block(0), scene%pressure(0), scene%body_load(0), scene%line(0), scene%couple(0))
+    allocate (scene%platen(0), scene%equation(0), scene%spring(0))
     call set_sections(scene, [real(wp) ::], [real(wp) ::], [integer ::])
     call set_pairs(scene, reshape([integer ::], [2, 0]), reshape([real(wp) ::], [2, 0]), [real(wp) ::])
   end function new_scene
@@ -182,12 +215,15 @@ contains
       scene%reference_temperature = given%reference_temperature
     end if
     if (allocated(given%body_load)) scene%body_load = given%body_load(:)
+    if (allocated(given%spring)) scene%spring = given%spring(:)
     scene%couple = given%couple(:)
     deallocate (scene%block, scene%line)
     allocate (scene%block(size(given%block)), scene%line(size(given%line)))
     scene%controls = given%controls
     scene%contact_is_off = given%contact_is_off
     call copy_lists(given%block, given%curve, given%line)
+    if (allocated(given%platen)) call copy_platens(given%platen)
+    if (allocated(given%equation)) call copy_equations(given%equation)
 
   contains
 
@@ -212,5 +248,30 @@ contains
         if (allocated(line(i)%node)) scene%line(i)%node = line(i)%node(:)
       end do
     end subroutine copy_lists
+
+    subroutine copy_platens(platen)
+      type(turning_platen), intent(in) :: platen(:)
+      integer :: i
+
+      deallocate (scene%platen)
+      allocate (scene%platen(size(platen)))
+      do i = 1, size(platen)
+        scene%platen(i) = platen(i)
+        if (allocated(platen(i)%follower)) scene%platen(i)%follower = platen(i)%follower(:)
+      end do
+    end subroutine copy_platens
+
+    subroutine copy_equations(equation)
+      type(linear_equation), intent(in) :: equation(:)
+      integer :: i
+
+      deallocate (scene%equation)
+      allocate (scene%equation(size(equation)))
+      do i = 1, size(equation)
+        if (allocated(equation(i)%component)) scene%equation(i)%component = equation(i)%component(:)
+        if (allocated(equation(i)%node)) scene%equation(i)%node = equation(i)%node(:)
+        if (allocated(equation(i)%coefficient)) scene%equation(i)%coefficient = equation(i)%coefficient(:)
+      end do
+    end subroutine copy_equations
   end subroutine count_from_one
 end module epcont_model_arrays

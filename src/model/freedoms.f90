@@ -8,11 +8,12 @@ module epcont_model_freedoms
   use epcont_base_text, only: text_of
   use epcont_base_tolerances, only: cancelled, same_place
   use epcont_element_kinematics, only: directions
+  use epcont_model_arrays, only: angle
   use epcont_model_finding, only: findings, of_node
   use epcont_model_model, only: model_type
   implicit none
   private
-  public :: freedom, tie, follow_to_the_end, set_reference, join_nodes, find_travels
+  public :: freedom, tie, why_not_tied, follow_to_the_end, set_reference, join_nodes, find_travels
 
   !> A motion is taken off where all supports of a body follow it but for this part of the largest prescribed
   !! displacement.
@@ -28,8 +29,25 @@ contains
     integer, intent(in) :: card(3)             !! whom to blame, as findings are told it: of, which, item
     type(findings), intent(inout) :: found   !! what is wrong with it is added
     character(len=:), allocatable :: remedy, why
+
+    call why_not_tied(model, c, node, leader, why, remedy)
+    if (len(why) == 0) then
+      model%leader(c, node) = leader
+    else
+      call found%add_error(card(1), card(2), card(3), ': '//freedom(model, c, node)//why, remedy)
+    end if
+  end subroutine tie
+
+  !> Why a freedom cannot follow that of another node, and what would be right; empty: it can.
+  pure subroutine why_not_tied(model, c, node, leader, why, remedy)
+    type(model_type), intent(in) :: model      !! the scene
+    integer, intent(in) :: c, node             !! direction and node of the freedom
+    integer, intent(in) :: leader              !! the node that it would follow
+    character(len=:), allocatable, intent(out) :: why, remedy
     integer :: at
 
+    why = ''
+    remedy = ''
     at = leader
     do while (model%leader(c, at) /= at .and. at /= node)
       at = model%leader(c, at)
@@ -37,18 +55,14 @@ contains
     if (at == node) then
       why = ' would follow itself'
       remedy = 'nodes that follow GN, without GN'
-    else if (model%leader(c, node) /= node) then
+    else if (model%leader(c, node) /= node .or. model%sum_of(c, node) > 0) then
       why = ' follows another RBE2 already'
       remedy = 'one leader for each freedom'
     else if (model%held(c, node)) then
       why = ' is held by a support too'
       remedy = 'the support at GN '//text_of(model%node_id(leader))//' instead'
-    else
-      model%leader(c, node) = leader
-      return
     end if
-    call found%add_error(card(1), card(2), card(3), ': '//freedom(model, c, node)//why, remedy)
-  end subroutine tie
+  end subroutine why_not_tied
 
   !> Chains of ties are followed to their ends: who leads follows nobody.
   pure subroutine follow_to_the_end(leader)
@@ -71,19 +85,30 @@ contains
     integer, intent(in) :: card(3)             !! whom to blame, as findings are told it: of, which, item
     type(findings), intent(inout) :: found   !! what is wrong with it is added
 
-    if (model%is_held(c, node) .or. model%leader(c, node) /= node) &
-      call found%add_error(card(1), card(2), card(3), ': '//freedom(model, c, node)// &
-                           ' is held by a support or follows an RBE2', 'a freedom that is free to move')
-    model%reference(c, node) = .true.
+    logical :: is_free
+    integer :: platen
+
+    platen = 0
+    if (c == angle) then
+      platen = findloc(model%platen%leader, node, dim=1)
+      is_free = .not. model%platen(platen)%held
+    else
+      is_free = .not. model%is_held(c, node) .and. model%leader(c, node) == node .and. &
+                model%sum_of(c, node) == 0
+    end if
+    if (.not. is_free) call found%add_error(card(1), card(2), card(3), ': '//freedom(model, c, node)// &
+      ' is held by a support or follows an RBE2', 'a freedom that is free to move')
+    if (platen > 0) model%platen(platen)%reference = .true.
+    if (platen == 0) model%reference(c, node) = .true.
   end subroutine set_reference
 
   !> A freedom as messages name it: `direction 1 of GRID 17`.
   pure function freedom(model, c, node) result(text)
     type(model_type), intent(in) :: model   !! the scene
-    integer, intent(in) :: c, node          !! direction and node of the freedom
+    integer, intent(in) :: c, node          !! direction and node of the freedom; or `angle`, and who turns
     character(len=:), allocatable :: text
 
-    text = 'direction '//text_of(c)//' of '//model%name_of(of_node, node)
+    text = 'direction '//text_of(merge(6, c, c == angle))//' of '//model%name_of(of_node, node)
   end function freedom
 
   !> Sets of nodes that elements join, and ties if these are to count: then they are the bodies.
@@ -106,8 +131,30 @@ contains
         call joined%join(i, model%leader(c, i))
       end do
     end do
+    if (by_ties) call join_others(model, joined)
     call joined%numbers(set, sets)
   end subroutine join_nodes
+
+  !> Join what follows a platen that turns, what an equation is of, and both ends of a spring.
+  pure subroutine join_others(model, joined)
+    type(model_type), intent(in) :: model
+    type(partition), intent(inout) :: joined
+    integer :: i, k
+
+    do k = 1, size(model%platen)
+      do i = 1, size(model%platen(k)%follower)
+        call joined%join(model%platen(k)%leader, model%platen(k)%follower(i))
+      end do
+    end do
+    do k = 1, size(model%equation)
+      do i = 2, size(model%equation(k)%node)
+        call joined%join(model%equation(k)%node(1), model%equation(k)%node(i))
+      end do
+    end do
+    do k = 1, size(model%spring)
+      if (all(model%spring(k)%node > 0)) call joined%join(model%spring(k)%node(1), model%spring(k)%node(2))
+    end do
+  end subroutine join_others
 
   !> Set the travel of each node, and what supports prescribe beyond it.
   pure subroutine find_travels(model)
@@ -119,6 +166,12 @@ contains
     model%beyond_travel = model%prescribed
     moved = .false.
     moved(pack(model%body, any(model%prescribed /= 0.0_wp, dim=1))) = .true.
+    do i = 1, size(model%equation)   ! what it joins need not follow a rigid motion
+      moved(model%body(model%equation(i)%node(1))) = .false.
+    end do
+    do i = 1, size(model%spring)     ! nor is a spring without force then
+      moved(model%body(maxval(model%spring(i)%node))) = .false.
+    end do
     do b = 1, model%bodies
       if (moved(b)) call find_travel(model, pack([(i, i=1, model%nodes)], model%body == b))
     end do

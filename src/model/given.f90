@@ -80,6 +80,7 @@ contains
                   'body_load('//text_of(i)//') is out of range', any_size)
       end associate
     end do
+    call check_ties()
     do i = 1, size(scene%line)
       call fit('line('//text_of(i)//')%node', any_shape, scene%line(i)%node)
       if (allocated(scene%line(i)%node)) &
@@ -139,6 +140,52 @@ contains
                   text_of_shape(wanted))
       end if
     end subroutine fit
+
+    !> What ties freedoms names nodes that are there.
+    subroutine check_ties()
+      character(len=:), allocatable :: name
+
+      do i = 1, size(scene%platen)
+        name = 'platen('//text_of(i)//')%'
+        call fit(name//'follower', any_shape, scene%platen(i)%follower)
+        call need([within(scene%platen(i)%leader, nodes)], name//'leader is no node', a_node)
+        if (found%errors > 0) return
+        call need(within(scene%platen(i)%follower, nodes), name//'follower(#) is no node', a_node)
+        call need([has_size(scene%platen(i)%prescribed) .and. has_size(scene%platen(i)%moment)], &
+                  name//'prescribed or moment is out of range', any_size)
+        call need([all(scene%kinematics /= axisymmetric)], name//'leader would turn, and rings do not', &
+                  'leader: it does not turn')
+      end do
+      call check_equations()
+      do i = 1, size(scene%spring)
+        associate (spring => scene%spring(i))
+          call need([any(spring%node > 0), within(spring%node + 1, nodes + 1), &
+                     spring%node == 0 .or. within(spring%component, directions), &
+                     spring%node(1) /= spring%node(2) .or. spring%component(1) /= spring%component(2)], &
+                    'spring('//text_of(i)//') is not between two freedoms, or one and the ground', &
+                    'node 0: the ground; component 1 or 2')
+          call need([spring%stiffness >= least_divisor .and. spring%stiffness <= farthest], &
+                    'spring('//text_of(i)//')%stiffness is none', above_zero)
+        end associate
+      end do
+    end subroutine check_ties
+
+    subroutine check_equations()
+      character(len=:), allocatable :: name
+
+      do i = 1, size(scene%equation)
+        name = 'equation('//text_of(i)//')%'
+        call fit(name//'coefficient', any_shape, scene%equation(i)%coefficient)
+        if (found%errors > 0) return
+        call fit(name//'component', shape(scene%equation(i)%coefficient), scene%equation(i)%component)
+        call fit(name//'node', shape(scene%equation(i)%coefficient), scene%equation(i)%node)
+        call need([size(scene%equation(i)%coefficient) > 0], name//'coefficient is empty', 'a term at least')
+        if (found%errors > 0) return
+        call need(within(scene%equation(i)%node, nodes), name//'node(#) is no node', a_node)
+        call need(within(scene%equation(i)%component, directions), name//'component(#) is none', '1 or 2')
+        call need(has_size(scene%equation(i)%coefficient), name//'coefficient(#) is out of range', any_size)
+      end do
+    end subroutine check_equations
 
     !> A curve that can be.
     subroutine check_curve()

@@ -3,12 +3,13 @@
 module epcont_model_load_cases
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: directions
-  use epcont_model_arrays, only: body_load, side_pressure
+  use epcont_model_arrays, only: angle, body_load, side_pressure
   use epcont_model_body_forces, only: put_body_forces
   use epcont_model_expansion, only: find_free_strains
   use epcont_model_freedoms, only: find_travels
   use epcont_model_model, only: model_type
   use epcont_model_pressure, only: add_pressure
+  use epcont_model_ties, only: add_moment
   implicit none
   private
   public :: load_case, load_cases, put_case
@@ -35,10 +36,17 @@ module epcont_model_load_cases
     type(body_load) :: given                    !! factor 0: no case has it
   end type set_body_load
 
+  !> A moment at the leader of a platen that turns.
+  type, public :: set_moment
+    integer :: set = 0                          !! by its id
+    integer :: platen = 0
+    real(wp) :: moment = 0.0_wp                 !! [force*length]
+  end type set_moment
+
   !> A displacement of a freedom that supports hold.
   type, public :: set_displacement
     integer :: set = 0                          !! by its id
-    integer :: c = 0, node = 0                  !! direction and node
+    integer :: c = 0, node = 0                  !! direction and node; or `angle` and platen
     real(wp) :: displacement = 0.0_wp           !! [length]
   end type set_displacement
 
@@ -66,6 +74,7 @@ module epcont_model_load_cases
     type(nodal_force), allocatable :: force(:)             !! FORCE
     type(set_pressure), allocatable :: pressure(:)         !! PLOADX1
     type(set_body_load), allocatable :: body(:)            !! each GRAV, then each RFORCE
+    type(set_moment), allocatable :: moment(:)             !! MOMENT
     type(set_displacement), allocatable :: held_at(:)      !! SPC, of sets of supports; others are held at 0
     type(set_displacement), allocatable :: moved(:)        !! SPCD, of sets of loads: instead of those
     type(set_temperatures), allocatable :: heat(:)         !! TEMP and TEMPD, of those sets that cases have
@@ -110,8 +119,12 @@ contains
         model%body_load(i)%factor = share_of(case, cases%body(i)%set)*model%body_load(i)%factor
       end do
       call put_body_forces(model)
+      do i = 1, size(cases%moment)
+        share = share_of(case, cases%moment(i)%set)
+        call add_moment(model, cases%moment(i)%platen, share*cases%moment(i)%moment, model%load)
+      end do
     end associate
-    call put_displacements(cases, cases%case(k), model%prescribed)
+    call put_displacements(cases, cases%case(k), model)
     call find_travels(model)
     call put_temperatures(cases, cases%case(k), model)
   end subroutine put_case
@@ -130,13 +143,14 @@ contains
   end subroutine put_temperatures
 
   !> What supports prescribe in a case.
-  pure subroutine put_displacements(cases, case, prescribed)
+  pure subroutine put_displacements(cases, case, model)
     type(load_cases), intent(in) :: cases
     type(load_case), intent(in) :: case
-    real(wp), intent(out) :: prescribed(:, :)   !! [length] [2, nodes]
+    type(model_type), intent(inout) :: model
+    real(wp), allocatable :: prescribed(:, :)   ! with the angles of platens
     integer :: i
 
-    prescribed = 0.0_wp
+    allocate (prescribed(angle, max(model%nodes, size(model%platen))), source=0.0_wp)
     do i = 1, size(cases%held_at)
       associate (at => cases%held_at(i))
         if (at%set == case%supports) prescribed(at%c, at%node) = at%displacement
@@ -152,6 +166,8 @@ contains
         prescribed(at%c, at%node) = prescribed(at%c, at%node) + share_of(case, at%set)*at%displacement
       end associate
     end do
+    model%prescribed = prescribed(:directions, :model%nodes)
+    model%platen%prescribed = prescribed(angle, :size(model%platen))
   end subroutine put_displacements
 
   !> The factor of a set of loads in a case; 0 where it is none of it.

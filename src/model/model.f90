@@ -10,12 +10,19 @@ module epcont_model_model
   use epcont_element_kinematics, only: axisymmetric, directions
   use epcont_geometry_boundary_line, only: boundary_line
   use epcont_geometry_outline_shape, only: outline_type
-  use epcont_model_arrays, only: scene_type
+  use epcont_model_arrays, only: angle, scene_type
   use epcont_model_finding, only: of_body_load, of_couple, of_element, of_line, of_node, of_pair, &
       of_paper_ratio, of_section
   implicit none
   private
-  public :: line_contact, model_type
+  public :: freedom_sums, line_contact, model_type
+
+  !> Freedoms that are sums of others, which follow nothing: row k has the terms first(k) to last(k).
+  type :: freedom_sums
+    integer, allocatable :: first(:), last(:)       !! [rows]
+    integer, allocatable :: component(:), node(:)   !! component `angle`: of the platen of that number [terms]
+    real(wp), allocatable :: weight(:)              !! [terms]
+  end type freedom_sums
 
   !> Contact of boundary lines, and the pairs that came of it. Lines that go on in each other, of one BCONP or
   !! of several, are one contact: all their sides on the one hand are slaves, on the other masters.
@@ -65,6 +72,8 @@ module epcont_model_model
     !> The rigid motion of its body that supports prescribe as a whole, and what they prescribe beyond it
     !! [length] [2, nodes].
     real(wp), allocatable :: travel(:, :), beyond_travel(:, :)
+    integer, allocatable :: sum_of(:, :)        !! row of each freedom that is a sum; 0: it is none [2, nodes]
+    type(freedom_sums) :: sum
     integer, allocatable :: pair_id(:)          !! [pairs]
     !> Row k of N: along its normal the nodes row_node(row_start(k):row_start(k+1)-1) open the gap by
     !! row_weight. The weights of a row sum to 0. [pairs + 1], [entries], [entries]
@@ -88,6 +97,8 @@ module epcont_model_model
     procedure :: is_held
     procedure :: is_tied
     procedure :: is_rigid
+    procedure :: platen_of
+    procedure :: prescribed_sum
     procedure :: can_yield
     procedure :: has_flat_curve
     procedure :: bodies_of_pairs
@@ -192,21 +203,25 @@ contains
     has_rings = self%is_ring(1)
   end function has_rings
 
-  !> Does RBE2 say where one of these nodes goes?
+  !> Does RBE2 or MPC say where one of these nodes goes?
   pure logical function is_tied(self, node)
     class(model_type), intent(in) :: self
     integer, intent(in) :: node(:)   !! these nodes [any]
 
-    is_tied = any(self%leader(1, node) /= node) .or. any(self%leader(2, node) /= node)
+    is_tied = any(self%leader(1, node) /= node) .or. any(self%leader(2, node) /= node) .or. &
+              any(self%sum_of(:, node) > 0)
   end function is_tied
 
   !> Do supports and RBE2 keep the shape between these nodes? In each direction they are all held, or all tied
-  !! to one.
+  !! to one, or they turn as one.
   pure logical function is_rigid(self, node)
     class(model_type), intent(in) :: self
     integer, intent(in) :: node(:)   !! these nodes [any]
-    integer :: c
+    integer :: c, platen(size(node))
 
+    platen = [(self%platen_of(node(c)), c=1, size(node))]
+    is_rigid = all(platen == platen(1)) .and. platen(1) > 0
+    if (is_rigid) return
     is_rigid = .true.
     do c = 1, directions
       associate (leader => self%leader(c, node))
@@ -214,6 +229,18 @@ contains
       end associate
     end do
   end function is_rigid
+
+  !> The platen that turns and that a node is of; 0: none.
+  pure integer function platen_of(self, node) result(platen)
+    class(model_type), intent(in) :: self
+    integer, intent(in) :: node   !! which node
+
+    platen = findloc(self%platen%leader, node, dim=1)
+    associate (row => self%sum_of(1, node))
+      if (row == 0) return
+      if (self%sum%component(self%sum%last(row)) == angle) platen = self%sum%node(self%sum%last(row))
+    end associate
+  end function platen_of
 
   !> Can an element yield?
   elemental function can_yield(self, element)
@@ -245,6 +272,24 @@ contains
 
     is_held = self%held(component, self%leader(component, node))
   end function is_held
+
+  !> What supports prescribe of a freedom that is a sum, beyond the travel of its body [length].
+  pure real(wp) function prescribed_sum(self, component, node) result(u)
+    class(model_type), intent(in) :: self
+    integer, intent(in) :: component, node   !! 1: x, 2: y
+    integer :: i
+
+    u = 0.0_wp
+    do i = self%sum%first(self%sum_of(component, node)), self%sum%last(self%sum_of(component, node))
+      associate (c => self%sum%component(i), at => self%sum%node(i))
+        if (c == angle) then
+          if (self%platen(at)%held) u = u + self%sum%weight(i)*self%platen(at)%prescribed
+        else if (self%held(c, at)) then
+          u = u + self%sum%weight(i)*self%beyond_travel(c, at)
+        end if
+      end associate
+    end do
+  end function prescribed_sum
 
   !> The bodies that each pair has nodes of; 0 ends them [any, pairs].
   pure function bodies_of_pairs(self) result(body)

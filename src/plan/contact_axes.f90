@@ -10,6 +10,7 @@
 module epcont_plan_contact_axes
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: directions
+  use epcont_model_arrays, only: angle
   use epcont_model_model, only: model_type
   implicit none
   private
@@ -45,7 +46,7 @@ contains
     !> Along which each node is wanted first, and whether along another one too
     real(wp), allocatable :: first(:, :)
     logical, allocatable :: is_whole(:)
-    logical, allocatable :: leads(:)        ! others follow the node
+    logical, allocatable :: leads(:)        ! others follow the node, or it has a spring
     integer :: c, i, k, node, turned
 
     allocate (axes%pair(model%nodes), axes%turn(model%nodes), source=0)
@@ -61,12 +62,16 @@ contains
         if (model%leader(c, node) /= node) leads(model%leader(c, node)) = .true.
       end do
     end do
+    leads(pack(model%sum%node, model%sum%component /= angle)) = .true.
+    do k = 1, size(model%spring)
+      leads(pack(model%spring(k)%node, model%spring(k)%node > 0)) = .true.
+    end do
     turned = 0
     do node = 1, model%nodes
       if (axes%pair(node) == 0) cycle
       axes%wanted(:, node) = is_whole(node) .or. abs(first(:, node)) > rounding
       if (.not. all(axes%wanted(:, node)) .or. is_whole(node) .or. leads(node) .or. &
-          any(model%leader(:, node) /= node .or. fixed(:, node))) cycle
+          any(model%leader(:, node) /= node .or. model%sum_of(:, node) > 0 .or. fixed(:, node))) cycle
       turned = turned + 1
       axes%turn(node) = turned
       axes%wanted(:, node) = [.true., .false.]

@@ -10,6 +10,7 @@ module epcont_plan_free_motion
   use epcont_base_tolerances, only: dependent, no_effect
   use epcont_element_kinematics, only: directions
   use epcont_linalg_dense, only: lu_solve, null_space
+  use epcont_model_arrays, only: angle, spring_type
   use epcont_model_finding, only: findings, of_body, of_node
   use epcont_model_model, only: model_type
   use epcont_plan_rigid_parts, only: find_rigid_parts, part_motions, rigid_parts
@@ -131,7 +132,8 @@ contains
     nodes = new_incidence(reshape(model%body, [1, model%nodes]), model%bodies)
     parts = new_incidence(reshape(motions%parts%body, [1, motions%parts%count]), model%bodies)
     allocate (motions%own_part(motions%parts%count), motions%first(model%bodies + 1))
-    associate (most => [(count(model%reference(:, nodes%of(b))), b=1, model%bodies)])   ! motions of each body
+    associate (most => [(count(model%reference(:, nodes%of(b))) + size(turned(model, b)), &
+                         b=1, model%bodies)])   ! motions of each body
       allocate (motions%body(sum(most)), motions%node(sum(most)), motions%component(sum(most)))
       allocate (motions%coefficient(part_motions, sum(most*(parts%start(2:) - parts%start(:model%bodies)))))
       allocate (motions%before(sum(most)))
@@ -150,6 +152,17 @@ contains
     motions%component = motions%component(:motions%count)
   end subroutine find_free_motions
 
+  !> The platens of a body whose angles are SUPORT freedoms.
+  pure function turned(model, body) result(platen)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: body
+    integer, allocatable :: platen(:)
+    integer :: k
+
+    platen = pack([(k, k=1, size(model%platen))], &
+                  model%platen%reference .and. model%body(model%platen%leader) == body)
+  end function turned
+
   !> Free motions of one body.
   subroutine examine_body(model, nodes, own, columns, motions, found)
     type(model_type), intent(in) :: model
@@ -160,13 +173,19 @@ contains
     character(len=:), allocatable :: body
     real(wp), allocatable :: basis(:, :), factors(:, :), loose(:, :), measured(:, :), square(:, :), unit(:, :)
     integer, allocatable :: component(:), node(:)   ! of the SUPORT freedoms
-    integer :: i, info, m
+    integer, allocatable :: platen(:)               ! whose angles are some of these, the last
+    integer :: i, info, m, shifts
 
     node = pack(spread(nodes, 1, directions), model%reference(:, nodes))
     component = pack(spread([(i, i=1, directions)], 2, size(nodes)), model%reference(:, nodes))
+    platen = turned(model, model%body(nodes(1)))
+    shifts = size(node)
+    node = [node, model%platen(platen)%leader]
+    component = [component, spread(angle, 1, size(platen))]
     allocate (measured(size(node), part_motions*size(own)))
     do i = 1, size(node)
-      measured(i, :) = row(motions%parts%of_node(node(i)), node(i), component(i))
+      if (i <= shifts) measured(i, :) = row_of(component(i), node(i))
+      if (i > shifts) measured(i, :) = row_of(angle, platen(i - shifts))
     end do
     basis = null_space(held_rows(), dependent)
     m = size(basis, 2)
@@ -190,6 +209,8 @@ contains
                              ' motions apart', 'SUPORT nodes farther from each other')
         return
       end if
+      ! By how much a turn moves the body's extent has told the motions apart; now it is an angle.
+      unit(:, shifts + 1:) = unit(:, shifts + 1:)*motions%parts%extent(model%body(nodes(1)))
       associate (first => motions%count + 1, last => motions%count + m, next => columns + size(own)*m)
         motions%body(first:last) = model%body(nodes(1))
         motions%node(first:last) = node
@@ -211,27 +232,61 @@ contains
       column = part_motions*(motions%own_part(part) - 1)
     end function column
 
-    !> Displacement of a freedom, as one of a part, by the motions of all parts of the body.
-    pure function row(part, node, c)
-      integer, intent(in) :: part, node, c
-      real(wp) :: row(part_motions*size(own))
+    !> A freedom, or how far the angle of a platen moves the extent of its body, as one of the parts.
+    pure function row_of(c, node) result(of_parts)
+      integer, intent(in) :: c, node
+      real(wp) :: of_parts(part_motions*size(own))
 
-      row = 0.0_wp
-      associate (of_node => motions%parts%rows(model, node))
-        row(column(part) + 1:column(part) + part_motions) = of_node(c, :)
-      end associate
-    end function row
+      of_parts = 0.0_wp
+      if (c == angle) then
+        of_parts(column(motions%parts%of_platen(node)) + part_motions) = 1.0_wp
+      else
+        associate (of_node => motions%parts%rows(model, node), at => column(motions%parts%of_node(node)))
+          of_parts(at + 1:at + part_motions) = of_node(c, :)
+        end associate
+      end if
+    end function row_of
 
-    !> Rows of what hinges, ties and supports hold, and of what parts cannot do.
+    !> What a freedom is beyond that, or the sum, which it follows.
+    pure function row_beyond(c, node) result(of_parts)
+      integer, intent(in) :: c, node
+      real(wp) :: of_parts(part_motions*size(own)), weight
+      integer :: i
+
+      of_parts = row_of(c, node)
+      if (model%leader(c, node) /= node) of_parts = of_parts - row_of(c, model%leader(c, node))
+      if (model%leader(c, node) /= node .or. model%sum_of(c, node) == 0) return
+      do i = model%sum%first(model%sum_of(c, node)), model%sum%last(model%sum_of(c, node))
+        weight = model%sum%weight(i)
+        if (model%sum%component(i) == angle) weight = weight/motions%parts%extent(model%body(node))
+        of_parts = of_parts - weight*row_of(model%sum%component(i), model%sum%node(i))
+      end do
+    end function row_beyond
+
+    !> What a spring is strained by.
+    pure function row_of_spring(spring) result(of_parts)
+      type(spring_type), intent(in) :: spring
+      real(wp) :: of_parts(part_motions*size(own))
+      integer :: i
+
+      of_parts = 0.0_wp
+      do i = 1, 2
+        if (spring%node(i) > 0) of_parts = of_parts + (2*i - 3)*row_of(spring%component(i), spring%node(i))
+      end do
+    end function row_of_spring
+
+    !> Rows of what hinges, ties, springs and supports hold, and of what parts cannot do.
     pure function held_rows() result(held)
       real(wp), allocatable :: held(:, :)
       logical :: bound(directions, size(nodes))
       integer :: c, i, rows
 
-      bound = model%held(:, nodes) .or. model%leader(:, nodes) /= spread(nodes, 1, directions)
+      bound = model%held(:, nodes) .or. model%leader(:, nodes) /= spread(nodes, 1, directions) .or. &
+              model%sum_of(:, nodes) > 0
       associate (parts => motions%parts)
         rows = directions*count(model%body(parts%hinge(1, :)) == model%body(nodes(1)))
-        allocate (held(rows + part_motions*size(own) + count(bound), part_motions*size(own)), source=0.0_wp)
+        rows = rows + part_motions*size(own) + count(bound) + size(model%platen) + size(model%spring)
+        allocate (held(rows, part_motions*size(own)), source=0.0_wp)
         rows = 0
         do i = 1, size(parts%hinge, 2)
           if (model%body(parts%hinge(1, i)) /= model%body(nodes(1))) cycle
@@ -253,13 +308,20 @@ contains
           do c = 1, directions
             if (.not. bound(c, i)) cycle
             rows = rows + 1
-            held(rows, :) = row(parts%of_node(nodes(i)), nodes(i), c)
-            associate (leader => model%leader(c, nodes(i)))
-              if (leader /= nodes(i)) held(rows, :) = held(rows, :) - row(parts%of_node(leader), leader, c)
-            end associate
+            held(rows, :) = row_beyond(c, nodes(i))
           end do
         end do
       end associate
+      do i = 1, size(model%platen)
+        if (.not. model%platen(i)%held .or. model%body(model%platen(i)%leader) /= model%body(nodes(1))) cycle
+        rows = rows + 1
+        held(rows, :) = row_of(angle, i)
+      end do
+      do i = 1, size(model%spring)
+        if (model%body(maxval(model%spring(i)%node)) /= model%body(nodes(1))) cycle
+        rows = rows + 1
+        held(rows, :) = row_of_spring(model%spring(i))
+      end do
       held = held(:rows, :)
     end function held_rows
 
@@ -270,12 +332,14 @@ contains
       real(wp) :: motion(directions*size(nodes), size(loose, 3))
       character(len=:), allocatable :: card, text
       integer :: at(2), i, j, k, moving
+      logical :: follows(size(motion, 1))        ! and cannot be a SUPORT freedom
 
       moving = 0
       do i = 1, size(nodes)
         associate (of_part => loose(:, motions%own_part(motions%parts%of_node(nodes(i))), :))
           motion(directions*(i - 1) + 1:directions*i, :) = &
             matmul(motions%parts%rows(model, nodes(i)), of_part)
+          follows(directions*(i - 1) + 1:directions*i) = model%sum_of(:, nodes(i)) > 0
           if (moving == 0 .and. any(abs(of_part) > no_effect*maxval(abs(loose)))) moving = nodes(i)
         end associate
       end do
@@ -284,7 +348,7 @@ contains
       card = ''
       do k = 1, size(motion, 2)
         ! The first of those that move nearly as much as the largest, so that rounding does not choose.
-        associate (moved => abs(motion(:, k:)))
+        associate (moved => merge(0.0_wp, abs(motion(:, k:)), spread(follows, 2, size(motion, 2) - k + 1)))
           at = findloc(moved >= nearly*maxval(moved), .true.)
         end associate
         i = at(1)

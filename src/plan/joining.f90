@@ -52,12 +52,14 @@ contains
     many_of = merge(many_where_yielding, many_of_pairs, any([(model%can_yield(e), e=1, model%elements)]))
   end function many_of
 
-  !> Can it have? At each pair something gives way.
+  !> Can it have? At each pair something gives way, and no freedom is a sum of others or has a spring.
   logical function can_join(model)
     type(model_type), intent(in) :: model   !! the scene
     logical :: gives(model%nodes)
     integer :: i, k
 
+    can_join = size(model%sum%first) + size(model%spring) == 0
+    if (.not. can_join) return
     gives = [(model%around%start(i + 1) > model%around%start(i), i=1, model%nodes)]
     do i = 1, model%nodes
       gives(i) = gives(i) .and. .not. (model%held(1, model%leader(1, i)) .and. &

@@ -10,6 +10,7 @@ module epcont_plan_numbering
   use epcont_linalg_panel_layout, only: new_panel_layout, panel_layout
   use epcont_model_controls, only: solver_auto, solver_band, solver_frontal
   use epcont_model_model, only: model_type
+  use epcont_plan_border, only: number_border
   use epcont_plan_contact_axes, only: contact_axes, new_contact_axes
   use epcont_plan_dissection, only: dissect, dissection
   use epcont_plan_joined_numbering, only: number_joined, spring_rows
@@ -43,13 +44,15 @@ module epcont_plan_numbering
     real(wp) :: operations = 0.0_wp        !! of factor and flexibility
     integer :: half_bandwidth = 0
     integer :: border = 0                  !! leaders of ties that nothing holds, kept out of the band
+    !> What freedoms of negative numbers are, sums of those in the border; the first are each one of these
+    type(sparse_rows) :: tied
   end type body_numbering
 
   type :: numbering_type
     logical :: joined = .false.            !! all bodies are one system, which pairs join
     type(contact_axes) :: axes             !! along which the freedoms are, and what gaps want of them
-    !> Equation of each freedom in its body: positive in the band, negative in the border, 0 held; that of a
-    !! tied freedom is its leader's, and never positive. [directions, nodes]
+    !> Equation of each freedom in its body: positive in the band, 0 held, negative a row of its `tied`; that
+    !! of a tied freedom is its leader's, and never positive. [directions, nodes]
     integer, allocatable :: equation(:, :)
     type(body_numbering), allocatable :: body(:)   !! [bodies], or one where they are joined
   contains
@@ -87,7 +90,8 @@ contains
 
     allocate (numbering%equation(directions, model%nodes), source=0)
     fixed = model%held .or. model%reference
-    free = .not. fixed .and. model%leader == spread([(i, i=1, model%nodes)], 1, directions)
+    free = .not. fixed .and. model%sum_of == 0 .and. &
+           model%leader == spread([(i, i=1, model%nodes)], 1, directions)
     numbering%axes = new_contact_axes(model, fixed)
     stands_last = numbering%axes%pair > 0 .and. .not. any(free .and. .not. numbering%axes%wanted, dim=1)
     nodes = new_incidence(reshape(model%body, [1, model%nodes]), model%bodies)
@@ -120,6 +124,7 @@ contains
 
       call numbering%axes%ask_nothing()
       call number_joined(model, numbering%equation, all%node, first, all%first_contact)
+      all%tied%start = [1]
       all%spring = spring_rows(model, numbering%equation)
       all%element = [(i, i=1, model%elements)]
       all%equations = first(size(first)) - 1
@@ -293,31 +298,15 @@ contains
 
     !> Number the freedoms of a body along an order of its nodes; those that gaps depend on, if they are to be
     !! last, in that of a narrow band too, and of fronts in that of their pairs: then the inverse of their
-    !! block is in the order of the gaps. A leader of ties that is free goes to the border, so that the band
-    !! never sees a whole line of nodes on one freedom.
+    !! block is in the order of the gaps.
     subroutine number_nodes(order, body)
       integer, intent(in) :: order(:)
       type(body_numbering), intent(inout) :: body   !! whether they are to be last, and the solver, are known
       integer, allocatable :: contact(:)
-      integer :: c, i, leader
 
       body%node = order
       body%equations = 0
-      body%border = 0
-      numbering%equation(:, order) = 0
-      do i = 1, size(order)
-        do c = 1, directions
-          leader = model%leader(c, order(i))
-          if (leader == order(i) .or. fixed(c, leader) .or. numbering%equation(c, leader) < 0) cycle
-          body%border = body%border + 1
-          numbering%equation(c, leader) = -body%border
-        end do
-      end do
-      do i = 1, size(order)
-        do c = 1, directions
-          numbering%equation(c, order(i)) = numbering%equation(c, model%leader(c, order(i)))
-        end do
-      end do
+      call number_border(model, order, numbering%equation, body%border, body%tied)
       contact = pack(order, numbering%axes%pair(order) > 0)
       if (body%contact_last) then
         call number_freedoms(order, [.false.], body)

@@ -1,7 +1,7 @@
 !> Rigid parts of the bodies, as far as their free motions are concerned.
 !>
 !> Elements that share two nodes turn as one; where parts share a single node they are hinged. A node without
-!> elements is a part that cannot turn.
+!> elements is a part that cannot turn. The angle of a platen that turns is a part that can do nothing else.
 module epcont_plan_rigid_parts
   use epcont_base_kinds, only: wp
   use epcont_base_partition, only: new_partition, partition
@@ -21,6 +21,7 @@ module epcont_plan_rigid_parts
     !> Rings do not move along x nor turn, and what has no elements does not turn [part_motions, count]
     logical, allocatable :: cannot(:, :)
     integer, allocatable :: hinge(:, :)     !! node, part, other part of each hinge [3, hinges]
+    integer, allocatable :: of_platen(:)    !! a part of each platen that turns [platens]
     real(wp), allocatable :: centre(:, :)   !! of each body [length] [directions, bodies]
     real(wp), allocatable :: extent(:)      !! of each body, largest half width [length] [bodies]
   contains
@@ -35,7 +36,7 @@ contains
     type(model_type), intent(in) :: model   !! the scene
     type(rigid_parts) :: parts
     integer, allocatable :: of_element(:)   ! the part of each element
-    integer :: e, i, solid
+    integer :: e, i, points, solid
 
     call join_elements()
     parts%count = solid
@@ -48,10 +49,15 @@ contains
         parts%of_node(i) = parts%count
       end if
     end do
+    points = parts%count
+    parts%count = points + size(model%platen)
+    parts%of_platen = [(i, i=points + 1, parts%count)]
     allocate (parts%body(parts%count))
     allocate (parts%cannot(part_motions, parts%count), source=.false.)
-    parts%cannot(part_motions, solid + 1:) = .true.
+    parts%cannot(part_motions, solid + 1:points) = .true.
+    parts%cannot(:directions, points + 1:) = .true.
     parts%body(parts%of_node) = model%body
+    parts%body(parts%of_platen) = model%body(model%platen%leader)
     do e = 1, model%elements
       parts%body(of_element(e)) = model%body(model%connectivity(1, e))
       if (model%kinematics(model%section(e)) == axisymmetric) &

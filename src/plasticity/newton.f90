@@ -11,6 +11,7 @@ module epcont_plasticity_newton
   use epcont_linear_scene_state, only: scene_state
   use epcont_material_material_law, only: point_state
   use epcont_model_model, only: model_type
+  use epcont_model_springs, only: spring_forces
   use epcont_plasticity_secant, only: secant_method
   use epcont_system_threads, only: threads_over
   implicit none
@@ -103,21 +104,22 @@ contains
       integer :: k
 
       length = 1.0_wp
-      zero = bracket([0.0_wp, 1.0_wp], [slope_of(about%point), slope_of(found%point)])
+      zero = bracket([0.0_wp, 1.0_wp], [slope_of(about%point, 0.0_wp), slope_of(found%point, 1.0_wp)])
       begin = zero%values(1)
       if (begin >= 0.0_wp .or. zero%values(2) <= -flat_enough*begin) return
       do k = 1, most_slopes
         length = zero%likely()
         point = linear%materials%states(about%strain + length*along)
-        slope = slope_of(point)
+        slope = slope_of(point, length)
         if (abs(slope) <= -found_enough*begin) return
         call zero%take(length, slope)
       end do
     end subroutine find_length
 
     !> (f_int - f).d with the stresses of some states.
-    real(wp) function slope_of(state) result(slope)
+    real(wp) function slope_of(state, length) result(slope)
       type(point_state), intent(in) :: state(:)
+      real(wp), intent(in) :: length   !! where along the step they are
       real(wp) :: work(size(state))
       integer :: p
 
@@ -130,6 +132,8 @@ contains
       do p = 1, size(work)   ! in their order
         slope = slope + work(p)
       end do
+      if (size(model%spring) > 0) &
+        slope = slope + sum(spring_forces(model, about%displacement + length*travel)*travel)
     end function slope_of
   end subroutine advance
 end module epcont_plasticity_newton

@@ -188,8 +188,8 @@ contains
     subroutine list_summary()
       call listing%heading('SUMMARY')
       call list_figures([character(len=21) :: 'max_pressure', 'total_contact_force', &
-        'pairs_in_contact', 'approach_', 'plastic_elements', 'max_equivalent_stress', 'max_displacement', &
-        'lowest_temperature', 'highest_temperature', 'status'])
+        'pairs_in_contact', 'approach_', 'angle_', 'moment_', 'spring_', 'plastic_elements', &
+        'max_equivalent_stress', 'max_displacement', 'lowest_temperature', 'highest_temperature', 'status'])
       call listing%heading('CERTIFICATE  (recomputed from displacements and forces alone; tolerance '// &
                            short_real(run%certificate%tolerance)//')')
       call list_figures([character(len=25) :: 'equilibrium_residual', 'smallest_', &

@@ -3,12 +3,14 @@ module epcont_report_names
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: short_real, text_of
   use epcont_element_kinematics, only: directions
+  use epcont_model_arrays, only: angle
   use epcont_model_finding, only: of_node
   use epcont_model_model, only: model_type
+  use epcont_plan_free_motion, only: free_motions
   use epcont_plan_planned_scene, only: planned_scene
   implicit none
   private
-  public :: centre_name, first_grid, joined, motion_name, point_name, when
+  public :: centre_name, direction_of, first_grid, joined, motion_name, point_name, when
 
 contains
 
@@ -28,8 +30,17 @@ contains
     character(len=:), allocatable :: name
 
     name = scene%model%name_of(of_node, scene%motions%node(k))//' direction '// &
-           text_of(scene%motions%component(k))
+           direction_of(scene%motions, k)
   end function motion_name
+
+  !> `2`, the direction of a SUPORT freedom; 6 of a leader that turns.
+  pure function direction_of(motions, k) result(digit)
+    type(free_motions), intent(in) :: motions
+    integer, intent(in) :: k                    !! which of them
+    character(len=1) :: digit
+
+    digit = text_of(merge(6, motions%component(k), motions%component(k) == angle))
+  end function direction_of
 
   !> `1.000 2.500`.
   pure function point_name(x) result(name)

@@ -11,6 +11,8 @@ module epcont_report_outcome
   use epcont_certificate_certificate, only: figure_name
   use epcont_contact_problem, only: contact_no_equilibrium, contact_overlap, contact_solved
   use epcont_element_kinematics, only: directions
+  use epcont_element_kinematics, only: directions
+  use epcont_model_arrays, only: angle
   use epcont_model_controls, only: precision_name
   use epcont_model_finding, only: findings, of_node, of_scene
   use epcont_report_columns, only: percent
@@ -202,7 +204,9 @@ contains
       k = maxloc(abs(run%answer%contact%escape), dim=1)
       text = body_name(run%motions%body(k))//' moves off and no contact holds it: '// &
              run%model%name_of(of_node, run%motions%node(k))//' moves along '// &
-             merge('-', '+', run%answer%contact%escape(k) < 0)//axis_name(run%motions%component(k))
+             merge('-', '+', run%answer%contact%escape(k) < 0)// &
+             axis_name(min(directions, run%motions%component(k)))
+      if (run%motions%component(k) == angle) text = text(:index(text, ' moves along'))//'turns'
     end function escaping
 
     !> Why no set of pairs passed the test.

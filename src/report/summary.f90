@@ -8,7 +8,9 @@ module epcont_report_summary
   use epcont_element_kinematics, only: directions
   use epcont_report_columns, only: estimate, factor, force, full_numbers, known, length, listed_number, &
       number, part, percent, rounding, size_of, stress
-  use epcont_report_names, only: motion_name, point_name, when
+  use epcont_model_arrays, only: angle
+  use epcont_model_springs, only: spring_stretch
+  use epcont_report_names, only: direction_of, motion_name, point_name, when
   use epcont_report_outcome, only: limit_of_pressure, reason_of, unbounded
   use epcont_report_run, only: run_results
   use epcont_result_stresses, only: first_largest, place_of_point
@@ -16,7 +18,7 @@ module epcont_report_summary
   private
   public :: figure_type, summarise
 
-  character(len=*), parameter :: none = ''
+  character(len=*), parameter :: none = '', radian = 'radian'
 
   integer, parameter :: room_at_first = 64   !! figures
 
@@ -55,17 +57,25 @@ contains
 
     !> Contact, yielding and stresses.
     subroutine put_answer()
+      character(len=:), allocatable :: id
       real(wp) :: farthest
 
       farthest = maxval(abs(run%answer%displacement))
       if (run%model%pairs > 0) call put('max_pressure', stress, known, run%answer%largest_pressure(), &
           'largest pressure', reason_of(limit_of_pressure(run)))
       do k = 1, run%motions%count
-        call put('approach_'//motion_key(), length, number, run%answer%contact%approach(k), &
+        call put('approach_'//motion_key(), motion_unit(), number, run%answer%contact%approach(k), &
                  'approach: '//motion_name(run, k), &
                  when(run%answer%contact%motion_free(k), newline// &
                       '    nothing resists or drives this motion: its value is a choice'), &
-                 listed_number(number, run%answer%contact%approach(k), farthest))
+                 listed_number(number, run%answer%contact%approach(k), &
+                               merge(0.0_wp, farthest, run%motions%component(k) == angle)))
+      end do
+      call put_platens()
+      do k = 1, size(run%model%spring)
+        id = text_of(run%model%spring(k)%id)
+        call put('spring_'//id, force, number, run%model%spring(k)%stiffness* &
+                 spring_stretch(run%model, k, run%answer%displacement), 'pull of spring '//id)
       end do
       call put('total_contact_force', force, number, sum(run%answer%contact%force), &
                when(run%model%pairs > 0, 'total contact force'))
@@ -101,6 +111,18 @@ contains
       call put('lowest_temperature', 'temperature', number, lowest, 'lowest temperature, above TREF')
       call put('highest_temperature', 'temperature', number, highest, 'highest temperature, above TREF')
     end subroutine put_temperatures
+
+    !> How far the leaders of RBE2 have turned, and with which moments supports hold them.
+    subroutine put_platens()
+      character(len=:), allocatable :: id
+
+      do k = 1, size(run%model%platen)
+        id = text_of(run%model%node_id(run%model%platen(k)%leader))
+        call put('angle_'//id, radian, number, run%answer%angle(k), 'turn of GRID '//id//' [radian]')
+        if (run%model%platen(k)%held) call put('moment_'//id, 'force*length', number, run%answer%moment(k), &
+                                               'moment of the support of GRID '//id)
+      end do
+    end subroutine put_platens
 
     !> Of the element that has it.
     subroutine put_largest_stress(element)
@@ -183,7 +205,7 @@ contains
                        run%accuracy%zone(k)%half_width, run%answer%zones(k)%half_width, '')
       end do
       do k = 1, run%motions%count
-        call put_error('approach_'//motion_key(), length, 'approach of '//motion_name(run, k), &
+        call put_error('approach_'//motion_key(), motion_unit(), 'approach of '//motion_name(run, k), &
                        merge(-1.0_wp, run%accuracy%approach(k), run%accuracy%approach_unbounded(k)), &
                        abs(run%answer%contact%approach(k)), &
                        when(run%accuracy%approach_unbounded(k), unbounded))
@@ -202,11 +224,19 @@ contains
       call put_word('weak_pairs', text_of(count(run%accuracy%weak)), '')
     end subroutine put_sensitivity
 
+    !> Of free motion k.
+    function motion_unit() result(unit)
+      character(len=:), allocatable :: unit
+
+      unit = length
+      if (run%motions%component(k) == angle) unit = radian
+    end function motion_unit
+
     !> Of free motion k in the keys of figures: `12_2`.
     function motion_key() result(key)
       character(len=:), allocatable :: key
 
-      key = text_of(run%model%node_id(run%motions%node(k)))//'_'//text_of(run%motions%component(k))
+      key = text_of(run%model%node_id(run%motions%node(k)))//'_'//direction_of(run%motions, k)
     end function motion_key
 
     !> Add a number; it has that many digits in the listing, or stands there as `listed`.

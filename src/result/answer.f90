@@ -17,6 +17,8 @@ module epcont_result_answer
 
   type, extends(followed_loads) :: answer_type
     real(wp), allocatable :: reaction(:, :)          !! of the supports [force] [2, nodes]
+    real(wp), allocatable :: angle(:)                !! of platens that turn [radian] [platens]
+    real(wp), allocatable :: moment(:)               !! of their supports [force*length] [platens]
     ! Of the elements: means over their points, by volume.
     real(wp), allocatable :: stress(:, :)            !! xx, yy, zz, xy [stress] [4, elements]
     real(wp), allocatable :: equivalent_stress(:)    !! von Mises [stress] [elements]

@@ -7,8 +7,11 @@ module epcont_result_stresses
   use epcont_material_curve, only: curve_value, deviatoric_curve, new_curve
   use epcont_material_elasticity, only: elasticity, equivalent_stress
   use epcont_material_material_law, only: point_state
+  use epcont_model_arrays, only: angle
   use epcont_model_controls, only: uniaxial_curve
   use epcont_model_model, only: model_type
+  use epcont_model_springs, only: spring_forces
+  use epcont_model_ties, only: platen_angle
   use epcont_linear_linear_problem, only: linear_problem
   use epcont_result_answer, only: answer_type
   use epcont_system_threads, only: threads_over
@@ -42,14 +45,40 @@ contains
     !$omp end parallel do
     answer%shortfall = shortfall
     force = linear%operator%nodal_forces(model, answer%point_stress)
+    if (size(model%spring) > 0) force = force + spring_forces(model, answer%deformation)
     answer%reaction = spread([0.0_wp, 0.0_wp], 2, model%nodes)
+    answer%moment = spread(0.0_wp, 1, size(model%platen))
+    answer%angle = [(platen_angle(model, node, answer%displacement), node=1, size(model%platen))]
     do node = 1, model%nodes
       do c = 1, directions
-        leader = model%leader(c, node)
-        if (model%held(c, leader)) &
-          answer%reaction(c, leader) = answer%reaction(c, leader) + force(c, node) - applied(c, node)
+        if (model%sum_of(c, node) > 0) then
+          call add_to_terms(model%sum_of(c, node), force(c, node) - applied(c, node))
+        else
+          leader = model%leader(c, node)
+          if (model%held(c, leader)) &
+            answer%reaction(c, leader) = answer%reaction(c, leader) + force(c, node) - applied(c, node)
+        end if
       end do
     end do
+
+  contains
+
+    !> Of the force on a freedom that is a sum, to those of its terms that are held.
+    subroutine add_to_terms(row, force)
+      integer, intent(in) :: row
+      real(wp), intent(in) :: force
+      integer :: i
+
+      do i = model%sum%first(row), model%sum%last(row)
+        associate (c => model%sum%component(i), at => model%sum%node(i), share => model%sum%weight(i)*force)
+          if (c == angle) then
+            if (model%platen(at)%held) answer%moment(at) = answer%moment(at) + share
+          else if (model%held(c, at)) then
+            answer%reaction(c, at) = answer%reaction(c, at) + share
+          end if
+        end associate
+      end do
+    end subroutine add_to_terms
   end subroutine recover_stresses
 
   !> Of one element: means over its points, and the largest stress.

@@ -1,0 +1,161 @@
+!> What ties freedoms to each other, as the certificate sees it: from the cards' own words (leaders, arms,
+!> coefficients), not from the sums that the solver makes of them.
+module epcont_certificate_tied
+  use epcont_base_kinds, only: wp
+  use epcont_element_kinematics, only: directions
+  use epcont_model_arrays, only: linear_equation, turning_platen
+  use epcont_model_model, only: model_type
+  implicit none
+  private
+  public :: check_springs, check_ties, gather_ties, longest_arms
+
+contains
+
+  !> Springs pull at their ends, by how far these move apart.
+  pure subroutine check_springs(model, displacement, residual, sizes, stored)
+    type(model_type), intent(in) :: model         !! the scene
+    real(wp), intent(in) :: displacement(:, :)    !! [length] [directions, nodes]
+    real(wp), intent(inout) :: residual(:, :)     !! forces on the nodes are added [force] [directions, nodes]
+    real(wp), intent(inout) :: sizes(:)           !! their sizes are [force] [nodes]
+    real(wp), intent(inout) :: stored             !! pull times stretch is [force*length]
+    real(wp) :: apart, pull
+    integer :: i, k
+
+    do k = 1, size(model%spring)
+      associate (node => model%spring(k)%node, c => model%spring(k)%component)
+        apart = 0.0_wp
+        if (node(2) > 0) apart = displacement(c(2), node(2))
+        if (node(1) > 0) apart = apart - displacement(c(1), node(1))
+        pull = model%spring(k)%stiffness*apart
+        stored = stored + pull*apart
+        do i = 1, 2
+          if (node(i) == 0) cycle
+          residual(c(i), node(i)) = residual(c(i), node(i)) + merge(-pull, pull, i == 1)
+          sizes(node(i)) = sizes(node(i)) + abs(pull)
+        end do
+      end associate
+    end do
+  end subroutine check_springs
+
+  !> A tied freedom hands its forces to those that it follows, which may follow others.
+  pure subroutine gather_ties(model, residual, torque)
+    type(model_type), intent(in) :: model         !! the scene
+    real(wp), intent(inout) :: residual(:, :)     !! [force] [directions, nodes]
+    real(wp), intent(out) :: torque(:)            !! on platens that turn [force*length] [platens]
+    integer :: c, k, leader, node
+    logical :: handed
+
+    torque = 0.0_wp
+    do
+      handed = .false.
+      do node = 1, model%nodes
+        do c = 1, directions
+          leader = model%leader(c, node)
+          if (leader == node) cycle
+          residual(c, leader) = residual(c, leader) + residual(c, node)
+          residual(c, node) = 0.0_wp
+        end do
+      end do
+      do k = 1, size(model%platen)
+        call gather_platen(model, model%platen(k), residual, torque(k), handed)
+      end do
+      do k = 1, size(model%equation)
+        call gather_equation(model%equation(k), residual, handed)
+      end do
+      if (.not. handed) exit
+    end do
+  end subroutine gather_ties
+
+  !> A platen that turns takes the forces of its followers, and their moment.
+  pure subroutine gather_platen(model, platen, residual, torque, handed)
+    type(model_type), intent(in) :: model
+    type(turning_platen), intent(in) :: platen
+    real(wp), intent(inout) :: residual(:, :), torque
+    logical, intent(inout) :: handed              !! there was something to hand on
+    real(wp) :: arm(directions)
+    integer :: i
+
+    do i = 1, size(platen%follower)
+      associate (force => residual(:, platen%follower(i)))
+        if (all(force == 0.0_wp)) cycle
+        arm = model%x(:, platen%follower(i)) - model%x(:, platen%leader)
+        torque = torque + arm(1)*force(2) - arm(2)*force(1)
+        residual(:, platen%leader) = residual(:, platen%leader) + force
+        force = 0.0_wp
+        handed = .true.
+      end associate
+    end do
+  end subroutine gather_platen
+
+  !> The first freedom of an equation hands its force to the others.
+  pure subroutine gather_equation(equation, residual, handed)
+    type(linear_equation), intent(in) :: equation
+    real(wp), intent(inout) :: residual(:, :)
+    logical, intent(inout) :: handed
+    real(wp) :: force
+    integer :: i
+
+    force = residual(equation%component(1), equation%node(1))
+    residual(equation%component(1), equation%node(1)) = 0.0_wp
+    handed = handed .or. force /= 0.0_wp
+    do i = 2, size(equation%node)
+      associate (at => residual(equation%component(i), equation%node(i)))
+        at = at - equation%coefficient(i)/equation%coefficient(1)*force
+      end associate
+    end do
+  end subroutine gather_equation
+
+  !> Whether followers are where their leader and one angle take them, that of the farthest of them, and
+  !! whether equations hold.
+  pure subroutine check_ties(model, displacement, turn, apart)
+    type(model_type), intent(in) :: model         !! the scene
+    real(wp), intent(in) :: displacement(:, :)    !! [length] [directions, nodes]
+    real(wp), intent(out) :: turn(:)              !! the angles [radian] [platens]
+    real(wp), intent(out) :: apart                !! the most that any is off by, of the largest displacement
+    integer :: i, k
+
+    apart = 0.0_wp
+    do k = 1, size(turn)
+      call check_platen(model, model%platen(k), displacement, turn(k), apart)
+    end do
+    do k = 1, size(model%equation)
+      associate (given => model%equation(k))
+        apart = max(apart, abs(sum([(given%coefficient(i)*displacement(given%component(i), given%node(i)), &
+                                     i=1, size(given%node))]))/sum(abs(given%coefficient)))
+      end associate
+    end do
+    if (apart > 0.0_wp) apart = apart/maxval(abs(displacement))
+  end subroutine check_ties
+
+  !> Those of one platen.
+  pure subroutine check_platen(model, platen, displacement, turn, apart)
+    type(model_type), intent(in) :: model
+    type(turning_platen), intent(in) :: platen
+    real(wp), intent(in) :: displacement(:, :)
+    real(wp), intent(out) :: turn
+    real(wp), intent(inout) :: apart
+    real(wp), dimension(directions, size(platen%follower)) :: arm, moved
+    integer :: far
+
+    arm = model%x(:, platen%follower) - spread(model%x(:, platen%leader), 2, size(platen%follower))
+    moved = displacement(:, platen%follower) - &
+            spread(displacement(:, platen%leader), 2, size(platen%follower))
+    far = maxloc(sum(arm**2, dim=1), dim=1)
+    turn = (arm(1, far)*moved(2, far) - arm(2, far)*moved(1, far))/sum(arm(:, far)**2)
+    apart = max(apart, maxval(abs(moved(1, :) + turn*arm(2, :))), maxval(abs(moved(2, :) - turn*arm(1, :))))
+  end subroutine check_platen
+
+  !> The longest arm of each platen that turns [length] [platens].
+  pure function longest_arms(model) result(length)
+    type(model_type), intent(in) :: model         !! the scene
+    real(wp) :: length(size(model%platen))
+    integer :: i, k
+
+    do k = 1, size(length)
+      associate (platen => model%platen(k))
+        length(k) = maxval([(norm2(model%x(:, platen%follower(i)) - model%x(:, platen%leader)), &
+                             i=1, size(platen%follower))])
+      end associate
+    end do
+  end function longest_arms
+end module epcont_certificate_tied

@@ -1,0 +1,253 @@
+!> Freedoms that are sums of others: of nodes that follow an RBE2 whose leader turns, and of MPC equations.
+!> Those that follow one other (RBE2 without a turn) have its number for a leader, and are none of these.
+module epcont_model_ties
+  use epcont_base_kinds, only: wp
+  use epcont_element_kinematics, only: directions
+  use epcont_model_arrays, only: angle, linear_equation
+  use epcont_model_finding, only: findings, of_equation, of_node
+  use epcont_model_freedoms, only: freedom, why_not_tied
+  use epcont_model_model, only: model_type
+  implicit none
+  private
+  public :: add_moment, check_equation, complete_ties, platen_angle, turn_with
+
+contains
+
+  !> Have a node follow a leader that turns, if that can be.
+  subroutine turn_with(model, platen, node, card, found)
+    type(model_type), intent(inout) :: model   !! the scene
+    integer, intent(in) :: platen              !! which of those that turn
+    integer, intent(in) :: node                !! that follows
+    integer, intent(in) :: card(3)             !! whom to blame, as findings are told it: of, which, item
+    type(findings), intent(inout) :: found     !! what is wrong with it is added
+    character(len=:), allocatable :: remedy, why
+    integer :: c
+
+    do c = 1, directions
+      call why_not_tied(model, c, node, model%platen(platen)%leader, why, remedy)
+      if (len(why) == 0) cycle
+      call found%add_error(card(1), card(2), card(3), ': '//freedom(model, c, node)//why, remedy)
+      return
+    end do
+    model%platen(platen)%follower = [model%platen(platen)%follower, node]
+    model%sum_of(:, node) = 1   ! a number until there are rows
+  end subroutine turn_with
+
+  !> The first freedom of an equation follows the others: it must be free to do so.
+  subroutine check_equation(model, equation, card, found)
+    type(model_type), intent(inout) :: model   !! the scene; the freedom is marked
+    type(linear_equation), intent(in) :: equation
+    integer, intent(in) :: card(3)             !! whom to blame, as findings are told it: of, which, item
+    type(findings), intent(inout) :: found     !! what is wrong with it is added
+    character(len=:), allocatable :: why
+
+    associate (c => equation%component(1), node => equation%node(1))
+      why = ''
+      if (equation%coefficient(1) == 0.0_wp) then
+        why = ' has the coefficient 0.0'
+      else if (model%sum_of(c, node) > 0 .or. model%leader(c, node) /= node) then
+        why = ' follows an RBE2 or another MPC already'
+      else if (model%held(c, node)) then
+        why = ' is held by a support'
+      else if (model%reference(c, node)) then
+        why = ' is a SUPORT freedom'
+      end if
+      if (len(why) > 0) call found%add_error(card(1), card(2), card(3), ': '//freedom(model, c, node)//why// &
+        ', and cannot follow the others', 'first a freedom that nothing else holds or moves')
+      model%sum_of(c, node) = 1
+    end associate
+  end subroutine check_equation
+
+  !> Write each of these freedoms as a sum of those that follow nothing. (Leaders end their chains.)
+  subroutine complete_ties(model, found)
+    type(model_type), intent(inout) :: model   !! the scene
+    type(findings), intent(inout) :: found     !! equations that go round in circles are added
+    integer, parameter :: untouched = 0, begun = 1, done = 2
+    integer, allocatable :: state(:), equation(:)
+    integer, allocatable :: first(:), component(:), node(:)   ! terms as they are given
+    real(wp), allocatable :: weight(:)
+    integer :: c, i, k, last, rows
+
+    model%sum_of = spread([0, 0], 2, model%nodes)
+    rows = directions*sum([(size(model%platen(k)%follower), k=1, size(model%platen))]) + size(model%equation)
+    allocate (first(rows + 1), source=1)
+    allocate (equation(rows), state(rows), source=untouched)
+    allocate (model%sum%first(rows), model%sum%last(rows), source=0)
+    last = 0
+    rows = 0
+    k = 2*size(state) + sum([(size(model%equation(k)%node), k=1, size(model%equation))])
+    allocate (component(k), node(k), weight(k))
+    do k = 1, size(model%platen)
+      call add_platen()
+      if (size(model%platen(k)%follower) > 0) then
+        if (any(model%x(:, model%platen(k)%follower) /= &
+                spread(model%x(:, model%platen(k)%leader), 2, size(model%platen(k)%follower)))) cycle
+      end if
+      call found%add_error(of_node, model%platen(k)%leader, 0, ': turns, and no node that follows it is'// &
+                           ' anywhere else', 'a node at another place for GM of its RBE2')
+    end do
+    do k = 1, size(model%equation)
+      associate (given => model%equation(k))
+        call add_row(given%component(1), given%node(1), given%component(2:), given%node(2:), &
+                     -given%coefficient(2:)/given%coefficient(1))
+        equation(rows) = k
+      end associate
+    end do
+    call make_room(k)
+    do k = 1, rows
+      if (state(k) == untouched) call resolve(k)
+    end do
+    call make_room(last)
+    do i = 1, model%nodes
+      do c = 1, directions
+        if (model%leader(c, i) /= i) model%sum_of(c, i) = model%sum_of(c, model%leader(c, i))
+      end do
+    end do
+
+  contains
+
+    !> u = u of the leader + angle x arm.
+    subroutine add_platen()
+      real(wp) :: arm(directions)
+      integer :: j
+
+      associate (platen => model%platen(k))
+        do j = 1, size(platen%follower)
+          arm = model%x(:, platen%follower(j)) - model%x(:, platen%leader)
+          call add_row(1, platen%follower(j), [1, angle], [platen%leader, k], [1.0_wp, -arm(2)])
+          call add_row(2, platen%follower(j), [2, angle], [platen%leader, k], [1.0_wp, arm(1)])
+        end do
+      end associate
+    end subroutine add_platen
+
+    !> One more freedom, and its terms.
+    subroutine add_row(c, follower, components, nodes, weights)
+      integer, intent(in) :: c, follower, components(:), nodes(:)
+      real(wp), intent(in) :: weights(:)
+
+      rows = rows + 1
+      model%sum_of(c, follower) = rows
+      first(rows + 1) = first(rows) + size(nodes)
+      associate (from => first(rows), to => first(rows + 1) - 1)
+        component(from:to) = components
+        node(from:to) = nodes
+        weight(from:to) = weights
+      end associate
+    end subroutine add_row
+
+    !> Put in place of each term that follows others what it follows.
+    recursive subroutine resolve(row)
+      integer, intent(in) :: row
+      integer :: i, j
+
+      state(row) = begun
+      do i = first(row), first(row + 1) - 1
+        if (component(i) == angle) cycle
+        node(i) = model%leader(component(i), node(i))
+        j = model%sum_of(component(i), node(i))
+        if (j == 0) cycle
+        if (state(j) == begun) then
+          call found%add_error(of_equation, model%equation(equation(row))%card, 0, ': '// &
+                               freedom(model, component(i), node(i))//' would follow itself', &
+                               'equations that do not go round in a circle')
+          model%sum_of(component(i), node(i)) = 0
+        else if (state(j) == untouched) then
+          call resolve(j)
+        end if
+      end do
+      call put_terms(row)
+      state(row) = done
+    end subroutine resolve
+
+    !> The terms of a freedom, by what they follow.
+    subroutine put_terms(row)
+      integer, intent(in) :: row
+      integer :: i, j
+
+      model%sum%first(row) = last + 1
+      do i = first(row), first(row + 1) - 1
+        j = 0
+        if (component(i) /= angle) j = model%sum_of(component(i), node(i))
+        if (j == 0) then
+          call put([component(i)], [node(i)], [weight(i)])
+        else
+          associate (from => model%sum%first(j), to => model%sum%last(j))
+            call put([model%sum%component(from:to)], [model%sum%node(from:to)], &
+                     weight(i)*model%sum%weight(from:to))
+          end associate
+        end if
+      end do
+      model%sum%last(row) = last
+    end subroutine put_terms
+
+    subroutine put(components, nodes, weights)
+      integer, intent(in) :: components(:), nodes(:)
+      real(wp), intent(in) :: weights(:)
+
+      if (last + size(nodes) > size(model%sum%node)) call make_room(2*(last + size(nodes)))
+      model%sum%component(last + 1:last + size(nodes)) = components
+      model%sum%node(last + 1:last + size(nodes)) = nodes
+      model%sum%weight(last + 1:last + size(nodes)) = weights
+      last = last + size(nodes)
+    end subroutine put
+
+    !> Room for so many terms, behind those that there are.
+    subroutine make_room(terms)
+      integer, intent(in) :: terms
+      integer :: new_component(terms), new_node(terms)
+      real(wp) :: new_weight(terms)
+
+      if (last > 0) then
+        new_component(:last) = model%sum%component(:last)
+        new_node(:last) = model%sum%node(:last)
+        new_weight(:last) = model%sum%weight(:last)
+      end if
+      model%sum%component = new_component
+      model%sum%node = new_node
+      model%sum%weight = new_weight
+    end subroutine make_room
+  end subroutine complete_ties
+
+  !> A moment at the leader of a platen that turns: forces on those that follow it, across their arms and as
+  !! these are long, and on the leader what balances their sum.
+  pure subroutine add_moment(model, platen, moment, load)
+    type(model_type), intent(in) :: model     !! the scene
+    integer, intent(in) :: platen             !! which of those that turn
+    real(wp), intent(in) :: moment            !! counter-clockwise [force*length]
+    real(wp), intent(inout) :: load(:, :)     !! it is added to them [force] [2, nodes]
+    real(wp) :: arm(directions, size(model%platen(platen)%follower)), force(directions), squares
+    integer :: i
+
+    associate (follower => model%platen(platen)%follower, leader => model%platen(platen)%leader)
+      arm = model%x(:, follower) - spread(model%x(:, leader), 2, size(follower))
+      squares = sum(arm**2)
+      do i = 1, size(follower)
+        force = moment/squares*[-arm(2, i), arm(1, i)]
+        load(:, follower(i)) = load(:, follower(i)) + force
+        load(:, leader) = load(:, leader) - force
+      end do
+    end associate
+  end subroutine add_moment
+
+  !> The angle that takes the followers of a platen where they are [radian].
+  pure real(wp) function platen_angle(model, platen, displacement) result(turn)
+    type(model_type), intent(in) :: model        !! the scene
+    integer, intent(in) :: platen                !! which of those that turn
+    real(wp), intent(in) :: displacement(:, :)   !! [length] [2, nodes]
+    real(wp), dimension(directions) :: arm, moved
+    real(wp) :: squares
+    integer :: i
+
+    turn = 0.0_wp
+    squares = 0.0_wp
+    associate (follower => model%platen(platen)%follower, leader => model%platen(platen)%leader)
+      do i = 1, size(follower)
+        arm = model%x(:, follower(i)) - model%x(:, leader)
+        moved = displacement(:, follower(i)) - displacement(:, leader)
+        turn = turn + arm(1)*moved(2) - arm(2)*moved(1)
+        squares = squares + sum(arm**2)
+      end do
+    end associate
+    turn = turn/squares
+  end function platen_angle
+end module epcont_model_ties
