@@ -1,9 +1,10 @@
 """A picture of any deck by ParaView, from the files that `epcont --vtk` writes: equivalent stress on the displaced bodies, and the
 contact pressure along their boundary.
 
-    tools/paraview DECK.dat [-o NAME.png] [--scale 10] [--near X,Y,HALF_HEIGHT]
+    tools/paraview DECK.dat [-o NAME.png] [--scale 10] [--near X,Y,HALF_HEIGHT] [--case N]
 
 One panel shows the whole, displacements times --scale; the other what is near a place, meshes and all, displacements as they are.
+Of several load cases one is drawn: --case, else the one with the largest pressure.
 NAME is DECK.paraview, here, if not given. The exit status is that of epcont: a deck that is rejected has no picture.
 """
 import argparse
@@ -14,6 +15,7 @@ import subprocess
 import sys
 import tempfile
 
+import tables
 from wording import parser_of
 
 TOP = pathlib.Path(__file__).resolve().parent.parent
@@ -44,6 +46,7 @@ def read_arguments():
     parser.add_argument("--scale", type=scale, default=1.0, help="of the displacements, where the whole is drawn (1)")
     parser.add_argument("--near", metavar="X,Y,HALF_HEIGHT", type=near,
                         help="a second panel of this place; behind = where X is negative: --near=-1,0,2")
+    parser.add_argument("--case", metavar="N", type=int, help="the SUBCASE that is drawn; else the one with the largest pressure")
     options = parser.parse_args()
     options.output = options.output or pathlib.Path(f"{options.deck.stem}.paraview.png")
     if options.output.suffix.lower() != ".png":
@@ -56,6 +59,12 @@ def main():
     with tempfile.TemporaryDirectory() as directory:
         place, stem = pathlib.Path(directory), options.deck.stem
         run = subprocess.run([TOP / "build/release/epcont", options.deck, "-o", directory, "--vtk"], check=False)
+        try:
+            case = tables.case_of(place, stem, options.case)
+        except ValueError as error:
+            print(f"tools/paraview: {options.deck}: {error}", file=sys.stderr)
+            return 3
+        stem += f".case{case}" if case is not None else ""
         if not (place / f"{stem}.vtu").exists():
             return run.returncode
         from drawing import by_paraview  # here: arguments are read by any Python

@@ -1,11 +1,11 @@
 """Pictures of runs.
 
-    tools/plot DECK [-o NAME.png] [--only contact|shape|yielded|history] [--known FORMULA]...
+    tools/plot DECK [-o NAME.png] [--only contact|shape|yielded|history] [--known FORMULA]... [--case N]
 
 One figure of any deck, with the panels that it has: the deformed shape, enlarged so that it is seen, with equivalent stress, and the
 surroundings of small contacts; what has yielded; the pressure along each contact line; the iteration. NAME is DECK's, here, if not given.
 A formula in the abscissa `s` of a panel of pressures is drawn into those where it has real values, such as
-"3585.36*sqrt(1-(s/6.21463)**2)". The exit status is that of epcont: a deck that is rejected has no picture.
+"3585.36*sqrt(1-(s/6.21463)**2)". Of several load cases one is drawn: --case, else the one with the largest pressure. The exit status is that of epcont: a deck that is rejected has no picture.
 
     tools/plot --all                                   pictures/DECK.png beside every deck of input
     tools/plot contact ELASTIC PLASTIC -o NAME         the paper's Fig. 6: pressure along the contact, stresses down the axis
@@ -43,10 +43,11 @@ def one_figure(arguments):
     parser.add_argument("-o", "--output", type=pathlib.Path, help="name of the picture, with .png")
     parser.add_argument("--only", choices=figure.KINDS, help="panels of this kind only")
     parser.add_argument("--known", metavar="FORMULA", action="append", default=[], help="drawn beside the pressures")
+    parser.add_argument("--case", metavar="N", type=int, help="the SUBCASE that is drawn; else the one with the largest pressure")
     parser.add_argument("--all", action="store_true", help="the pictures kept beside the decks of input")
     options = parser.parse_args(arguments)
     if options.all:
-        if options.deck or options.output or options.only or options.known:
+        if options.deck or options.output or options.only or options.known or options.case is not None:
             parser.error("--all takes nothing beside it")
         kept.draw_all()
         return 0
@@ -55,7 +56,7 @@ def one_figure(arguments):
     output = options.output or pathlib.Path(f"{options.deck.stem}.png")
     if output.suffix.lower() != ".png":
         parser.error(f"-o {output}: the picture is a PNG file: a name that ends in .png")
-    run = Run(options.deck)
+    run = Run(options.deck, options.case)
     style.save_small(figure.draw(run, options.only, options.known), output)
     if run.message:
         print(run.message, file=sys.stderr)

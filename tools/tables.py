@@ -11,3 +11,21 @@ def rows(path):
 def summary(path):
     """The values of a summary by key; rows that are cut off count as none."""
     return {row["key"]: row["value"] for row in rows(path) if row.get("key") and row.get("value") is not None}
+
+
+def case_of(place, stem, wanted=None):
+    """The load case that is wanted, else the one with the largest pressure, the first of equals; None where the deck has not several.
+    ValueError where it has no such case."""
+    path = place / f"{stem}.cases.csv"
+    found = rows(path) if path.exists() else []
+    if wanted is not None and all(row["subcase"] != str(wanted) for row in found):
+        numbers = ", ".join(row["subcase"] for row in found[:10]) + ", ..." * (len(found) > 10)
+        raise ValueError(f"no SUBCASE {wanted}: the deck has " + (numbers or "one case only"))
+    if wanted is not None or not found:
+        return wanted
+    return int(max(found, key=lambda row: float(row["max_pressure"] or -1.0))["subcase"])
+
+
+def of_case(found, case):
+    """Of some rows those of a load case; all where there are not several."""
+    return found if case is None else [row for row in found if row["subcase"] == str(case)]

@@ -30,17 +30,22 @@ class Run:
     What a run that failed does not give is absent: displacements and stresses are 0 then, lines and history empty.
     """
 
-    def __init__(self, path):
+    def __init__(self, path, case=None):
         self.path = pathlib.Path(path)
         with tempfile.TemporaryDirectory() as place:
             run = subprocess.run([PROGRAM, self.path, "-o", place, "--tables", "all"], capture_output=True, text=True, check=False)
             if run.returncode not in (0, 1, 4):
                 raise Refused(run.stderr.strip() or run.stdout.strip(), run.returncode)
             self.message = run.stderr.strip()
-            found = {name: table(pathlib.Path(place) / f"{self.path.stem}.{name}.csv")
+            try:
+                case = tables.case_of(pathlib.Path(place), self.path.stem, case)
+            except ValueError as error:
+                raise Refused(f"{self.path}: {error}") from None
+            found = {name: tables.of_case(table(pathlib.Path(place) / f"{self.path.stem}.{name}.csv"), case)
                      for name in ("nodes", "elements", "contact", "zones", "history")}
-            self.status = tables.summary(pathlib.Path(place) / f"{self.path.stem}.summary.csv")["status"]
-            self.title = title(pathlib.Path(place) / f"{self.path.stem}.lst")
+            summary = tables.of_case(tables.rows(pathlib.Path(place) / f"{self.path.stem}.summary.csv"), case)
+            self.status = next(row["value"] for row in summary if row["key"] == "status")
+            self.title = title(pathlib.Path(place) / f"{self.path.stem}.lst") + (f"  SUBCASE {case}" if case is not None else "")
         try:
             deck = read(self.path)
         except DeckError as error:
