@@ -103,6 +103,25 @@ class Edits(Case):
     def test_pairs_beyond_yield(self):
         self.check(HERTZ, 2)
 
+    def test_load_cases(self):
+        """Each is held against its own rows, with its sets, supports and contacts."""
+        cards = HERTZ.read_text().split("BEGIN BULK")[1]
+        held = "".join(line.replace("SPC1    1", "SPC1    2") + "\n" for line in cards.splitlines() if line.startswith("SPC1"))
+        deck = self.place / "cases.dat"
+        deck.write_text("SPC = 1\nSUBCASE 7\nLOAD = 11\nSUBCASE 3\nLOAD = 12\nSUBCASE 5\nSPC = 2\nLOAD = 50\nBCONTACT = NONE\nBEGIN BULK\n"
+                        "LOAD,11,2.0,0.3,1\nLOAD,12,1.0,0.5,1,0.25,1\nSPCD,50,41,2,-1.-4\nSPC,2,41,2,0.0" + cards.replace("ENDDATA", held + "ENDDATA"))
+        self.solved(deck)
+        status, said = self.told(deck)
+        self.assertEqual((status, [line for line in said.splitlines() if line.startswith("SUBCASE")]), (0, ["SUBCASE 7", "SUBCASE 3", "SUBCASE 5"]), said)
+        path = self.place / "cases.nodes.csv"
+        rows = path.read_text()
+        path.write_text(rows.replace("\n3,41,", "\n5,41,", 1))
+        self.assertIn("no node 41", self.told(deck)[1])
+        path.write_text(rows)
+        moved = deck.read_text().replace("LOAD,12,1.0,0.5", "LOAD,12,1.0,0.6")
+        deck.write_text(moved)
+        self.assertEqual(self.told(deck)[0], 1)
+
     def test_lines(self):
         self.check(LINES, 1)
 
