@@ -47,6 +47,7 @@ module epcont_solution
     logical :: another = .false.         !! case follows
     integer :: precision = precision_double   !! of the factors
     type(linear_problem), allocatable :: linear, virgin
+    type(contact_line) :: line
     type(kept_estimates) :: estimates
   contains
     procedure :: forget
@@ -106,10 +107,12 @@ contains
   subroutine forget(self)
     class(kept_factors), intent(inout) :: self
     type(kept_estimates) :: none
+    type(contact_line) :: no_line
 
     if (allocated(self%linear)) deallocate (self%linear)
     if (allocated(self%virgin)) deallocate (self%virgin)
     self%estimates = none
+    self%line = no_line
   end subroutine forget
 
   !> Solve the scene as it is.
@@ -121,7 +124,6 @@ contains
     type(accuracy_type), intent(out) :: accuracy
     class(observer), intent(inout) :: watch
     logical, intent(out) :: failed      !! joined bodies are to be solved apart
-    type(contact_line) :: line
 
     call solve_as_planned()
     failed = kept%linear%joined%failed .or. &
@@ -131,7 +133,7 @@ contains
       failed = .not. kept%linear%joined%are_unique(scene, kept%linear%factored_bodies)
     call watch%lap(stage_contact)
     if (failed) return
-    line = find_contact_line(scene%model)
+    if (.not. allocated(kept%line%node)) kept%line = find_contact_line(scene%model)
     call evaluate_refined()
     failed = scene%numbering%joined .and. answer%converged .and. .not. certificate%valid
     if (failed) return
@@ -142,7 +144,7 @@ contains
       call evaluate_refined()
     end if
     call use_tangent()
-    call assess(scene, kept%linear, line, kept%estimates, answer, accuracy)
+    call assess(scene, kept%linear, kept%line, kept%estimates, answer, accuracy)
     ! An open pair does not press.
     where (.not. answer%contact%touching .and. answer%pressure > 0.0_wp) answer%pressure = -1.0_wp
     call watch%lap(stage_accuracy)
@@ -204,9 +206,9 @@ contains
         answer%locking = find_locking(model, volume, answer%stress, answer%equivalent_stress, &
             answer%secant_modulus)
         answer%gradient = find_gradients(model, volume, answer%displacement)
-        touching = line%in_contact(answer%contact%touching)
-        answer%pressure = pair_pressures(model, line, touching, force)
-        answer%zones = find_zones(line, touching, force, answer%pressure)
+        touching = kept%line%in_contact(answer%contact%touching)
+        answer%pressure = pair_pressures(model, kept%line, touching, force)
+        answer%zones = find_zones(kept%line, touching, force, answer%pressure)
         answer%lines = compare_sides(model, answer%contact%touching, force, answer%pressure)
         answer%bodies = find_body_forces(model, force)
         call watch%lap(stage_stresses)

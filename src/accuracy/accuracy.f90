@@ -51,6 +51,7 @@ module epcont_accuracy_accuracy
   !> What estimates of one load case leave to those of the next.
   type :: kept_estimates
     type(patch_table) :: table
+    type(surface_line) :: surface                !! but for its pressures
     type(unit_loads) :: loads
     type(body_fields), allocatable :: field(:)   !! of these loads [bodies]
   end type kept_estimates
@@ -69,7 +70,6 @@ contains
     type(accuracy_type), intent(out) :: accuracy   !! of its figures
     type(kept_estimates) :: none
     type(error_fields) :: field
-    type(surface_line) :: surface
     logical :: carried, pressed
     logical :: same   ! unit loads as before
     logical, allocatable :: point_load(:)   ! the motion's SUPORT freedom bears one [motions]
@@ -153,17 +153,19 @@ contains
       logical :: yielded
       integer :: z
 
-      surface = new_surface_line(scene%model, line, &
-                                 smooth_pressures(scene%model, linear%materials, field%smooth))
+      associate (pressure => smooth_pressures(scene%model, linear%materials, field%smooth))
+        if (.not. allocated(kept%surface%bend)) kept%surface = new_surface_line(scene%model, line, pressure)
+        kept%surface%smooth_pressure = pressure
+      end associate
       energy = 0.0_wp
       if (accuracy%energy_norm > 0.0_wp) energy = accuracy%energy_norm**2* &
         max(0.0_wp, sum(accuracy%element, mask=.not. beside_point_loads())/sum(accuracy%element))
       yielded = any(answer%plastic)
-      accuracy%zone = [(estimate_zone(scene%model, surface, answer, yielded, energy, answer%zones(z)), &
+      accuracy%zone = [(estimate_zone(scene%model, kept%surface, answer, yielded, energy, answer%zones(z)), &
                         z=1, size(answer%zones))]
       do z = 1, size(answer%zones)
-        accuracy%zone(z)%too_near = too_near(scene%model, surface, answer%contact%force, accuracy%zone(z), &
-            answer%zones(z)%pairs)
+        accuracy%zone(z)%too_near = too_near(scene%model, kept%surface, answer%contact%force, &
+                                             accuracy%zone(z), answer%zones(z)%pairs)
       end do
     end subroutine assess_zones
 
@@ -211,7 +213,7 @@ contains
       at_ends = 0.0_wp
       do z = 1, size(accuracy%zone)
         associate (zone => accuracy%zone(z), pairs => answer%zones(z)%pairs)
-          at_end = answer%zones(z)%max_pressure*zone%half_length*surface%compliance(zone%peak)
+          at_end = answer%zones(z)%max_pressure*zone%half_length*kept%surface%compliance(zone%peak)
           ! Between the nodes of flat faces there is no gap: where an edge or a tip makes the pressure, it
           ! says nothing of one.
           if (.not. zone%unbounded) &

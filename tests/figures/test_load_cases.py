@@ -112,6 +112,13 @@ class LoadCases(unittest.TestCase):
             with self.subTest(rule):
                 self.check("layer_lines/layer_lines.dat", param=f"PARAM,RULE,{rule}\n")
 
+    def test_in_proportion(self):
+        """Of loads that grow or fall while the contacts stay much is kept from case to case."""
+        for rule in ["CONRY", "JOINED"]:
+            for name in ["layer_lines/layer_lines.dat", "hertz/hertz44_elastic.dat"]:
+                with self.subTest(rule + " " + name):
+                    self.check(name, "STRESS = ALL\n", f"PARAM,RULE,{rule}\n", (0.9, 0.91, 0.92, 0.93, 0.5, 0.51, 0.52))
+
     def test_same_bytes_on_any_number_of_threads(self):
         deck = of_factors(INPUT / "layer_lines/layer_lines.dat", FACTORS)
         listings = set()
