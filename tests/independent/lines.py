@@ -204,6 +204,18 @@ class Contact:
             if not any(name == node and alike(place, other) for name, other in self.rows):
                 self.rows.append((node, place))
 
+    def seen_from(self, segment, spans):
+        """The points of the pieces of a slave side, each with what it faces and the way outwards."""
+        pieces = []
+        for low, high, piece in segment.pieces(spans, self.ring):
+            seen = []
+            for s, values, weight in piece:
+                along = [v / 2 for v in segment.towards(s)]
+                eye = Eye(segment.at(s), segment.own(s), along, RISE * segment.bend)
+                seen.append((s, values, weight, self.master.face(eye, self.reach)[0], eye.outward))
+            pieces.append((low, high, seen))
+        return pieces
+
     def average(self, segment):
         """What the master's nodes share in the gaps of a slave side's nodes."""
         rows = [self.of.get((id(segment), node)) for node in segment.nodes]
@@ -212,14 +224,14 @@ class Contact:
         if len(faced) == len(rows):
             within = min(within, max(2 * segment.chord, *(2 * abs(place.gap) for place in faced)))
         cuts = [segment.cut_by(one.x[k], within) for one in self.master.segments for k in (0, -1)]
-        pieces = []
-        for low, high, piece in segment.pieces([s for s in cuts if s is not None], self.ring):
-            seen = []
-            for s, values, weight in piece:
-                along = [v / 2 for v in segment.towards(s)]
-                eye = Eye(segment.at(s), segment.own(s), along, RISE * segment.bend)
-                seen.append((s, values, weight, self.master.face(eye, self.reach)[0], eye.outward))
-            pieces.append((low, high, seen))
+        spans = segment.spans([s for s in cuts if s is not None])
+        pieces = self.seen_from(segment, spans)
+        faces = [{id(place.segment) if place else None for *_, place, _ in seen} for *_, seen in pieces]
+        first = [k == 0 or len(faces[k - 1] | faces[k]) > 1 for k in range(len(spans))]   # else what stands behind would cut
+        if not all(first):
+            starts = [low for (low, _), begins in zip(spans, first) if begins]
+            ends = [high for (_, high), begins in zip(spans, [*first[1:], True]) if begins]
+            pieces = self.seen_from(segment, list(zip(starts, ends)))
         points = [point for *_, seen in pieces for point in seen]
         joints = [k for k in range(1, len(pieces)) if None not in (pieces[k - 1][2][-1][3], pieces[k][2][0][3])
                   and not self.goes_on(pieces[k - 1][2][-1][3], pieces[k][2][0][3])]

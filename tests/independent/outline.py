@@ -205,18 +205,22 @@ class Segment:
     def values(self, s):
         return [value(n, s) for n in self.shape]
 
-    def pieces(self, cuts, ring):
-        """Between neighbouring cuts, (place, shape values, weight) of three Gauss points."""
+    @staticmethod
+    def spans(cuts):
+        """The pieces between neighbouring cuts."""
         cuts = sorted([0.0, 1.0, *cuts])
-        for low, high in zip(cuts, cuts[1:]):
-            if high - low > BEYOND:
-                piece = []
-                for t, part in zip(*GAUSS):
-                    s = low + t * (high - low)
-                    values = self.values(s)
-                    radius = sum(v * p[0] for v, p in zip(values, self.x)) if ring else 1.0
-                    piece.append((s, values, hypot(*self.towards(s)) * part * (high - low) * radius))
-                yield low, high, piece
+        return [(low, high) for low, high in zip(cuts, cuts[1:]) if high - low > BEYOND]
+
+    def pieces(self, spans, ring):
+        """Of each piece (place, shape values, weight) of three Gauss points."""
+        for low, high in spans:
+            piece = []
+            for t, part in zip(*GAUSS):
+                s = low + t * (high - low)
+                values = self.values(s)
+                radius = sum(v * p[0] for v, p in zip(values, self.x)) if ring else 1.0
+                piece.append((s, values, hypot(*self.towards(s)) * part * (high - low) * radius))
+            yield low, high, piece
 
 
 def outline(sides, x, held, most):
