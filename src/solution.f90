@@ -133,7 +133,6 @@ contains
       failed = .not. kept%linear%joined%are_unique(scene, kept%linear%factored_bodies)
     call watch%lap(stage_contact)
     if (failed) return
-    if (.not. allocated(kept%line%node)) kept%line = find_contact_line(scene%model)
     call evaluate_refined()
     failed = scene%numbering%joined .and. answer%converged .and. .not. certificate%valid
     if (failed) return
@@ -198,6 +197,7 @@ contains
     subroutine evaluate()
       logical, allocatable :: touching(:)
 
+      if (.not. allocated(kept%line%node)) kept%line = find_contact_line(scene%model)
       if (kept%linear%materials%yields .and. .not. allocated(answer%point)) &
         answer%point = kept%linear%materials%states(answer%strain)
       associate (model => scene%model, force => answer%contact%force, volume => kept%linear%operator%volume)

@@ -255,7 +255,7 @@ contains
   pure integer function behind_begin_bulk(lines) result(bulk)
     type(source), intent(in) :: lines
     character(len=:), allocatable :: text
-    integer :: cases, line
+    integer :: line
 
     bulk = 1
     do line = 1, lines%count

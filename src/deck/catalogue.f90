@@ -12,7 +12,7 @@ module epcont_deck_catalogue
   !! be `like` those of a card before. Behind them there may be a list, of `ids`, some of which are `ranges`,
   !! with `steps`, or of records, whose fields are there for `each`, all behind each other or
   !! `two_a_line`; ENDT stands behind the last.
-  character(len=*), parameter :: cards(*) = [character(len=140) :: &
+  character(len=*), parameter :: scene_cards(*) = [character(len=140) :: &
     'GRID: node', &
     '  ID; id; node', &
     '  CP; system only_zero; system of X1 to X3: the basic one', &
@@ -193,20 +193,17 @@ module epcont_deck_catalogue
     '  G5; id; between the first and the second', &
     '  G6; id; between the second and the third', &
     '  G7; id; between the third and the fourth', &
-    '  G8; id; between the fourth and the first', &
+    '  G8; id; between the fourth and the first']
+
+  !> The rest of them: loads and ties.
+  character(len=*), parameter :: load_cards(*) = [character(len=140) :: &
     'LOAD: sets of loads, each times a factor, under one id', &
     '  SID; id; set', &
     '  S; real needed; factor of all', &
     '  S; real needed each; factor of a set', &
     '  L; id each; the set', &
-    'SPCD: displacements of a load case, in place of those of SPC', &
-    '  SID; id; set of loads', &
-    '  G1; id; node', &
-    '  C1; digits; directions', &
-    '  D1; real zero cause; displacement [length]', &
-    '  G2; id with_next; second node', &
-    '  C2; digits with_last; directions', &
-    '  D2; real zero cause; displacement [length]', &
+    'SPCD: displacements of a load case, in place of those of SPC; its set is named as loads are', &
+    '  like 7 SPC', &
     'TEMP: temperatures of nodes', &
     '  SID; id; set', &
     '  G1; id; node', &
@@ -284,6 +281,8 @@ module epcont_deck_catalogue
     '  K2; real positive; stiffness [force/length]', &
     '  GE2; real noted; damping', &
     '  S2; real noted; stress coefficient']
+
+  character(len=*), parameter :: cards(*) = [scene_cards, load_cards]
 
   !> All PARAMs: the field VALUE for each NAME.
   character(len=*), parameter :: choices(*) = [character(len=180) :: &

@@ -71,26 +71,31 @@ class Tables:
     def __init__(self, out, stem):
         self.stem = stem
         self.table = {name: self.read(out / f"{stem}.{name}.csv") for name in KINDS}
-        self.summary = {row["key"]: row["value"] for row in self.rows(out / f"{stem}.summary.csv")}
+        #: Status by load case.
+        self.statuses = {row.get("subcase"): row["value"] for row in self.rows(out / f"{stem}.summary.csv")
+                         if row["key"] == "status"}
 
     @staticmethod
     def rows(path):
         return list(csv.DictReader(path.read_text(encoding="ascii").splitlines())) if path.is_file() else []
 
     def read(self, path):
+        """Rows by load case, where there is more than one, and by the name of the thing."""
         rows = self.rows(path)
-        key = list(rows[0])[0] if rows else None
-        return {row[key]: row for row in rows}
+        keys = list(rows[0])[:2 if "subcase" in rows[0] else 1] if rows else []
+        return {tuple(row[key] for key in keys): row for row in rows}
 
     @property
     def status(self):
-        return self.summary.get("status", "rejected")
+        """That of all load cases, where it is one."""
+        statuses = set(self.statuses.values()) or {"rejected"}
+        return statuses.pop() if len(statuses) == 1 else "mixed"
 
     def apart(self, other, discrete=True, tables=tuple(KINDS)):
         """The largest difference from another run's tables, relative to the largest of its kind; where."""
         worst, pieces = (0.0, ""), {}
-        if self.status != other.status:
-            return float("inf"), f"status {self.status}, {other.status}"
+        if self.statuses != other.statuses:
+            return float("inf"), f"status {self.statuses}, {other.statuses}"
         for name in tables:
             kinds, ours, theirs = KINDS[name], self.table[name], other.table[name]
             if set(ours) != set(theirs):

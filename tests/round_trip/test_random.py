@@ -39,7 +39,7 @@ class Random(unittest.TestCase):
         rng = random.Random(f"{SEED} {k}")
         scene = (pressed if k % 2 else [stack, nested, tongue][k // 2 % 3])(rng)
         mine, theirs = place / f"m{k:03}.dat", place / f"m{k:03}_{form}.dat"
-        mine.write_text("SOL 106\nCEND\n" + rounded(scene.text(), DIGITS[form]))
+        mine.write_text("SOL 101\nCEND\n" + rounded(scene.text(), DIGITS[form]))
         model = read_bdf(mine)
         restore_lines(model, lines_of(mine))
         write_bdf(model, theirs, form)
