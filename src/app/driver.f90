@@ -1,22 +1,22 @@
 !> One deck from file to results.
 module epcont_app_driver
   use epcont_app_arguments, only: arguments_type, stem_of
+  use epcont_app_case_streams, only: copies_of, run_names, solve_pattern
+  use epcont_app_case_words, only: case_words
   use epcont_app_forecast_text, only: forecast_text
   use epcont_app_process, only: print_error, print_text
   use epcont_app_progress_display, only: progress_type, timing_text
   use epcont_base_diagnostic, only: diagnostics
   use epcont_base_error, only: error_type, status_deck, status_valid
-  use epcont_base_kinds, only: i8, wp
-  use epcont_base_text, only: newline, shown, text_of
+  use epcont_base_kinds, only: i8
+  use epcont_base_text, only: newline, shown
   use epcont_build_build, only: build_model, tell
-  use epcont_deck_deck, only: read_deck
+  use epcont_deck_deck, only: deck_type, read_deck
   use epcont_deck_render, only: render, render_notes
   use epcont_linalg_rate, only: measured_rate
-  use epcont_model_load_cases, only: put_case
+  use epcont_model_load_cases, only: load_cases
   use epcont_plan_planned_scene, only: planned_scene
-  use epcont_report_columns, only: known, listed_number, number, right
   use epcont_report_file, only: file_lock, lock_files, unlock_files
-  use epcont_report_outcome, only: judge, limit_of_pressure, reason_of, remark_lines
   use epcont_report_results, only: remove_results, results_type
   use epcont_report_run, only: run_results
   use epcont_system_large_pages, only: heap_step, take_heap
@@ -35,6 +35,8 @@ contains
     integer, intent(out) :: status   !! its exit status
     character(len=:), allocatable :: name, stem   ! of the deck, shown; of the results, with folder
     type(progress_type) :: watch
+    type(deck_type), target :: deck
+    type(load_cases), target :: cases
     type(run_results) :: run
     type(results_type) :: results
     type(error_type), allocatable :: error
@@ -42,6 +44,8 @@ contains
     logical :: writes, written   ! results are wanted; they are written, as far as that could be done
 
     status = status_valid
+    run%deck => deck
+    run%cases => cases
     stem = stem_of(path)
     name = shown(stem)
     if (len(arguments%directory) > 0) stem = arguments%directory//'/'//stem
@@ -85,7 +89,7 @@ contains
       end if
       run%deck_notes = render_notes(run%faults, run%deck%source)
       if (run%cases%patterns == 1) call run%deck%forget_text()
-      call solve_cases()
+      call solve_patterns()
     end subroutine solve_deck
 
     !> The plans of all load cases.
@@ -101,25 +105,29 @@ contains
     end subroutine say_plans
 
     !> All load cases: those with the same freedoms held one after the other, since they share factors.
-    subroutine solve_cases()
-      integer :: p, worst
+    subroutine solve_patterns()
+      type(case_words) :: words(size(run%cases%case))
+      type(run_names) :: names
+      integer :: p
 
+      names = run_names(path, name, arguments%memory)
       results%stem = stem
       results%all_tables = arguments%asks('--tables')
       results%brief = arguments%asks('--brief')
       results%vtk = arguments%asks('--vtk')
       call results%begin(run)
-      worst = status_valid
       do p = 1, run%cases%patterns
         if (p > 1) call take_pattern(p)
-        call solve_pattern(run%cases%of_pattern(p), worst)
+        call solve_pattern(run, p, names, results, words, watch, error)
+        if (allocated(error)) error%message = path//': '//error%message
+        written = written .or. .not. allocated(error)
         if (allocated(error)) return
+        call say_words(words(run%cases%of_pattern(p)))
         call results%add_plan(run, run%cases%of_pattern(p))
       end do
       call results%finish(run, error)
       call watch%lap(stage_writing)
-      status = worst
-    end subroutine solve_cases
+    end subroutine solve_patterns
 
     !> The scene with other freedoms held.
     subroutine take_pattern(p)
@@ -131,52 +139,23 @@ contains
       call run%make_plan(watch)
     end subroutine take_pattern
 
-    !> Load cases that share a plan; from the first again where one has changed the pairs of the scene.
-    subroutine solve_pattern(cases, worst)
-      integer, intent(in) :: cases(:)
-      integer, intent(inout) :: worst    !! status so far
-      integer :: k, of_these
+    !> Say what came of load cases, in their order.
+    subroutine say_words(said)
+      type(case_words), intent(in) :: said(:)
+      integer :: k
 
-      k = 1
-      of_these = status_valid
-      do while (k <= size(cases))
-        run%case = cases(k)
-        if (run%has_cases()) call put_case(run%cases, run%case, run%model)
-        run%kept%another = k < size(cases)
-        call run%solve(arguments%memory, watch, error)
-        if (allocated(error)) error%message = path//': '//error%message
-        if (allocated(error)) return
-        if (run%replanned .and. k > 1) then
-          k = 1
-          of_these = status_valid
-          cycle
-        end if
-        call take_case()
-        if (allocated(error)) return
-        of_these = max(of_these, status)
-        k = k + 1
-      end do
-      worst = max(worst, of_these)
-    end subroutine solve_pattern
-
-    !> Judge a load case, and say and write what came of it.
-    subroutine take_case()
-      run%outcome = judge(run)
-      status = run%outcome%status
-      call results%add_case(run, error)
-      written = .true.
-      call watch%lap(stage_writing)
       call watch%erase()
-      if (allocated(error)) return
-      call say_lines(remark_lines(run%outcome%found, .false.))
-      if (len(run%outcome%sentence) > 0) call say_lines(run%outcome%sentence//newline)
-      call say(one_line())
-    end subroutine take_case
+      do k = 1, size(said)
+        status = max(status, said(k)%status)
+        call print_error(said(k)%remarks)
+        call say(said(k)%line)
+      end do
+    end subroutine say_words
 
     !> What the run would take on this machine: on standard error, since plans are compared.
     subroutine say_forecast()
       call print_error(name//': '//forecast_text( &
-        run%planned_scene, size(run%cases%case), run%cases%patterns, &
+        run%planned_scene, size(run%cases%case), run%cases%patterns, copies_of(run), &
         run%rows_of_tables(arguments%asks('--tables')), sum(watch%spent(2, :)), measured_rate())//newline)
     end subroutine say_forecast
 
@@ -216,48 +195,11 @@ contains
       end do
     end subroutine check_patterns
 
-    !> Lines on standard error, each behind the name of the deck.
-    subroutine say_lines(text)
-      character(len=*), intent(in) :: text
-      integer :: from, to
-
-      from = 1
-      do while (from <= len(text))
-        to = from + index(text(from:), newline) - 2
-        call print_error(shown(path)//case_name()//': '//text(from:to + 1))
-        from = to + 2
-      end do
-    end subroutine say_lines
-
     !> A line on standard output.
     subroutine say(text)
       character(len=*), intent(in) :: text
 
       if (.not. arguments%asks('--quiet')) call print_text(text, status)
     end subroutine say
-
-    !> Which load case is meant, where there are several.
-    pure function case_name() result(text)
-      character(len=:), allocatable :: text
-
-      text = ''
-      if (run%has_cases()) text = ' SUBCASE '//text_of(run%deck%subcase(run%case)%id)
-    end function case_name
-
-    !> Stem, status, largest pressure, first approach; of a pressure that has no limit, or none that the mesh
-    !! shows, that too.
-    pure function one_line() result(text)
-      character(len=:), allocatable :: limit, text
-
-      text = name//case_name()//'  '//run%outcome%word
-      if (.not. run%outcome%has_answer) return
-      if (run%model%pairs > 0) then
-        text = text//'  p_max'//right(listed_number(known, run%answer%largest_pressure(), 0.0_wp), 13)
-        limit = limit_of_pressure(run)
-        if (len(reason_of(limit)) > 0) text = text//' ('//limit//')'
-      end if
-      if (run%motions%count > 0) &
-        text = text//'  approach'//right(listed_number(number, run%answer%contact%approach(1), 0.0_wp), 13)
-    end function one_line
   end subroutine run_deck
 end module epcont_app_driver

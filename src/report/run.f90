@@ -12,8 +12,8 @@ module epcont_report_run
 
   !> One deck's way, from its cards to its answer.
   type, extends(solution_type) :: run_results
-    type(deck_type) :: deck
-    type(load_cases) :: cases
+    type(deck_type), pointer :: deck => null()    !! shared by its load cases,
+    type(load_cases), pointer :: cases => null()  !! as these are
     integer :: case = 1                           !! the one that is at hand
     type(diagnostics) :: faults
     character(len=:), allocatable :: deck_notes   !! its warnings and notes, in lines

@@ -3,7 +3,7 @@
 module epcont_system_threads
   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_f_procpointer, c_funptr, c_int, &
       c_null_char, c_null_ptr, c_ptr
-  !$ use omp_lib, only: omp_get_max_threads, omp_set_num_threads
+  !$ use omp_lib, only: omp_get_max_threads, omp_in_parallel, omp_set_num_threads
   implicit none
   private
   public :: granted_threads, stated_threads, threads_now, threads_over, use_one_thread_each, use_threads
@@ -37,9 +37,11 @@ contains
 
   !> As many as OMP_NUM_THREADS says; 1 where it is not set (decks side by side use cores better), where the
   !! program is built without OpenMP, or where the BLAS is not known to bear calls side by side: an OpenBLAS
-  !! that is built for threads (1) or OpenMP (2) locks its buffers, one that is not (0) shares them.
+  !! that is built for threads (1) or OpenMP (2) locks its buffers, one that is not (0) shares them. And 1 for
+  !! who works beside others already.
   integer function granted_threads()
     granted_threads = 1
+    !$ if (omp_in_parallel()) return
     !$ if (blas_number('openblas_get_parallel') /= 0) granted_threads = max(1, stated_threads())
   end function granted_threads
 

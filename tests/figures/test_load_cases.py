@@ -17,6 +17,14 @@ OF_THE_WAY = {"condition", "rounding_error_force", "contact_amplification", "ite
               "stress_off_curve", "curve_tolerance", "energy_balance", "equilibrium_residual", "largest_force_gap_product", "smallest_gap",
               "smallest_force", "stress_off_curve_limit", "factorizations", "pivots", "degenerate_pivots"}
 
+#: The left one .05 above the floor, the right one .3, beyond SEARCH.
+TWO_FEET = (
+    "PARAM,SEARCH,0.1|PARAM,PLANE,STRAIN|PSHELL,1,1,1.0|MAT1,1,1000.0,,0.3|"
+    "GRID,1,,-1.0,-1.0|GRID,2,,5.0,-1.0|GRID,3,,5.0,0.0|GRID,4,,-1.0,0.0|CQUAD4,1,1,1,2,3,4|SPC1,1,12,1,2|"
+    "GRID,21,,0.0,0.05|GRID,22,,1.0,0.05|GRID,23,,1.0,1.0|GRID,24,,0.0,1.0|CQUAD4,2,1,21,22,23,24|"
+    "GRID,31,,3.0,0.3|GRID,32,,4.0,0.3|GRID,33,,4.0,1.0|GRID,34,,3.0,1.0|CQUAD4,3,1,31,32,33,34|"
+    "CQUAD4,4,1,23,22,31,34|SPC1,1,12,24,23,34,33|BLSEG,1,21,22,31,32|BLSEG,2,4,3|BCONP,1,1,2|ENDDATA|")
+
 
 def bulk(path):
     """The cards of a deck, and the set of its loads."""
@@ -120,13 +128,45 @@ class LoadCases(unittest.TestCase):
                     self.check(name, "STRESS = ALL\n", f"PARAM,RULE,{rule}\n", (0.9, 0.91, 0.92, 0.93, 0.5, 0.51, 0.52))
 
     def test_same_bytes_on_any_number_of_threads(self):
-        deck = of_factors(INPUT / "layer_lines/layer_lines.dat", FACTORS)
-        listings = set()
-        for threads in "1", "2", "3":
-            os.environ["OMP_NUM_THREADS"] = threads
-            listings.add(run(deck)[1]["listing"])
-        del os.environ["OMP_NUM_THREADS"]
-        self.assertEqual(len(listings), 1)
+        """So many cases are streams side by side."""
+        factors = [0.05 * k for k in range(1, 13)] + [1.0 - 0.07 * k for k in range(13)]
+        for name, rule in (("layer_lines/layer_lines", "AUTO"), ("layer_lines/layer_lines", "JOINED"), ("hertz/hertz44", "AUTO")):
+            deck = of_factors(INPUT / f"{name}.dat", factors, param=f"PARAM,RULE,{rule}\n")
+            listings = set()
+            for threads in "1", "2", "3":
+                os.environ["OMP_NUM_THREADS"] = threads
+                status, tables = run(deck)
+                self.assertEqual(status, 0)
+                listings.add(tables["listing"])
+            del os.environ["OMP_NUM_THREADS"]
+            self.assertEqual(len(listings), 1, name)
+
+    def test_streams(self):
+        """Cases of streams are those of decks of their own."""
+        self.check("hertz/hertz44.dat", factors=tuple(0.04 * k for k in range(1, 26)))
+
+    def test_nodes_that_come_near(self):
+        """Where they do so in one case, all are solved anew with their pairs, and each is said once."""
+        cards = TWO_FEET.replace("|", "\n")
+        cases = "".join(f"SUBCASE {k}\nSPC = 1\nLOAD = {k}\n" for k in range(1, 25))
+        moved = "".join(f"SPCD,{k},{node},2,{-0.017 * k:.3f}\n" for k in range(1, 25) for node in (24, 23, 34, 33))
+        outputs = set()
+        for threads in "1", "2":
+            with tempfile.TemporaryDirectory() as folder:
+                path = pathlib.Path(folder) / "feet.dat"
+                path.write_text(f"{cases}BEGIN BULK\n{moved}{cards}")
+                done = subprocess.run([PROGRAM, path], capture_output=True, cwd=folder, check=False, text=True,
+                                      env={**os.environ, "OMP_NUM_THREADS": threads})
+                outputs.add(done.stdout + path.with_suffix(".lst").read_text())
+                rows = list(csv.DictReader(path.with_suffix(".contact.csv").open()))
+        self.assertEqual(len(outputs), 1)
+        self.assertEqual(len(done.stdout.splitlines()), 24)
+        self.assertEqual(len(rows), 24 * 4)
+        touching = [int(row["subcase"]) for row in rows if row["pair"] == "31" and row["status"] == "touching"]
+        self.assertEqual(touching, list(range(touching[0], 25)))
+        for k in touching[0] - 1, touching[0]:
+            own = run(f"SPC = 1\nLOAD = {k}\nBEGIN BULK\n{moved}{cards}")[1]["contact"]
+            self.compare([row for row in rows if row["subcase"] == str(k)][:len(own)], own, "contact")
 
     def test_the_largest_status_is_that_of_the_run(self):
         """A case that nothing carries stands beside those that are answered."""
