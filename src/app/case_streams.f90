@@ -66,6 +66,7 @@ contains
         if (allocated(error) .or. .not. run%replanned) return
       else
         call choose_threads(run%expected%bytes, size(stream), names%memory, threads, error)
+        if (allocated(error)) error%message = names%path//': '//error%message
         if (.not. allocated(error)) call solve_streams()
         if (allocated(error) .or. .not. run%replanned) return
       end if
@@ -84,6 +85,7 @@ contains
       if (run%has_cases()) call put_case(run%cases, run%case, run%model)
       run%kept%another = k < size(cases)
       call run%solve(names%memory, watch, error)
+      if (allocated(error)) error%message = names%path//': '//error%message
       if (allocated(error) .or. run%replanned .and. k > 1) return
       ! gfortran 12 keeps the length of each text that a function returns in one place for all threads.
       !$omp critical (texts)

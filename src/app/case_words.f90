@@ -11,7 +11,8 @@ module epcont_app_case_words
   public :: case_words, words_of
 
   type :: case_words
-    integer :: status = status_valid             !! exit status of the case
+    logical :: known = .false.                   !! the case was solved
+    integer :: status = status_valid             !! its exit status
     character(len=:), allocatable :: remarks     !! lines of standard error
     character(len=:), allocatable :: line        !! of standard output
   end type case_words
@@ -24,6 +25,7 @@ contains
     character(len=*), intent(in) :: path, name   !! of the deck, and what its results are called
     type(case_words) :: words
 
+    words%known = .true.
     words%status = run%outcome%status
     words%remarks = behind_name(remark_lines(run%outcome%found, .false.))
     if (len(run%outcome%sentence) > 0) &

@@ -119,8 +119,7 @@ contains
       do p = 1, run%cases%patterns
         if (p > 1) call take_pattern(p)
         call solve_pattern(run, p, names, results, words, watch, error)
-        if (allocated(error)) error%message = path//': '//error%message
-        written = written .or. .not. allocated(error)
+        written = any(words%known)
         if (allocated(error)) return
         call say_words(words(run%cases%of_pattern(p)))
         call results%add_plan(run, run%cases%of_pattern(p))

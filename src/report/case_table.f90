@@ -1,20 +1,21 @@
 !> The load cases of a deck side by side: what came of each, in a row.
 module epcont_report_case_table
   use epcont_base_kinds, only: wp
-  use epcont_report_columns, only: column, columns_text, estimate, known, length, number, part, rounding, &
-      stress, table_type, unknown, whole, word
-  use epcont_report_outcome, only: limit_of_pressure
+  use epcont_base_text, only: short_real, text_of
+  use epcont_report_columns, only: column, columns_text, estimate, estimate_number, known, length, number, &
+      part, rounding, stress, table_type, unknown, whole, word
+  use epcont_report_outcome, only: limit_of_pressure, unbounded
   use epcont_report_run, only: run_results
   implicit none
   private
-  public :: case_row, case_columns_text, put_cases, row_of_case
+  public :: case_row, case_columns_text, put_cases, put_worst_case, row_of_case
 
   !> What came of a case. Numbers are those of its summary; negative where they are not known.
   type :: case_row
     integer :: subcase = 0                     !! its number
     logical :: has_answer = .false.            !! else nothing below is known, but for its status
     character(len=20) :: status = ''           !! in a word
-    character(len=12) :: limit = ''            !! bounded, unbounded or not resolved, of the largest pressure
+    character(len=12) :: limit = ''            !! what the largest pressure is
     integer :: touching = 0, plastic = 0       !! pairs, elements
     real(wp) :: pressure = -1.0_wp, pressure_error = -1.0_wp   !! the largest [stress]
     real(wp) :: half_width = -1.0_wp           !! of the zone that has it [length]
@@ -30,7 +31,7 @@ module epcont_report_case_table
     column(whole, 'plastic_elements', '', 'elements beyond the yield point', 'plastic', 9), &
     column(known, 'max_pressure', stress, 'empty: no boundary, or no answer', 'max pressure'), &
     column(estimate, 'mesh_error_max_pressure', stress, 'empty: not known', 'error', 10), &
-    column(word, 'max_pressure_is', '', 'bounded, unbounded or not resolved', width=0), &
+    column(word, 'max_pressure_is', '', 'bounded, unbounded, not resolved, or no contact', 'it is', 13), &
     column(known, 'half_width', length, 'of the zone with that pressure; empty: not known', 'half-width'), &
     column(number, 'approach', length, 'of the first free motion'), &
     column(rounding, 'equilibrium_residual', '', 'of the certificate, relative', 'residual', 11), &
@@ -83,4 +84,36 @@ contains
                      [character(len=20) :: row(k)%status, row(k)%limit])
     end do
   end subroutine put_cases
+
+  !> What a wanted accuracy has come to: the case whose largest pressure is worth least.
+  subroutine put_worst_case(row, accuracy, listing)
+    type(case_row), intent(in) :: row(:)       !! of all cases
+    real(wp), intent(in) :: accuracy           !! wanted, relative; 0.0: none is
+    type(table_type), intent(inout) :: listing
+    real(wp) :: error(size(row))               ! relative; negative: nothing presses
+    character(len=:), allocatable :: found
+    integer :: worst
+
+    if (accuracy <= 0.0_wp) return
+    error = -1.0_wp
+    where (row%pressure > 0.0_wp) error = huge(error)
+    where (row%pressure > 0.0_wp .and. row%pressure_error >= 0.0_wp .and. row%limit /= unbounded) &
+      error = row%pressure_error/row%pressure
+    worst = maxloc(error, dim=1)
+    found = 'reached in all'
+    if (error(worst) < 0.0_wp) then
+      found = 'nothing presses'
+    else if (error(worst) > accuracy) then
+      found = 'worst in SUBCASE '//text_of(row(worst)%subcase)//': not '
+      if (row(worst)%limit == unbounded) then
+        found = found//'to be had, the largest pressure is unbounded'
+      else if (error(worst) >= huge(error)) then
+        found = found//'known, there are too few pairs in contact'
+      else
+        found = found//'reached, the error of the mesh is estimated at '//estimate_number(error(worst))
+      end if
+    end if
+    call listing%line('')
+    call listing%line('  wanted error of contact pressures '//short_real(accuracy)//', '//found)
+  end subroutine put_worst_case
 end module epcont_report_case_table

@@ -27,7 +27,7 @@ module epcont_report_outcome
   public :: remark_lines, poisson_text
 
   character(len=*), parameter, public :: unbounded = 'unbounded'
-  character(len=*), parameter :: not_resolved = 'not resolved'
+  character(len=*), parameter :: not_resolved = 'not resolved', no_contact = 'no contact'
 
   !> What came of a run.
   type :: outcome_type
@@ -279,8 +279,8 @@ contains
     end function body_name
   end function judge
 
-  !> What the largest pressure of a zone is, or of all zones; empty where that is not known, or nothing
-  !! presses.
+  !> What the largest pressure of a zone is, or of all zones; empty where that is not known. Where no pair
+  !! touches, it is 0.0, and that is said.
   pure function limit_of_pressure(run, zone) result(word)
     class(solution_type), intent(in) :: run   !! a scene with its answer
     integer, intent(in), optional :: zone     !! not given: the one with the largest pressure
@@ -290,6 +290,7 @@ contains
     z = run%accuracy%leading
     if (present(zone)) z = zone
     word = ''
+    if (z == 0 .and. run%model%pairs > 0 .and. .not. any(run%answer%contact%touching)) word = no_contact
     if (z == 0 .or. z > size(run%accuracy%zone)) return
     if (run%answer%zones(z)%max_pressure < 0.0_wp) return
     word = when(run%accuracy%zone(z)%resolved, 'bounded', not_resolved)
@@ -303,6 +304,7 @@ contains
 
     text = ''
     if (word == unbounded) text = '   unbounded: it grows with every finer mesh'
+    if (word == no_contact) text = '   no contact: nothing touches'
     if (word == not_resolved) text = '   not resolved: too few pairs where it is largest'
   end function reason_of
 

@@ -3,8 +3,7 @@
 !> nothing is written before the last.
 module epcont_report_results
   use epcont_base_error, only: error_type
-  use epcont_base_text, only: text_of
-  use epcont_report_case_table, only: case_row, put_cases, row_of_case
+  use epcont_report_case_table, only: case_row, put_cases, put_worst_case, row_of_case
   use epcont_base_text, only: text_of
   use epcont_report_columns, only: table_type
   use epcont_report_file, only: new_text_file, remove_file, text_file
@@ -215,6 +214,7 @@ contains
       call file%add(self%case(k)%listing)
     end do
     call put_cases(self%case%row, file)
+    call put_worst_case(self%case%row, run%model%controls%accuracy, file)
     call file%finish(error)
     do k = 1, size(table_name)
       call write_table(k)

@@ -161,12 +161,21 @@ class LoadCases(unittest.TestCase):
                 rows = list(csv.DictReader(path.with_suffix(".contact.csv").open()))
         self.assertEqual(len(outputs), 1)
         self.assertEqual(len(done.stdout.splitlines()), 24)
+        self.assertEqual(done.stdout.splitlines()[1], "feet SUBCASE 2  valid  p_max          0.0 (no contact)")
         self.assertEqual(len(rows), 24 * 4)
         touching = [int(row["subcase"]) for row in rows if row["pair"] == "31" and row["status"] == "touching"]
         self.assertEqual(touching, list(range(touching[0], 25)))
         for k in touching[0] - 1, touching[0]:
             own = run(f"SPC = 1\nLOAD = {k}\nBEGIN BULK\n{moved}{cards}")[1]["contact"]
             self.compare([row for row in rows if row["subcase"] == str(k)][:len(own)], own, "contact")
+
+    def test_wanted_accuracy(self):
+        """Of all cases the worst is named."""
+        for accuracy, words in (("0.1", "0.1000, worst in SUBCASE 1: not reached, the error of the mesh is estimated at 1.7E-01"),
+                                ("0.5", "0.5000, reached in all")):
+            deck = of_factors(INPUT / "hertz/hertz44_elastic.dat", [0.5, 1.0, 0.25], param=f"PARAM,ACCURACY,{accuracy}\n")
+            last = run(deck)[1]["listing"].decode().splitlines()[-1]
+            self.assertEqual(last, f"  wanted error of contact pressures {words}")
 
     def test_the_largest_status_is_that_of_the_run(self):
         """A case that nothing carries stands beside those that are answered."""
