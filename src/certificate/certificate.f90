@@ -238,10 +238,10 @@ contains
     subroutine check_points(e, stress, unit, volume, free, part)
       integer, intent(in) :: e
       real(wp), intent(in) :: stress(:, :), volume(:), free(:)
-      real(wp), intent(in) :: unit(:, :, :, :)      !! strains by unit displacements
+      real(wp), intent(in) :: unit(components, directions, most_nodes, *)   !! strains by unit displacements
       type(checked_elements), intent(inout) :: part
       real(wp), dimension(directions, most_nodes) :: motion, u
-      real(wp) :: rounding, strain(components)
+      real(wp) :: largest, farthest, rounding, strain(components)   ! of `u`, and with `motion`
       integer :: k, n, node, p
       logical :: moves, ring
 
@@ -253,15 +253,18 @@ contains
         motion(:, k) = answer%displacement(:, node) - u(:, k)
       end do
       moves = any(motion(:, :n) /= 0.0_wp)
+      largest = largest_of(directions*n, u)
+      farthest = maxval(abs(motion(:, :n)) + abs(u(:, :n)))
       do p = 1, size(stress, 2)
-        rounding = epsilon(1.0_wp)*maxval(abs(unit(:, :, :n, p)))   ! of a strain by unit displacements
-        strain = strain_by(u(:, :n), unit(:, :, :, p), ring)
+        ! Of a strain by unit displacements.
+        rounding = epsilon(1.0_wp)*largest_of(components*directions*n, unit(1, 1, 1, p))
+        strain = strain_by(n, u, unit(1, 1, 1, p), ring)
         part%work(model%first_point(e) + p - 1) = volume(p)*dot_product(stress(:, p), strain)
         strain(:3) = strain(:3) - free(p)
-        call check_stress(model%section(e), strain, stress(:, p), rounding*maxval(abs(u(:, :n))), part)
+        call check_stress(model%section(e), strain, stress(:, p), rounding*largest, part)
         if (.not. moves) cycle
-        strain = strain_by(motion(:, :n), unit(:, :, :, p), ring)
-        rounding = rounding*maxval(abs(motion(:, :n)) + abs(u(:, :n)))
+        strain = strain_by(n, motion, unit(1, 1, 1, p), ring)
+        rounding = rounding*farthest
         part%motion_strain = max(part%motion_strain, ratio(maxval(abs(strain)), rounding))
       end do
     end subroutine check_points
@@ -331,16 +334,30 @@ contains
     end subroutine add_pairs
   end subroutine certify
 
+  !> The largest size of some numbers.
+  pure real(wp) function largest_of(count, number) result(largest)
+    integer, intent(in) :: count
+    real(wp), intent(in) :: number(count)
+    integer :: k
+
+    largest = 0.0_wp
+    do k = 1, count
+      largest = max(largest, abs(number(k)))
+    end do
+  end function largest_of
+
   !> Strain at one place of an element. What its nodes share along y, and in a plane along x, is a travel
   !! without strain, and comes off first so that it leaves no rounding.
-  pure function strain_by(displacement, unit, ring) result(strain)
-    real(wp), intent(in) :: displacement(:, :), unit(:, :, :)   !! of its nodes, by a unit of each
+  pure function strain_by(nodes, displacement, unit, ring) result(strain)
+    integer, intent(in) :: nodes
+    real(wp), intent(in) :: displacement(directions, nodes)         !! of its nodes
+    real(wp), intent(in) :: unit(components, directions, nodes)     !! by a unit of each
     logical, intent(in) :: ring
     real(wp) :: strain(components), apart(directions)
     integer :: k
 
     strain = 0.0_wp
-    do k = 1, size(displacement, 2)
+    do k = 1, nodes
       apart = displacement(:, k) - displacement(:, 1)
       if (ring) apart(1) = displacement(1, k)
       strain = strain + apart(1)*unit(:, 1, k) + apart(2)*unit(:, 2, k)

@@ -48,7 +48,9 @@ contains
     integer :: k, n, p
 
     n = model%node_count(element)
-    x(:, :n) = model%coordinates(element)
+    do k = 1, n
+      x(:, k) = model%x(:, model%connectivity(k, element))
+    end do
     associate (s => model%section(element), kind => model%kinds(model%kind(element)))
       do p = 1, kind%points
         ! d x/d local, one column each; from the first node, so that a place far from the origin takes no
@@ -66,7 +68,8 @@ contains
           gradient(2) = (slope(2, k, p)*side(1, 1) - slope(1, k, p)*side(1, 2))/determinant
           strain(1, 1, k, p) = gradient(1)
           strain(2, 2, k, p) = gradient(2)
-          strain(4, :, k, p) = gradient([2, 1])
+          strain(4, 1, k, p) = gradient(2)
+          strain(4, 2, k, p) = gradient(1)
         end do
         if (model%kinematics(s) /= axisymmetric) cycle
         radius = dot_product(kind%values(:n, p), x(1, :n))

@@ -35,24 +35,25 @@ contains
 
     in_space = strain
     if (self%sheet) in_space(3) = strain_across()
-    trial = state_in_space(in_space)
+    call find_state(in_space, trial)
     if (self%sheet) trial%stress(3) = 0.0_wp
 
   contains
 
     !> The state with the strain zz as it is given.
-    pure function state_in_space(strain) result(state)
+    pure subroutine find_state(strain, state)
       real(wp), intent(in) :: strain(components)
-      type(point_state) :: state
+      type(point_state), intent(out) :: state
       real(wp) :: deviator(components)
 
       deviator = deviator_of(strain)
       state%across = strain(3)
-      state%deviatoric = sqrt((sum(deviator**2) + deviator(4)**2)*2.0_wp/3.0_wp)
+      state%deviatoric = sqrt((deviator(1)**2 + deviator(2)**2 + deviator(3)**2 + deviator(4)**2 + &
+                               deviator(4)**2)*2.0_wp/3.0_wp)
       state%curve_value = self%curve%at_strain(state%deviatoric)
       state%stress = 2.0_wp/3.0_wp*state%modulus*deviator
       state%stress(:3) = state%stress(:3) + 3.0_wp*self%bulk*(sum(strain(:3))/3.0_wp)
-    end function state_in_space
+    end subroutine find_state
 
     !> The strain across a sheet in plane stress, where the stress across vanishes. That stress rises with the
     !! strain, and has its zero between that of the elastic sheet and that of constant volume.
@@ -67,7 +68,7 @@ contains
       low = min(across, -(strain(1) + strain(2)))
       high = max(across, -(strain(1) + strain(2)))
       do step = 1, most_steps
-        state = state_in_space([strain(:2), across, strain(4)])
+        call find_state([strain(:2), across, strain(4)], state)
         if (.not. state%yielded .and. step == 1) return
         if (state%stress(3) == 0.0_wp) return
         if (state%stress(3) > 0.0_wp) high = across
@@ -90,7 +91,8 @@ contains
     real(wp), intent(in) :: strain(components)
     real(wp) :: deviator(components)
 
-    deviator = [strain(:3) - sum(strain(:3))/3.0_wp, 0.5_wp*strain(4)]
+    deviator(:3) = strain(:3) - sum(strain(:3))/3.0_wp
+    deviator(4) = 0.5_wp*strain(4)
   end function deviator_of
 
   !> What the tangent has less than the secant along the deviator: (4/9) (h - E_D)/e**2 [stress].

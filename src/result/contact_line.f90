@@ -290,11 +290,28 @@ contains
         do k = 1, model%corners(elements(i))
           side = model%edge(elements(i), k)
           if (.not. any(side == node)) cycle
-          if (size(model%with_side(side(1), side(2))) > 1) cycle
+          if (is_shared(side, elements(i))) cycle
           sides = reshape([sides, side, elements(i)], [4, size(sides, 2) + 1])
         end do
       end do
     end associate
+
+  contains
+
+    !> Has another element this side? Few have both of its corners.
+    pure logical function is_shared(side, element)
+      integer, intent(in) :: side(:), element
+      integer :: i
+
+      is_shared = .false.
+      do i = model%around%start(side(1)), model%around%start(side(1) + 1) - 1
+        associate (other => model%around%group(i))
+          if (other == element .or. all(model%connectivity(:model%corners(other), other) /= side(2))) cycle
+          is_shared = any(model%edge_between(other, side(1), side(2)) > 0)
+        end associate
+        if (is_shared) return
+      end do
+    end function is_shared
   end function outer_sides
 
   !> What a uniform pressure on a side gives to each of its nodes, along a normal or in all, over that

@@ -29,7 +29,9 @@ contains
     type(gradient_type) :: found
     real(wp) :: gradient
     integer :: e
+    logical :: rings
 
+    rings = model%has_rings()
     do e = 1, model%elements
       gradient = norm_at(e)
       if (gradient > large_gradient) &
@@ -58,7 +60,7 @@ contains
         s = x(:, node(n)) - x(:, node(n - 2))
         p = u(:, node(n)) - u(:, node(n - 2))
         norm = sqrt(sum((p*t(2) - q*s(2))**2) + sum((q*s(1) - p*t(1))**2))/abs(s(1)*t(2) - s(2)*t(1))
-        if (.not. model%has_rings()) return
+        if (.not. rings) return
         radius = sum(x(1, node))
         if (radius > 0.0_wp) norm = max(norm, abs(sum(u(1, node)))/radius)
       end associate
