@@ -3,7 +3,7 @@ module epcont_base_kinds
   use, intrinsic :: iso_fortran_env, only: int64, real32, real64
   implicit none
   private
-  public :: wp, sp, i8
+  public :: wp, sp, i8, i16
 
   !> Working precision of all reals.
   integer, parameter :: wp = real64
@@ -11,4 +11,6 @@ module epcont_base_kinds
   integer, parameter :: sp = real32
   !> Long integer, for counts that outgrow 2**31 (operations, bytes, band entries).
   integer, parameter :: i8 = int64
+  !> Whole numbers of 38 digits, for reals as decimals.
+  integer, parameter :: i16 = selected_int_kind(38)
 end module epcont_base_kinds

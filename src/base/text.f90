@@ -38,9 +38,17 @@ contains
     integer(i8), intent(in) :: number
     character(len=:), allocatable :: text
     character(len=20) :: buffer
+    integer(i8) :: left
+    integer :: k
 
-    write (buffer, '(i0)') number
-    text = trim(buffer)
+    left = number
+    do k = len(buffer), 1, -1
+      buffer(k:k) = achar(iachar('0') + int(abs(mod(left, 10_i8))))
+      left = left/10
+      if (left == 0) exit
+    end do
+    text = buffer(k:)
+    if (number < 0) text = '-'//text
   end function text_of_long
 
   !> A real as a format has it, without blanks around it.

@@ -2,13 +2,14 @@
 !> of comma separated values and the manual page all come from that. Rows are values of mixed kind.
 module epcont_report_columns
   use epcont_base_kinds, only: wp
+  use epcont_base_decimal, only: full_decimal, short_decimal
   use epcont_base_text, only: formatted, short_real, text_of
   use epcont_base_tolerances, only: least_difference, rounded_off
   use epcont_report_file, only: text_file
   implicit none
   private
   public :: column, table_type, columns_text
-  public :: right, listed_number, full_numbers, estimate_number, rounding_number, percent
+  public :: right, listed_number, full_number, estimate_number, rounding_number, percent
 
   !> What the values of a column are. Of a number it says how that is written: in a file in full, in the
   !! listing in the digits that tell.
@@ -143,11 +144,11 @@ contains
     integer, intent(in) :: wholes(:)           !! ids and counts, in the order of the columns
     real(wp), intent(in) :: numbers(:)         !! in that order
     character(len=*), intent(in), optional :: words(:)   !! in that order; not given: no column has any
-    character(len=25) :: cell(size(self%column)), full(size(numbers))
+    character(len=25) :: cell(size(self%column))
     integer :: i
 
-    if (.not. self%listed) full = full_numbers(pack(self%column%kind, self%column%kind > whole), numbers)
     do i = 1, size(cell)
+      cell(i) = ''
       if (self%listed .and. self%column(i)%width == 0) cycle
       associate (kind => self%column(i)%kind, n => self%nth(i))
         if (kind == whole) then
@@ -157,7 +158,7 @@ contains
         else if (self%listed) then
           cell(i) = listed_number(kind, numbers(n), self%scale(n))
         else
-          cell(i) = full(n)
+          cell(i) = full_number(kind, numbers(n))
         end if
       end associate
     end do
@@ -168,23 +169,29 @@ contains
   subroutine write_cells(self, cell)
     class(table_type), intent(inout) :: self
     character(len=*), intent(in) :: cell(:)
-    character(len=:), allocatable :: text
-    integer :: i
+    character(len=size(cell)*(len(cell) + maxval(self%column%width) + 2)) :: text
+    integer :: i, last, n, width
 
-    text = ''
+    last = 0
     do i = 1, size(cell)
+      n = len_trim(cell(i))
       associate (one => self%column(i))
         if (.not. self%listed) then
-          if (one%name /= '') text = text//','//trim(cell(i))
+          if (one%name == '') cycle
+          width = n + 1
+          text(last + 1:last + width) = ','//cell(i)(:n)
         else if (one%kind == state) then
-          text = text//'  '//adjustl(right(trim(cell(i)), one%width - 2))
-        else if (one%width > 0) then
-          text = text//right(trim(cell(i)), one%width)
+          width = 2 + max(one%width - 2, n)
+          text(last + 1:last + width) = '  '//adjustl(cell(i)(:n))
+        else
+          width = merge(max(one%width, n), 0, one%width > 0)
+          text(last + 1:last + width) = repeat(' ', max(0, width - n))//cell(i)(:n)
         end if
       end associate
+      last = last + width
     end do
-    if (self%listed) call self%line(text)
-    if (.not. self%listed) call self%csv(text(2:))
+    if (self%listed) call self%line(text(:last))
+    if (.not. self%listed) call self%csv(text(2:last))
   end subroutine write_cells
 
   !> Text at the right of `width` columns; wider text is kept whole.
@@ -227,21 +234,17 @@ contains
     end select
   end function listed_number
 
-  !> Numbers in a file: 17 digits, and blanks behind them; of errors, pressures and the like that are negative
-  !! nothing is known. They are written at once, since a format takes longer than a number.
-  pure function full_numbers(kinds, values) result(text)
-    integer, intent(in) :: kinds(:)     !! of each, one of those above
-    real(wp), intent(in) :: values(:)   !! at least one
-    character(len=25) :: text(size(values))
-    integer :: k
+  !> A number in a file: 17 digits, and blanks behind them; of errors, pressures and the like that are
+  !! negative nothing is known.
+  pure function full_number(kind, value) result(text)
+    integer, intent(in) :: kind     !! one of those above
+    real(wp), intent(in) :: value   !! the number
+    character(len=25) :: text
 
-    write (text, '(es25.16e3)') merge(0.0_wp, values, values == 0.0_wp)   ! no negative zero
-    text = adjustl(text)
-    do k = 1, size(values)
-      if (any(kinds(k) == [known, estimate, factor, part]) .and. .not. values(k) >= 0.0_wp .or. &
-          kinds(k) == no_number .or. values(k) <= unknown) text(k) = ''
-    end do
-  end function full_numbers
+    text = ''
+    if (kind == no_number .or. value <= unknown) return
+    if (value >= 0.0_wp .or. all(kind /= [known, estimate, factor, part])) text = full_decimal(value)
+  end function full_number
 
   !> A number of a listing's column, six digits in 13 characters: there are many.
   pure function column_number(value, scale) result(text)
@@ -254,7 +257,7 @@ contains
     else if (abs(value) >= 0.999999e100_wp .or. abs(value) < 1.0e-99_wp) then
       write (text, '(es13.5e3)') value
     else
-      write (text, '(es13.5e2)') value
+      text = right(trim(short_decimal(value)), len(text))
     end if
   end function column_number
 

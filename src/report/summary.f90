@@ -6,7 +6,7 @@ module epcont_report_summary
   use epcont_base_text, only: newline, text_of
   use epcont_certificate_scene, only: little, overlap_place
   use epcont_element_kinematics, only: directions
-  use epcont_report_columns, only: estimate, factor, force, full_numbers, known, length, listed_number, &
+  use epcont_report_columns, only: estimate, factor, force, full_number, known, length, listed_number, &
       number, part, percent, rounding, size_of, stress
   use epcont_model_arrays, only: angle
   use epcont_model_springs, only: spring_stretch
@@ -246,10 +246,8 @@ contains
       real(wp), intent(in) :: value
       character(len=*), intent(in), optional :: name, note, listed   !! in the listing
       type(figure_type) :: figure
-      character(len=25) :: full(1)
 
-      full = full_numbers([kind], [value])
-      figure = figure_type(key, full(1), unit)
+      figure = figure_type(key, full_number(kind, value), unit)
       if (present(name)) figure%name = name
       figure%listed = listed_number(kind, value, 0.0_wp)
       if (present(listed)) figure%listed = listed
