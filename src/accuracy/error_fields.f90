@@ -24,10 +24,20 @@ module epcont_accuracy_error_fields
   !> Elements that a thread takes at once.
   integer, parameter :: at_once = 8192
 
-  !> The unit loads of a body that is no part of others, where one batch tells of all, for the next load case.
+  !> What load cases keep takes such a part of the memory that is forecast, at most.
+  real(wp), parameter :: part_of_memory = 0.1_wp
+  integer, parameter :: real_bytes = 8
+
+  !> The fields of a batch of loads on a body; where it tells of all loads, for the next load case.
   type :: body_fields
     type(load_batch) :: batch
-    real(wp), allocatable :: u(:, :, :)   !! not allocated: they are not known
+    real(wp), allocatable :: u(:, :, :)   !! displacements under them [length] [directions, fields, places]
+    !> Strains of the answer and of all fields, at the samples, and smooth ones; not allocated: not known
+    !! [components, 0:fields, samples], [components, 0:fields, places]
+    real(wp), allocatable :: sample(:, :, :), smooth(:, :, :)
+    real(wp), allocatable :: energy(:, :)   !! of each load, as `field_sums` has it [energy] [2, loads]
+  contains
+    procedure :: hand_over
   end type body_fields
 
   !> Strains less smooth ones are errors: their energies, and their products with those of unit loads.
@@ -52,11 +62,11 @@ contains
     type(error_fields), intent(out) :: field     !! what is off
     type(incidence) :: elements, pairs           ! of each body
     type(body_loads) :: loads
-    type(load_batch) :: batch
+    type(body_fields) :: now                     ! of the body
     type(body_samples) :: samples
+    real(wp) :: kept                             ! for the next load case [bytes]
     real(wp) :: sum_of(4, size(passed%unit))     ! what `field_sums` has of all bodies, of each column
     real(wp) :: total(4, passed%loads)           ! of each load
-    real(wp), allocatable :: u(:, :, :)          ! under the fields of a batch [directions, fields, places]
     integer, allocatable :: element(:)           ! of the body
     integer :: b, k
 
@@ -64,6 +74,7 @@ contains
               field%missing(passed%loads), source=0.0_wp)
     pairs = new_incidence(scene%model%bodies_of_pairs(), scene%model%bodies)
     sum_of = 0.0_wp
+    kept = 0.0_wp
     if (scene%numbering%joined) elements = scene%model%elements_of_bodies()
     do b = 1, scene%model%bodies
       if (scene%numbering%joined) then
@@ -72,22 +83,20 @@ contains
         element = scene%numbering%body(b)%element
       end if
       if (size(element) == 0) cycle
-      if (allocated(known(b)%u)) then
-        batch = known(b)%batch
-        call move_alloc(known(b)%u, u)
+      if (allocated(known(b)%smooth)) then
+        call known(b)%hand_over(now)
         call compare_on_body(element, table%of_body%of(b))
-        call move_alloc(u, known(b)%u)
-        cycle
+      else
+        loads = new_body_loads(pairs%of(b), passed)
+        do k = 1, size(passed%unit) + 1
+          call find_fields(table%of_body%of(b))
+          call compare_on_body(element, table%of_body%of(b))
+          if (size(loads%load) == 0) exit
+        end do
+        if (k > 1) cycle
       end if
-      loads = new_body_loads(pairs%of(b), passed)
-      do k = 1, size(passed%unit) + 1
-        call find_fields(table%of_body%of(b))
-        call compare_on_body(element, table%of_body%of(b))
-        if (size(loads%load) == 0) exit
-      end do
-      if (k > 1 .or. scene%numbering%joined) cycle
-      known(b)%batch = batch
-      call move_alloc(u, known(b)%u)
+      kept = kept + real_bytes*(size(now%u) + size(now%sample) + size(now%smooth))
+      if (linear%borne%keeps .and. kept <= part_of_memory*scene%expected%bytes) call now%hand_over(known(b))
     end do
     total = passed%add_up(sum_of*spread(passed%unit, 1, 4)**spread([1, 1, 2, 2], 2, size(passed%unit)))
     field%along = total(:2, :)
@@ -104,15 +113,16 @@ contains
       integer, intent(in) :: place(:)   !! of the body
       integer :: f
 
+      if (allocated(now%smooth)) deallocate (now%sample, now%smooth)   ! of the batch before
       if (.not. scene%numbering%joined) then
-        call choose_fields(loads, batch)
-        call find_displacements(scene, linear, b, loads%pair, batch, table%node(place), u)
+        call choose_fields(loads, now%batch)
+        call find_displacements(scene, linear, b, loads%pair, now%batch, table%node(place), now%u)
         return
       end if
-      call take_fields(loads, batch)
-      u = passed%displacement(:, batch%load, table%node(place))
-      do f = 1, size(u, 2)
-        u(:, f, :) = u(:, f, :)/passed%unit(batch%load(f))
+      call take_fields(loads, now%batch)
+      now%u = passed%displacement(:, now%batch%load, table%node(place))
+      do f = 1, size(now%u, 2)
+        now%u(:, f, :) = now%u(:, f, :)/passed%unit(now%batch%load(f))
       end do
     end subroutine find_fields
 
@@ -121,40 +131,47 @@ contains
     subroutine compare_on_body(element, place)
       integer, intent(in) :: element(:), place(:)   !! those of the body
       type(field_sums) :: part, sums
-      real(wp), allocatable :: sample(:, :), smooth(:, :)   ! of the answer and all fields [width, any]
-      integer :: first, width
+      integer :: fields, first, width
+      logical :: told   ! all but what is of the answer is known
 
-      width = components*(1 + size(u, 2))
-      sums = new_field_sums(batch%share, 0)
+      fields = size(now%u, 2)
+      width = components*(1 + fields)
+      told = allocated(now%smooth)
+      sums = new_field_sums(now%batch%share, 0)
       call place_samples(scene%model, element, samples)
-      allocate (sample(width, size(samples%x, 2)), smooth(width, size(place)))
+      if (.not. told) allocate (now%sample(components, 0:fields, size(samples%x, 2)), &
+                                now%smooth(components, 0:fields, size(place)))
+      if (told) fields = 0
       !$omp parallel do num_threads(threads_over(size(element)))
       do first = 1, size(element), at_once
-        call sample_elements(element(first:min(first + at_once - 1, size(element))), width, sample)
+        call sample_elements(element(first:min(first + at_once - 1, size(element))), fields, width, now%sample)
       end do
       !$omp end parallel do
-      call recover(scene%model, table, b, samples, size(u, 2), sample, smooth)
+      call recover(scene%model, table, b, samples, fields, now%sample, now%smooth)
       !$omp parallel do num_threads(threads_over(size(element))) schedule(dynamic) ordered private(part)
       do first = 1, size(element), at_once
         call use_one_thread_each()
-        part = new_field_sums(batch%share, min(at_once, size(element) - first + 1))
-        call compare_elements(element(first:min(first + at_once - 1, size(element))), width, sample, smooth, &
-                              part)
+        part = new_field_sums(now%batch%share, min(at_once, size(element) - first + 1))
+        part%finds_energies = .not. told
+        call compare_elements(element(first:min(first + at_once - 1, size(element))), width, now%sample, &
+                              now%smooth, part)
         !$omp ordered
         call sums%include(part)
         !$omp end ordered
       end do
       !$omp end parallel do
-      field%smooth(:, place) = smooth(:components, :)
-      if (size(u, 2) == 0) return
+      field%smooth(:, place) = now%smooth(:, 0, :)
+      if (width == components) return
       call sums%finish()
-      sum_of(:2, batch%load) = sum_of(:2, batch%load) + sums%along
-      sum_of(3:, batch%load) = sum_of(3:, batch%load) + sums%energy
+      if (.not. told) now%energy = sums%energy
+      sum_of(:2, now%batch%load) = sum_of(:2, now%batch%load) + sums%along
+      sum_of(3:, now%batch%load) = sum_of(3:, now%batch%load) + now%energy
     end subroutine compare_on_body
 
-    !> The strains of some elements at their samples.
-    subroutine sample_elements(element, width, sample)
+    !> The strains of some elements at their samples, of the answer and so many fields.
+    subroutine sample_elements(element, fields, width, sample)
       integer, intent(in) :: element(:)   !! these
+      integer, intent(in) :: fields       !! none or all: others stay as they are
       integer, intent(in) :: width        !! components of all fields
       real(wp), intent(inout) :: sample(width, *)   !! of the body
       real(wp) :: strain(width, most_points)
@@ -163,11 +180,11 @@ contains
       do i = 1, size(element)
         associate (e => element(i), kind => scene%model%kinds(scene%model%kind(element(i))))
           if (kind%points == 1) then
-            call find_strains(e, sample(:, samples%before(e) + 1))
+            call find_strains(e, fields, sample(1, samples%before(e) + 1))
           else if (kind%degree == 1) then
-            call find_means(e, sample(:, samples%before(e) + 1))
+            call find_means(e, fields, sample(1, samples%before(e) + 1))
           else
-            call find_strains(e, strain)
+            call find_strains(e, size(now%u, 2), strain)
             call samples%take(kind, e, width, strain, sample)
           end if
         end associate
@@ -185,7 +202,7 @@ contains
       real(wp) :: strain(width, most_points)
       integer :: i
 
-      errors = new_element_errors(size(u, 2))
+      errors = new_element_errors(size(now%u, 2))
       do i = 1, size(element)
         associate (e => element(i), kind => scene%model%kinds(scene%model%kind(element(i))), &
                    first => scene%model%first_point(element(i)), &
@@ -193,12 +210,12 @@ contains
           if (kind%points == 1) then
             strain(:, 1) = sample(:, samples%before(e) + 1)
           else
-            call find_strains(e, strain)
+            call find_strains(e, size(now%u, 2), strain)
           end if
           call errors%compare(kind, linear%operator%volume(first), strain, places_of(e), smooth)
           call errors%find_stress(kind, law, first, answer%point)
           field%element(e) = errors%energy(0)
-          if (size(u, 2) > 0) call sums%add(errors, law)
+          if (size(now%u, 2) > 0) call sums%add(errors, law)
         end associate
       end do
     end subroutine compare_elements
@@ -213,22 +230,22 @@ contains
       end do
     end function places_of
 
-    !> Strains of an element, of the answer and of all fields.
-    subroutine find_strains(e, strain)
-      integer, intent(in) :: e
-      real(wp), intent(inout) :: strain(components*(1 + size(u, 2)), *)   !! at its points
+    !> Strains of an element, of the answer and of no fields or all.
+    subroutine find_strains(e, fields, strain)
+      integer, intent(in) :: e, fields
+      real(wp), intent(inout) :: strain(components*(1 + size(now%u, 2)), *)   !! at its points
       integer :: p
 
       do p = scene%model%first_point(e), scene%model%first_point(e + 1) - 1
         strain(:components, p - scene%model%first_point(e) + 1) = answer%strain(:, p)
       end do
-      call linear%operator%add_fields(scene%model, e, places_of(e), size(u, 2), u, strain)
+      call linear%operator%add_fields(scene%model, e, places_of(e), fields, now%u, strain)
     end subroutine find_strains
 
     !> Means of these over the element, its one sample.
-    subroutine find_means(e, strain)
-      integer, intent(in) :: e
-      real(wp), intent(inout) :: strain(components*(1 + size(u, 2)))
+    subroutine find_means(e, fields, strain)
+      integer, intent(in) :: e, fields
+      real(wp), intent(inout) :: strain(components*(1 + size(now%u, 2)))
       integer :: p
 
       strain(:components) = 0.0_wp
@@ -238,7 +255,19 @@ contains
           strain(:components) = strain(:components) + volume(p)/sum(volume(first:last))*answer%strain(:, p)
         end do
       end associate
-      call linear%operator%add_means(scene%model, e, places_of(e), size(u, 2), u, strain)
+      call linear%operator%add_means(scene%model, e, places_of(e), fields, now%u, strain)
     end subroutine find_means
   end subroutine compare_fields
+
+  !> Give all that is known to another.
+  subroutine hand_over(self, to)
+    class(body_fields), intent(inout) :: self
+    type(body_fields), intent(inout) :: to
+
+    to%batch = self%batch
+    call move_alloc(self%u, to%u)
+    call move_alloc(self%sample, to%sample)
+    call move_alloc(self%smooth, to%smooth)
+    call move_alloc(self%energy, to%energy)
+  end subroutine hand_over
 end module epcont_accuracy_error_fields

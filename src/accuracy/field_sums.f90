@@ -21,6 +21,7 @@ module epcont_accuracy_field_sums
   type :: field_sums
     real(wp), allocatable :: along(:, :)    !! products: their sum, that without signs [energy] [2, loads]
     real(wp), allocatable :: energy(:, :)   !! of each load's error, and of its own strain [2, loads]
+    logical :: finds_energies = .true.      !! else these are known
     real(wp), allocatable, private :: share(:, :)          !! of each field in each load [fields, loads]
     !> Energies of each two fields: of their errors, of their own strains [fields, fields, 2]
     real(wp), allocatable, private :: together(:, :, :)
@@ -64,11 +65,13 @@ contains
     real(wp) :: cross, part(most_places)
     integer :: f
 
-    cross = cross_modulus(law%bulk, law%shear, law%sheet)
-    part = errors%part
-    call put(1, errors%places, errors%error, self%strain(1, 1, 1), self%stress(1, 1, 1))
-    if (errors%own_places == 1) part(1) = sum(part(:errors%places))
-    call put(2, errors%own_places, errors%own, self%strain(1, 1, 2), self%stress(1, 1, 2))
+    if (self%finds_energies) then
+      cross = cross_modulus(law%bulk, law%shear, law%sheet)
+      part = errors%part
+      call put(1, errors%places, errors%error, self%strain(1, 1, 1), self%stress(1, 1, 1))
+      if (errors%own_places == 1) part(1) = sum(part(:errors%places))
+      call put(2, errors%own_places, errors%own, self%strain(1, 1, 2), self%stress(1, 1, 2))
+    end if
     self%elements = self%elements + 1
     do f = 1, errors%fields
       self%product(self%elements, f) = errors%energy(f)

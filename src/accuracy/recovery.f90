@@ -96,21 +96,20 @@ contains
     end do
   end subroutine take
 
-  !> Smooth strains at the places of a body, of all fields at once.
+  !> Smooth strains at the places of a body, of the answer and some fields at once.
   subroutine recover(model, table, b, samples, fields, strain, smooth)
     type(model_type), intent(in) :: model        !! the scene
     type(patch_table), intent(in) :: table       !! of its elements
     integer, intent(in) :: b                     !! the body
     type(body_samples), intent(in) :: samples   !! of its elements
-    integer, intent(in) :: fields                !! how many, besides the answer's
-    real(wp), intent(in) :: strain(components, 0:fields, *)   !! [.., .., samples]
-    !> [.., .., its places]
-    real(wp), intent(out) :: smooth(components, 0:fields, table%of_body%start(b + 1) - table%of_body%start(b))
+    integer, intent(in) :: fields                !! how many, besides the answer's: others stay as they are
+    real(wp), contiguous, intent(in) :: strain(:, 0:, :)        !! [components, fields or more, samples]
+    real(wp), contiguous, intent(inout) :: smooth(:, 0:, :)     !! [components, fields or more, its places]
     integer, allocatable :: fits(:)   !! of a node between corners: polynomials that reach it; of others -1
     integer :: i
     logical :: any_curved             ! elements of the body have nodes between their corners
 
-    smooth = 0.0_wp
+    smooth(:, :fields, :) = 0.0_wp
     allocate (fits(size(smooth, 3)), source=-1)
     call find_middles()
     associate (places => table%of_body%group(table%of_body%start(b):table%of_body%start(b + 1) - 1))
@@ -122,7 +121,7 @@ contains
       !$omp end parallel do
     end associate
     do i = 1, size(fits)
-      if (fits(i) > 0) smooth(:, :, i) = smooth(:, :, i)/fits(i)
+      if (fits(i) > 0) smooth(:, :fields, i) = smooth(:, :fields, i)/fits(i)
     end do
 
   contains
@@ -178,7 +177,7 @@ contains
       if (curved) then
         call fit_quadratic(i, p, patch)
       else
-        call fit_linear(patch, model%x(1, table%node(p)), model%x(2, table%node(p)), smooth(:, :, i))
+        call fit_linear(patch, model%x(1, table%node(p)), model%x(2, table%node(p)), smooth(:, :fields, i))
       end if
     end subroutine fit
 
@@ -258,7 +257,7 @@ contains
       end do
       if (n < least_quadratic) matrix(:, 4:) = 0.0_wp   ! linear
       call solve(matrix, components*(1 + fields), coefficient)
-      smooth(:, :, i) = coefficient(:, :, 1)
+      smooth(:, :fields, i) = coefficient(:, :, 1)
       do j = table%around%start(p), table%around%start(p + 1) - 1
         e = table%around%group(j)
         associate (place => table%place(:, e), corners => model%corners(e))
@@ -267,7 +266,7 @@ contains
             term = terms((model%x(:, table%node(place(k))) - centre)/reach)
             associate (own => table%own(place(k)))
               do n = 1, quadratic
-                smooth(:, :, own) = smooth(:, :, own) + coefficient(:, :, n)*term(n)
+                smooth(:, :fields, own) = smooth(:, :fields, own) + coefficient(:, :, n)*term(n)
               end do
               fits(own) = fits(own) + 1
             end associate
