@@ -20,7 +20,9 @@ module epcont_plan_run_time
   real(wp), parameter :: of_entry = 4.0e-9_wp
   !> Over what comes before the first solve: what a solve takes beside its factors (strains, states,
   !! residual), and what comes after the last (stresses, certificate, accuracy, listing).
-  real(wp), parameter :: solve_part = 0.3_wp, end_part = 1.4_wp
+  !! Of a further load case of elastic bodies, whose first case has left what does not depend on loads, the
+  !! latter is less.
+  real(wp), parameter :: solve_part = 0.3_wp, end_part = 1.4_wp, case_part = 0.15_wp
   !> Files and process of a deck of no size, and a row of a table, in the listing and in its file [s].
   real(wp), parameter :: of_files = 1.5e-3_wp, of_row = 1.2e-5_wp
   !> Each two free motions: the rigid start, and what loads along the one do to the other (stacks of 100 to
@@ -38,6 +40,7 @@ module epcont_plan_run_time
     real(wp) :: solve = 0.0_wp    !! the first solve [s]
     real(wp) :: next = 0.0_wp     !! each other one, where something yields [s]
     real(wp) :: finish = 0.0_wp   !! what comes after the last [s]
+    real(wp) :: further = 0.0_wp  !! the same of a further load case [s]
     integer :: solves = 1         !! as most scenes take
     integer :: cases = 1          !! of loads
     integer :: patterns = 1       !! of these, that share no factors
@@ -66,6 +69,8 @@ contains
     time%next = expected%operations_again/rate + of_entry*expected%entries_again + solve_part*begun + &
                 merge(0.0_wp, start, plan%joined)
     time%finish = end_part*begun + of_files + of_row*rows + of_motions*motions**2 + of_looped*motions*looped
+    time%further = time%finish
+    if (.not. plan%yields) time%further = time%finish - (end_part - case_part)*begun
     if (plan%yields) time%solves = plan%load_steps*solves_at_a_load(plan)
   end function foresee
 
@@ -82,7 +87,7 @@ contains
   pure real(wp) function whole(self)
     class(run_time), intent(in) :: self
 
-    whole = self%begun + self%patterns*self%solve + (self%solves*self%cases - self%patterns)*self%next + &
-            self%cases*self%finish
+    whole = self%begun + self%patterns*(self%solve + self%finish) + &
+            (self%solves*self%cases - self%patterns)*self%next + (self%cases - self%patterns)*self%further
   end function whole
 end module epcont_plan_run_time
