@@ -144,7 +144,8 @@ contains
       if (told) fields = 0
       !$omp parallel do num_threads(threads_over(size(element)))
       do first = 1, size(element), at_once
-        call sample_elements(element(first:min(first + at_once - 1, size(element))), fields, width, now%sample)
+        call sample_elements(element(first:min(first + at_once - 1, size(element))), fields, width, &
+                             now%sample)
       end do
       !$omp end parallel do
       call recover(scene%model, table, b, samples, fields, now%sample, now%smooth)

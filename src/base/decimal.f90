@@ -1,7 +1,7 @@
-!> Reals as decimals, the digits that formats give, in a tenth of their time: tables have a million of them.
+!> Reals as decimals, in the digits that formats give and a tenth of their time: tables have a million.
 !>
-!> A real is m 2**e, and 10**p of it m 5**p 2**(e + p): a whole number of 128 bits for all of usual size, whose
-!> last digit is rounded exactly, ties to even. Others are written by a format.
+!> A real is m 2**e, and 10**p of it m 5**p 2**(e + p): a whole number of 128 bits for all of usual size,
+!> whose last digit is rounded exactly, ties to even. Others are written by a format.
 module epcont_base_decimal
   use epcont_base_kinds, only: i8, i16, wp
   implicit none

@@ -10,7 +10,7 @@ module epcont_certificate_certificate
   use epcont_certificate_mass_force, only: given_load
   use epcont_certificate_scene, only: scene_type
   use epcont_certificate_tied, only: check_springs, check_ties, gather_ties, longest_arms
-  use epcont_certificate_unit_strains, only: find_slopes, unit_strains
+  use epcont_certificate_unit_strains, only: find_slopes, largest_of, strain_by, unit_strains
   use epcont_certificate_yielding, only: stress_on_curve, von_mises_stress
   use epcont_element_element_kind, only: most_nodes, most_points
   use epcont_element_kinematics, only: axisymmetric, components, directions, plane_stress
@@ -333,36 +333,6 @@ contains
       end do
     end subroutine add_pairs
   end subroutine certify
-
-  !> The largest size of some numbers.
-  pure real(wp) function largest_of(count, number) result(largest)
-    integer, intent(in) :: count
-    real(wp), intent(in) :: number(count)
-    integer :: k
-
-    largest = 0.0_wp
-    do k = 1, count
-      largest = max(largest, abs(number(k)))
-    end do
-  end function largest_of
-
-  !> Strain at one place of an element. What its nodes share along y, and in a plane along x, is a travel
-  !! without strain, and comes off first so that it leaves no rounding.
-  pure function strain_by(nodes, displacement, unit, ring) result(strain)
-    integer, intent(in) :: nodes
-    real(wp), intent(in) :: displacement(directions, nodes)         !! of its nodes
-    real(wp), intent(in) :: unit(components, directions, nodes)     !! by a unit of each
-    logical, intent(in) :: ring
-    real(wp) :: strain(components), apart(directions)
-    integer :: k
-
-    strain = 0.0_wp
-    do k = 1, nodes
-      apart = displacement(:, k) - displacement(:, 1)
-      if (ring) apart(1) = displacement(1, k)
-      strain = strain + apart(1)*unit(:, 1, k) + apart(2)*unit(:, 2, k)
-    end do
-  end function strain_by
 
   !> All figures and the largest of each in a valid answer, as `figure_name` has them.
   pure subroutine figures(self, figure, largest)

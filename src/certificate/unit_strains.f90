@@ -8,7 +8,7 @@ module epcont_certificate_unit_strains
   use epcont_model_model, only: model_type
   implicit none
   private
-  public :: find_slopes, unit_strains
+  public :: find_slopes, largest_of, strain_by, unit_strains
 
   !> Half the step of the differences, which is one: exact for quadratics whatever its size.
   real(wp), parameter :: half_step = 0.5_wp
@@ -97,4 +97,34 @@ contains
       end do
     end do
   end subroutine average_dilatation
+
+  !> The largest size of some numbers.
+  pure real(wp) function largest_of(count, number) result(largest)
+    integer, intent(in) :: count
+    real(wp), intent(in) :: number(count)
+    integer :: k
+
+    largest = 0.0_wp
+    do k = 1, count
+      largest = max(largest, abs(number(k)))
+    end do
+  end function largest_of
+
+  !> Strain at one place of an element. What its nodes share along y, and in a plane along x, is a travel
+  !! without strain, and comes off first so that it leaves no rounding.
+  pure function strain_by(nodes, displacement, unit, ring) result(strain)
+    integer, intent(in) :: nodes
+    real(wp), intent(in) :: displacement(directions, nodes)         !! of its nodes
+    real(wp), intent(in) :: unit(components, directions, nodes)     !! by a unit of each
+    logical, intent(in) :: ring
+    real(wp) :: strain(components), apart(directions)
+    integer :: k
+
+    strain = 0.0_wp
+    do k = 1, nodes
+      apart = displacement(:, k) - displacement(:, 1)
+      if (ring) apart(1) = displacement(1, k)
+      strain = strain + apart(1)*unit(:, 1, k) + apart(2)*unit(:, 2, k)
+    end do
+  end function strain_by
 end module epcont_certificate_unit_strains

@@ -52,7 +52,7 @@ top.pressure = 10.0
 """
 LINES = "its lines: floor, face, under, top, wall"
 POINTS = LINES + "; its points: corner"
-TOP = "one of: material, body, support, load, platen, free, contact, PARAM, mesh, kind, title, units, gravity, spin, axis"
+TOP = "one of: material, body, support, load, platen, free, contact, case, PARAM, mesh, kind, title, units, gravity, spin, temperature, axis"
 CURVE = "points of total strain and stress, the yield point first: curve = [[0.00114286, 240.0], [0.01, 260.0]]"
 FORM = 'key = 1.5, key = "text" or [table]; a name with blanks or dots in quotes; a key once only'
 

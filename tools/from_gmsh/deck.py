@@ -20,10 +20,13 @@ class Maker:
         self.held = self.find_held()
         self.platens = self.find_platens()
         self.free = self.find_free()
-        self.pressures, self.forces = self.find_loads()
+        self.loads_of = [self.find_loads(case) for case in scene.cases]   # pressures and forces, case by case
+        self.moved_of = [self.find_moved(case) for case in scene.cases]
+        self.check_temperatures()
         self.groups.note_unused()
         moved = any(value for own in self.held.values() for value, _ in own.values())
-        if not (faults.errors or self.pressures or self.forces or moved or self.scene.gravity or self.scene.spin):
+        heated = any(case.temperature is not None for case in scene.cases)
+        if not (faults.errors or moved or heated or any(case.has_loads for case in scene.cases)):
             faults.note("[load]", "there is none, and no support that moves: nothing but overlaps of the drawing gives forces")
         faults.end_stage()
         self.number = self.numbers()
@@ -102,11 +105,32 @@ class Maker:
                     found.append((*leaders, digit))
         return found
 
-    def find_loads(self):
+    def find_moved(self, case):
+        """{(node, direction): displacement} in place of what the scene's supports say."""
+        found = {}
+        for name, values in case.moved.items():
+            where = f"[{case.where} support.{name}]"
+            for node in self.groups.find(where, name):
+                for digit, value in values.items():
+                    if digit not in self.held.get(node, {}):
+                        self.faults.add(where, f"{AXES[digit]} of the node at {spot(self.mesh.place[node])} is not held",
+                                        f"[support] {name}.{AXES[digit]} = 0.0, since all load cases hold the same; or what is held there")
+                        return found
+                    found[node, digit] = value
+        return found
+
+    def check_temperatures(self):
+        """Bodies that have some are those of the scene."""
+        for case in self.scene.cases:
+            for name in case.temperature if isinstance(case.temperature, dict) else ():
+                if name not in self.scene.bodies:
+                    self.faults.add(f"{case.where} temperature.{name}".strip(), f"there is no body '{name}'", f"one of: {listed(self.scene.bodies)}")
+
+    def find_loads(self, case):
         """(body, element, a, b, pressure) of each side pressed; {node: [x, y]} of forces."""
         pressures, forces, pressed = [], {}, {}
-        for name, load in self.scene.loads.items():
-            where = f"[load.{name}]"
+        for name, load in case.loads.items():
+            where = f"[{case.where} load.{name}]".replace("[ ", "[")
             if "pressure" in load:
                 sides = self.groups.boundary(f"{where} pressure", name)
                 pressures += [(body, k, side[0], side[1], load["pressure"]) for side, body, k in sides]
@@ -156,13 +180,23 @@ class Maker:
         scene = self.scene
         lines = [f"$ {made}", "SOL 106", "CEND", f"TITLE = {scene.title}"]
         lines += ["SPC = 1"] if any(self.held.values()) else []
-        lines += ["LOAD = 1"] if self.pressures or self.forces or scene.gravity or scene.spin else []
-        lines += ["BEGIN BULK"] + ([] if scene.rings else card("PARAM", "PLANE", scene.kind.split()[1].upper()))
+        lines += self.case_control() + ["BEGIN BULK"] + ([] if scene.rings else card("PARAM", "PLANE", scene.kind.split()[1].upper()))
         lines += card("PARAM", "UNITS", scene.units.upper()) if scene.units else []
         for name, value in scene.parameters.items():
             lines += card("PARAM", name, value.upper() if isinstance(value, str) else value)
         lines += self.sections() + self.supports() + self.loads() + self.touching()
         return lines + [f"INCLUDE '{mesh_file}'", "ENDDATA"]
+
+    def case_control(self):
+        """What each load case has; of the only one without SUBCASE."""
+        lines = ["CNTNLSUB = NO"] if len(self.scene.cases) > 1 else []
+        for k, case in enumerate(self.scene.cases, 1):
+            if len(self.scene.cases) > 1:
+                lines += [f"SUBCASE {k}", f"SUBTITLE = {case.title}"]
+            lines += [f"LOAD = {k}"] if case.has_loads else []
+            lines += [f"TEMPERATURE(LOAD) = {k}"] if case.temperature is not None else []
+            lines += [] if case.contact else ["BCONTACT = NONE"]
+        return lines
 
     def sections(self):
         lines = []
@@ -174,7 +208,8 @@ class Maker:
             lines += card("PSOLID", number, which) if self.scene.rings else card("PSHELL", number, which, thickness)
         for number, name in enumerate(used, 1):
             material = self.scene.materials[name]
-            lines += [f"$ material {name}"] + card("MAT1", number, material.young, None, material.poisson, *([material.density] if material.density else []))
+            lines += [f"$ material {name}"] + card("MAT1", number, material.young, None, material.poisson, material.density,
+                                                       material.expansion, material.reference)
             if material.curve:
                 points = [0.0, 0.0] + [value for point in material.curve for value in point]
                 lines += card("MATS1", number, number, "PLASTIC", None, 1, 1, material.stress)
@@ -206,23 +241,48 @@ class Maker:
         return lines
 
     def loads(self):
-        lines = ["$ [load]"] if self.pressures or self.forces else []
-        for body, k, a, b, value in self.pressures:
-            lines += card("PLOADX1", 1, self.first[body] + k, value, value, self.number[a], self.number[b])
-        for node, (x, y) in sorted(self.forces.items(), key=lambda item: self.number[item[0]]):
-            lines += card("FORCE", 1, self.number[node], 0, 1.0, x, y, 0.0)
-        return lines + self.body_loads()
-
-    def body_loads(self):
-        lines, scene, axis = [], self.scene, None
-        if scene.gravity:
-            lines += ["$ gravity"] + card("GRAV", 1, None, 1.0, *scene.gravity, 0.0)
-        if scene.axis and scene.spin:
+        lines, axis = [], None
+        if self.scene.axis and self.scene.spins:
             axis = len(self.number) + 1
-            lines += ["$ axis"] + card("GRID", axis, None, *scene.axis, 0.0) + card("SPC1", 1, 12, axis)
-        if scene.spin:
-            direction = (0.0, 1.0, 0.0) if scene.rings else (0.0, 0.0, 1.0)
-            lines += ["$ spin"] + card("RFORCE", 1, axis, None, scene.spin, *direction)
+            lines += ["$ axis"] + card("GRID", axis, None, *self.scene.axis, 0.0) + card("SPC1", 1, 12, axis)
+        for k, case in enumerate(self.scene.cases, 1):
+            lines += [f"$ {case.where} {case.title}"] if case.where else []
+            lines += self.loads_of_case(k, case) + self.body_loads(k, case, axis) + self.temperatures(k, case)
+        return lines
+
+    def loads_of_case(self, k, case):
+        pressures, forces = self.loads_of[k - 1]
+        lines = ["$ [load]"] if pressures or forces else []
+        for body, element, a, b, value in pressures:
+            lines += card("PLOADX1", k, self.first[body] + element, case.factor * value, case.factor * value, self.number[a], self.number[b])
+        for node, (x, y) in sorted(forces.items(), key=lambda item: self.number[item[0]]):
+            lines += card("FORCE", k, self.number[node], 0, case.factor, x, y, 0.0)
+        for (node, digit), value in self.moved_of[k - 1].items():
+            lines += card("SPCD", k, self.number[node], digit, value)
+        return lines
+
+    def body_loads(self, k, case, axis):
+        lines = []
+        if case.gravity:
+            lines += ["$ gravity"] + card("GRAV", k, None, 1.0, *case.gravity, 0.0)
+        if case.spin:
+            direction = (0.0, 1.0, 0.0) if self.scene.rings else (0.0, 0.0, 1.0)
+            lines += ["$ spin"] + card("RFORCE", k, axis, None, case.spin, *direction)
+        return lines
+
+    def temperatures(self, k, case):
+        """TEMPD, or TEMP of every node: bodies without a temperature have that of no thermal strain."""
+        if case.temperature is None:
+            return []
+        lines = ["$ temperatures"]
+        if not isinstance(case.temperature, dict):
+            return lines + card("TEMPD", k, case.temperature)
+        for name, elements in self.mesh.bodies.items():
+            cold = self.scene.materials[self.scene.bodies[name][0]].reference or 0.0
+            value = case.temperature.get(name, cold)
+            nodes = sorted({self.number[node] for _, own in elements for node in own})
+            for i in range(0, len(nodes), 3):
+                lines += card("TEMP", k, *(part for node in nodes[i:i + 3] for part in (node, value)))
         return lines
 
     def touching(self):

@@ -10,7 +10,7 @@ except ImportError:   # Python before 3.11; tools/requirements.txt
     import tomli as tomllib
 
 KINDS = {"plane strain": "STRAIN", "plane stress": "STRESS", "ring": None}
-TABLES = ["material", "body", "support", "load", "platen", "free", "contact", "PARAM"]
+TABLES = ["material", "body", "support", "load", "platen", "free", "contact", "case", "PARAM"]
 DIRECTIONS = {"x": "1", "y": "2", "xy": "12"}
 #: What `epcont --cards PARAM` lists, but for what the scene says otherwise (PLANE, UNITS) or has no use for (GAPGEOM).
 PARAMETERS = {"RULE": str, "METHOD": str, "MUP": str, "SOLVER": str, "PRECIS": str, "TOL": float, "SEARCH": float, "CORNER": float, "ACCURACY": float,
@@ -28,6 +28,26 @@ class Material:
     hardening: float = 0.0
     curve: list = None
     density: float = None
+    expansion: float = None   # strain by one degree
+    reference: float = None   # temperature without thermal strain
+
+
+@dataclass
+class Case:
+    """What acts in a load case."""
+    where: str = ""
+    title: str = ""
+    gravity: tuple = None                           # acceleration of all mass
+    spin: float = None                              # turns in a unit of time
+    temperature: object = None                      # of all, or {surface: temperature}
+    loads: dict = field(default_factory=dict)       # line or point: {"pressure": p, "force": (x, y)}
+    factor: float = 1.0                             # of these loads
+    moved: dict = field(default_factory=dict)       # line or point: {"1": value}, of what the scene holds there
+    contact: bool = True
+
+    @property
+    def has_loads(self):
+        return bool(self.gravity or self.spin or self.moved or self.loads and self.factor)
 
 
 @dataclass
@@ -39,10 +59,8 @@ class Scene:
     materials: dict = field(default_factory=dict)
     bodies: dict = field(default_factory=dict)      # surface: (material, thickness)
     supports: dict = field(default_factory=dict)    # line or point: {"1": value}
-    gravity: tuple = None                           # acceleration of all mass
-    spin: float = None                              # turns in a unit of time
-    axis: list = None                               # where their axis is; None: the origin
-    loads: dict = field(default_factory=dict)       # line or point: {"pressure": p, "force": (x, y)}
+    axis: list = None                               # where spins have theirs; None: the origin
+    cases: list = field(default_factory=list)       # the scene's own one, or those of its [[case]] tables
     platens: dict = field(default_factory=dict)     # line: directions
     free: dict = field(default_factory=dict)        # platen or point: directions
     contacts: list = field(default_factory=list)    # (slave, master)
@@ -51,6 +69,14 @@ class Scene:
     @property
     def rings(self):
         return self.kind == "ring"
+
+    @property
+    def spins(self):
+        return any(case.spin for case in self.cases)
+
+    @property
+    def has_weight(self):
+        return self.spins or any(case.gravity for case in self.cases)
 
 
 class Table:
@@ -160,15 +186,16 @@ def read_scene(path, faults: Faults):
     scene.title = top.word("title", "Two cylinders", "a line of text", str.isprintable) or path.stem
     scene.units = top.word("units", "N-MM", "a word of at most 8 characters, first a letter; nothing is converted",
                            lambda word: re.fullmatch(r"[A-Za-z][!-+\--~]{0,7}", word))
-    scene.gravity = read_pair(top, "gravity", "an acceleration in x and y", "[0.0, -9810.0]", faults)
-    scene.spin = top.number("spin", "120.0", "turns in a unit of time")
+    own = Case(title=scene.title)
+    read_actions(top, own, faults)
     scene.axis = read_pair(top, "axis", "x and y of the axis of the spin", "[0.0, -250.0]", faults)
     top.end()
+    scene.cases = read_cases(tables["case"], own, faults)
     check_body_loads(scene, faults)
     read_materials(Table(tables["material"] or {}, "[material]", faults), scene, faults)
     read_bodies(Table(tables["body"] or {}, "[body]", faults), scene, faults)
     read_supports(Table(tables["support"] or {}, "[support]", faults), scene, faults)
-    read_loads(Table(tables["load"] or {}, "[load]", faults), scene, faults)
+    own.loads.update(read_loads(Table(tables["load"] or {}, "[load]", faults), faults))
     for name, into, what in (("platen", scene.platens, "directions in which the line moves as one"),
                              ("free", scene.free, "directions of free motion")):
         table = Table(tables[name] or {}, f"[{name}]", faults)
@@ -193,9 +220,13 @@ def read_materials(table, scene, faults):
         hardening = own.number("H", "4000.0", "stress over plastic strain, from 0 on", lambda value: value >= 0.0)
         curve = own.take("curve")
         density = own.number("density", "7.85e-9", "mass of a unit of volume, above zero", positive)
+        expansion = own.number("expansion", "1.2e-5", "strain by one degree")
+        reference = own.number("reference", "20.0", "the temperature without thermal strain")
         own.end()
-        if density is None and (scene.gravity or scene.spin):
+        if density is None and scene.has_weight:
             faults.add(own.where("density"), "is missing", "mass of a unit of volume, since gravity and spin act on it, such as density = 7.85e-9")
+        if expansion is None and any(case.temperature is not None for case in scene.cases):
+            faults.add(own.where("expansion"), "is missing", "strain by one degree, since there are temperatures, such as expansion = 1.2e-5; 0.0: none")
         if hardening is not None and stress is None:
             faults.add(own.where("H"), "is hardening without a yield stress", "yield = 240.0 beside it")
         if curve is not None:
@@ -204,7 +235,7 @@ def read_materials(table, scene, faults):
                 faults.add(own.where("curve"), "stands beside yield or H", "either yield and H, or a curve, whose first point is the yield point")
             stress = curve[0][1] if curve else None
         check_units(own, young, stress, scene, faults)
-        scene.materials[name] = Material(young, poisson, stress, hardening or 0.0, curve, density)
+        scene.materials[name] = Material(young, poisson, stress, hardening or 0.0, curve, density, expansion, reference)
 
 
 def read_curve(curve, own, young, faults):
@@ -254,31 +285,82 @@ def read_bodies(table, scene, faults):
 
 
 def read_supports(table, scene, faults):
+    scene.supports.update(read_displacements(table, "0 holds", faults))
+
+
+def read_displacements(table, meaning, faults):
+    found = {}
     for name, own in each(table, faults):
         empty = table.left[name] == {}
-        values = {digit: own.number(key, "0.0", "a displacement; 0 holds") for key, digit in (("x", "1"), ("y", "2"))}
+        values = {digit: own.number(key, "0.0", f"a displacement; {meaning}") for key, digit in (("x", "1"), ("y", "2"))}
         own.end()
-        scene.supports[name] = {digit: value for digit, value in values.items() if value is not None}
+        found[name] = {digit: value for digit, value in values.items() if value is not None}
         if empty:
             faults.add(own.name, "holds nothing", "x = 0 or y = 0, or both")
+    return found
 
 
-def read_loads(table, scene, faults):
+def read_loads(table, faults):
+    loads = {}
     for name, own in each(table, faults):
         found = {"pressure": own.number("pressure", "10.0", "force on an area, positive into the body")}
         named = "force" in own.left
         found["force"] = read_pair(own, "force", "the total in x and y", "[0.0, -100.0]", faults)
         own.end()
-        scene.loads[name] = {key: value for key, value in found.items() if value is not None}
-        if not scene.loads[name] and not own.left and not named:
+        loads[name] = {key: value for key, value in found.items() if value is not None}
+        if not loads[name] and not own.left and not named:
             faults.add(own.name, "loads nothing", "pressure = 10.0 or force = [0.0, -100.0]")
+    return loads
+
+
+def read_actions(table, case, faults):
+    """What acts on all bodies; a case has what it does not say from the scene."""
+    given = table.left.keys()
+    if "gravity" in given:
+        case.gravity = read_pair(table, "gravity", "an acceleration in x and y", "[0.0, -9810.0]", faults)
+    if "spin" in given:
+        case.spin = table.number("spin", "120.0", "turns in a unit of time")
+    if isinstance(table.left.get("temperature"), dict):
+        bodies = Table(table.take("temperature"), f"{table.name[:-1]}.temperature]" if table.name else "[temperature]", faults)
+        case.temperature = {name: bodies.number(name, "80.0", "the temperature of a body") for name in list(bodies.left)}
+    elif "temperature" in given:
+        case.temperature = table.number("temperature", "80.0", "the temperature of all bodies, or a table: temperature.BODY = 80.0")
+    table.known += [key for key in ("gravity", "spin", "temperature") if key not in table.known]
+
+
+def read_cases(tables, own, faults):
+    """The load cases; without [[case]] the scene's own."""
+    if tables is None:
+        return [own]
+    cases = []
+    for k, given in enumerate(tables if isinstance(tables, list) else [tables], 1):
+        where = f"[[case]] {k}"
+        table = Table(given, where, faults)
+        case = Case(where, f"case {k}", own.gravity, own.spin, own.temperature, own.loads)
+        case.title = table.word("title", f"case {k}", "a line of text", str.isprintable) or case.title
+        read_actions(table, case, faults)
+        case.factor = table.number("factor", "0.5", "a factor of the loads")
+        case.factor = 1.0 if case.factor is None else case.factor
+        contact = table.take("contact")
+        if contact not in (None, True, False):
+            faults.add(table.where("contact"), f"is {said(contact)}", "contact = false, where nothing touches anything")
+        case.contact = contact is not False
+        loads, moved = table.take("load"), table.take("support")
+        if loads is not None:
+            case.loads = read_loads(Table(loads, f"[{where} load]", faults), faults)
+        if moved is not None:
+            case.moved = read_displacements(Table(moved, f"[{where} support]", faults), "of what [support] holds", faults)
+        table.end()
+        cases.append(case)
+    return cases
 
 
 def check_body_loads(scene, faults):
     """Rings bear nothing across their axis, and spin about it."""
-    if scene.rings and scene.gravity and scene.gravity[0] != 0.0:
-        faults.add("gravity", f"acts across the axis of rings: {scene.gravity[0]:g} in x", "0.0 in x")
-    if scene.axis and (scene.rings or scene.spin is None):
+    for case in scene.cases:
+        if scene.rings and case.gravity and case.gravity[0] != 0.0:
+            faults.add(f"{case.where} gravity".strip(), f"acts across the axis of rings: {case.gravity[0]:g} in x", "0.0 in x")
+    if scene.axis and (scene.rings or all(case.spin is None for case in scene.cases)):
         faults.add("axis", "has no meaning here", "no axis: rings spin about their own" if scene.rings else "spin = 120.0 beside it, or no axis")
 
 
