@@ -232,6 +232,42 @@ contact = [{ slave = "rim", master = "bed" }, { slave = "rim", master = "under" 
             self.assertEqual(made.returncode, 0, made.stderr)
             self.near(self.solved(self.place / "heavy.dat")["summary"]["total_contact_force"], force, 1e-9)
 
+    def test_cases(self):
+        """A half of the pressure; a block that expands freely on another; a moved support; no contact."""
+        text = (SCENES / "blocks.toml").read_text().replace("NU = 0.3\n", "NU = 0.3\nexpansion = 1e-5\n").replace("NU = 0.33", "NU = 0.33\nexpansion = 2e-5")
+        (self.place / "blocks.geo").write_text((SCENES / "blocks.geo").read_text())
+        (self.place / "many.toml").write_text(
+            text + '\n[[case]]\nfactor = 0.5\n[[case]]\ntitle = "hot"\ntemperature = 50.0\n[[case]]\nload.top.force = [0.0, -1875.0]\n')
+        made = make(self.place / "many.toml", self.place / "many.dat")
+        self.assertEqual(made.returncode, 0, made.stderr)
+        deck = (self.place / "many.dat").read_text()
+        self.assertIn("CNTNLSUB = NO\nSUBCASE 1\nSUBTITLE = case 1\nLOAD = 1\nSUBCASE 2\nSUBTITLE = hot\nLOAD = 2\nTEMPERATURE(LOAD) = 2\n", deck)
+        run = subprocess.run([PROGRAM, self.place / "many.dat", "--quiet"], capture_output=True, text=True, cwd=self.place)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        rows = list(csv.DictReader((self.place / "many.contact.csv").read_text().splitlines()))
+        for case, pressure in (("1", 125.0), ("2", 250.0), ("3", 125.0)):
+            for row in (row for row in rows if row["subcase"] == case):
+                self.near(row["pressure"], pressure, 1e-9)
+
+    def test_dovetail(self):
+        """Flanks bear the pull of the mass, whatever their angle; what they bear across it is that over the angle's tangent. It grows as the square
+        of the spin."""
+        place = TOP / "input" / "dovetail_spin"
+        (self.place / "dovetail_spin.toml").write_text((place / "dovetail_spin.toml").read_text())
+        drawing = (place / "dovetail_spin.geo").read_text().replace("fine = 0.05;", "fine = 0.2;")
+        for angle in 40, 55:
+            (self.place / "dovetail_spin.geo").write_text(drawing.replace("angle = 45;", f"angle = {angle};"))
+            made = make(self.place / "dovetail_spin.toml", self.place / "dovetail_spin.dat")
+            self.assertEqual(made.returncode, 0, made.stderr)
+            run = subprocess.run([PROGRAM, self.place / "dovetail_spin.dat", "--quiet"], capture_output=True, text=True, cwd=self.place)
+            self.assertEqual(run.returncode, 0, run.stderr)
+            rows = list(csv.DictReader((self.place / "dovetail_spin.bodies.csv").read_text().splitlines()))
+            across, along = ([float(row[key]) for row in rows if row["body"] == "3" or row["body"] == "2"][::2] for key in ("force_x", "force_y"))
+            for k, times in enumerate((1.0, 4.0, 9.0)):
+                self.near(along[k], times * along[0], 1e-9)
+                self.near(across[k] / along[k], 1.0 / math.tan(math.radians(angle)), 2e-3)
+            self.near(abs(along[4] - along[1]), 5000.0, 1e-9)
+
     def test_travel(self):
         """A line that is moved by so much takes the place of the force, and a force on what is held has no effect."""
         table = self.variant(('[platen]\ntop = "y"\n', ""), ('[free]\ntop = "y"', "[support.top]\ny = -0.01735714285714286"),
@@ -275,8 +311,10 @@ contact = [{ slave = "rim", master = "bed" }, { slave = "rim", master = "under" 
         faults = Faults("wheel.toml")
         scene = read_scene(self.place / "wheel.toml", faults)
         self.assertEqual(faults.errors + faults.notes, [])
-        for name in ("title", "mesh", "kind", "units", "materials", "bodies", "supports", "loads", "platens", "free", "contacts", "parameters"):
+        for name in ("title", "mesh", "kind", "units", "materials", "bodies", "supports", "cases", "platens", "free", "contacts", "parameters"):
             self.assertTrue(getattr(scene, name), name)
+        for name in ("title", "gravity", "spin", "temperature", "loads", "moved"):
+            self.assertTrue(any(getattr(case, name) for case in scene.cases), name)
 
     def test_parameters(self):
         """Those of the scene are those of the program, but for what the scene says otherwise or has no use for."""

@@ -59,12 +59,16 @@ class Run:
         self.rings = bool(deck.of("PSOLID"))
 
     def take_mesh(self, deck, nodes, elements):
-        grids = deck.of("GRID")
+        # The axis of a spin is far from the bodies, and nothing to see.
+        of_elements = {int(card[3 + i]) for kind, order in ROUND.items() for card in deck.of(kind) for i in order}
+        axes = {int(card[2]) for card in deck.of("RFORCE") if at(card, 2)} - of_elements
+        grids = [card for card in deck.of("GRID") if int(card[1]) not in axes]
         self.row = {int(card[1]): i for i, card in enumerate(grids)}
         self.x = np.array([[real(at(card, 3)), real(at(card, 4))] for card in grids])
         self.u = np.zeros_like(self.x)
         for node in nodes:
-            self.u[self.row[int(node["node"])]] = float(node["ux"]), float(node["uy"])
+            if int(node["node"]) not in axes:
+                self.u[self.row[int(node["node"])]] = float(node["ux"]), float(node["uy"])
         self.around, number = [], {}
         for kind, order in ROUND.items():
             for card in deck.of(kind):

@@ -109,7 +109,7 @@ class Maker:
         """{(node, direction): displacement} in place of what the scene's supports say."""
         found = {}
         for name, values in case.moved.items():
-            where = f"[{case.where} support.{name}]"
+            where = f"[{case.inside}support.{name}]"
             for node in self.groups.find(where, name):
                 for digit, value in values.items():
                     if digit not in self.held.get(node, {}):
@@ -124,13 +124,13 @@ class Maker:
         for case in self.scene.cases:
             for name in case.temperature if isinstance(case.temperature, dict) else ():
                 if name not in self.scene.bodies:
-                    self.faults.add(f"{case.where} temperature.{name}".strip(), f"there is no body '{name}'", f"one of: {listed(self.scene.bodies)}")
+                    self.faults.add(f"[{case.inside}temperature] {name}", f"there is no body '{name}'", f"one of: {listed(self.scene.bodies)}")
 
     def find_loads(self, case):
         """(body, element, a, b, pressure) of each side pressed; {node: [x, y]} of forces."""
         pressures, forces, pressed = [], {}, {}
         for name, load in case.loads.items():
-            where = f"[{case.where} load.{name}]".replace("[ ", "[")
+            where = f"[{case.inside}load.{name}]"
             if "pressure" in load:
                 sides = self.groups.boundary(f"{where} pressure", name)
                 pressures += [(body, k, side[0], side[1], load["pressure"]) for side, body, k in sides]

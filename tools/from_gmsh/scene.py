@@ -35,7 +35,8 @@ class Material:
 @dataclass
 class Case:
     """What acts in a load case."""
-    where: str = ""
+    where: str = ""                                 # its table; of the scene's own none
+    inside: str = ""                                # what stands before the names of tables in it
     title: str = ""
     gravity: tuple = None                           # acceleration of all mass
     spin: float = None                              # turns in a unit of time
@@ -321,7 +322,7 @@ def read_actions(table, case, faults):
     if "spin" in given:
         case.spin = table.number("spin", "120.0", "turns in a unit of time")
     if isinstance(table.left.get("temperature"), dict):
-        bodies = Table(table.take("temperature"), f"{table.name[:-1]}.temperature]" if table.name else "[temperature]", faults)
+        bodies = Table(table.take("temperature"), f"[{case.inside}temperature]", faults)
         case.temperature = {name: bodies.number(name, "80.0", "the temperature of a body") for name in list(bodies.left)}
     elif "temperature" in given:
         case.temperature = table.number("temperature", "80.0", "the temperature of all bodies, or a table: temperature.BODY = 80.0")
@@ -336,20 +337,20 @@ def read_cases(tables, own, faults):
     for k, given in enumerate(tables if isinstance(tables, list) else [tables], 1):
         where = f"[[case]] {k}"
         table = Table(given, where, faults)
-        case = Case(where, f"case {k}", own.gravity, own.spin, own.temperature, own.loads)
+        case = Case(where, f"case.{k}.", f"case {k}", own.gravity, own.spin, own.temperature, own.loads)
         case.title = table.word("title", f"case {k}", "a line of text", str.isprintable) or case.title
         read_actions(table, case, faults)
         case.factor = table.number("factor", "0.5", "a factor of the loads")
         case.factor = 1.0 if case.factor is None else case.factor
         contact = table.take("contact")
-        if contact not in (None, True, False):
+        if contact is not None and not isinstance(contact, bool):
             faults.add(table.where("contact"), f"is {said(contact)}", "contact = false, where nothing touches anything")
         case.contact = contact is not False
         loads, moved = table.take("load"), table.take("support")
         if loads is not None:
-            case.loads = read_loads(Table(loads, f"[{where} load]", faults), faults)
+            case.loads = read_loads(Table(loads, f"[{case.inside}load]", faults), faults)
         if moved is not None:
-            case.moved = read_displacements(Table(moved, f"[{where} support]", faults), "of what [support] holds", faults)
+            case.moved = read_displacements(Table(moved, f"[{case.inside}support]", faults), "of what [support] holds", faults)
         table.end()
         cases.append(case)
     return cases
