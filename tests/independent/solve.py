@@ -28,9 +28,12 @@ from model import Model
 from pressures import pressures
 
 
-#: Secant steps end at this change of the displacements; so many are tried, and growth by this factor is flight.
-SETTLED, SECANT_STEPS, FAR = 1e-4, 2000, 1e3
+#: Secant steps end at this change of the displacements; growth by this factor is flight. Near a limit load they creep: after so many Newton's
+#: steps find the answer, or that there is none.
+SETTLED, SECANT_STEPS, FAR = 1e-4, 500, 1e3
 NEWTON_STEPS = 60
+#: Answers with springs that are tried.
+APPROACHES = 10
 
 
 class NoEquilibrium(Exception):
@@ -71,7 +74,8 @@ class Problem:
         k = self.k + self.springs(spring) if spring else self.k
         scale = self.stiff
         matrix = sp.bmat([[k, -n.T * scale], [-n * scale, None]], format="csc") if len(active) else k.tocsc()
-        right = np.concatenate([self.f, self.g[active] * scale])
+        pulled = self.f + self.springs(spring) @ self.rest if spring else self.f
+        right = np.concatenate([pulled, self.g[active] * scale])
         self.exchanges += 1
         with warnings.catch_warnings():
             warnings.simplefilter("error")
@@ -151,8 +155,6 @@ class Problem:
                 raise NoEquilibrium("displacements without bound")
             if abs(u - before).max() <= SETTLED * abs(u).max():
                 break
-        else:
-            raise NoEquilibrium("secant steps do not settle: limit load")
         residual, before = self.off_curve(u, found[1]), np.inf
         for _ in range(NEWTON_STEPS):
             strain = model.strains(u)
@@ -171,27 +173,37 @@ class Problem:
         raise NoEquilibrium(f"Newton does not end: residual {residual:.1e}")
 
     def linear_answer(self):
-        found = self.find(0.0, False, 200) or self.find(1e-7, False, 200) or self.find(1e-7, True, 20 * len(self.g) + 200)
-        if found is None:
-            raise NoEquilibrium("no set of pairs found")
-        touching, answer = found
-        exact = self.solve(touching)
+        """Found without springs, or with springs that pull to where the answer before has come, until they no longer change the set."""
+        found, self.rest = self.find(0.0, False, 200), np.zeros(len(self.f))
+        for _ in range(APPROACHES):
+            found = found or self.find(1e-7, False, 200) or self.find(1e-7, True, 20 * len(self.g) + 200)
+            if found is None:
+                raise NoEquilibrium("no set of pairs found")
+            touching, (self.rest, *_) = found
+            exact = self.without_springs(touching)
+            if exact is not None:
+                return exact
+            found = None
+        raise NoEquilibrium("a body moves away, or springs change the set of pairs")
+
+    def without_springs(self, touching):
+        """The answer from a set that is nearly right; None where that is not found."""
         for _ in range(50):
+            exact = self.solve(touching)
             if exact is None:
-                raise NoEquilibrium("a body moves away: singular without springs")
+                return None
+            v, force, gap = exact
             wrong = self.wrong(touching, *exact)
             if not wrong.any():
                 break
             touching = touching.copy()
             touching[np.argmax(wrong)] ^= True
-            exact = self.solve(touching)
         else:
-            raise NoEquilibrium("springs change the set of pairs")
-        v, force, gap = exact
+            return None
         # A singular matrix may factor, with noise for its last pivot: displacements beyond all that forces and gaps explain.
         softest = abs(self.k.diagonal())[abs(self.k.diagonal()) > 0].min(initial=self.stiff)
         if abs(v).max(initial=0) > 1e8 * (abs(self.f).max(initial=0) / softest + abs(self.g).max(initial=0)):
-            raise NoEquilibrium("displacements without bound")
+            return None
         return v, force, gap, touching
 
 

@@ -74,9 +74,11 @@ def insert_masters(scene, contact, at, found):
 
 
 def zones(scene, touching, force, pressure, told=()):
-    """The runs of touching pairs in the order of the deck; all arguments by the name of a pair. `told`: nodes at the ends of runs: where one that
+    """The runs of touching pairs in the order of the deck; all arguments by the name of a pair. A pair without pressure (a corner on the
+    axis of rings) touches where one beside it does. `told`: nodes at the ends of runs: where one that
     goes round begins is free."""
     beside, mirrored = neighbours(scene)
+    touching = {name: touches or pressure[name] < 0.0 and any(touching[other] for other in beside[name]) for name, touches in touching.items()}
     linked = {name: set() for name in scene.pair}
     for name, others in beside.items():
         for other in others:
@@ -121,13 +123,13 @@ def measured(scene, beside, mirrored, touching, force, pressure, run):
         return math.dist(scene.x[scene.pair[a].node], scene.x[scene.pair[b].node])
 
     def beyond(run):
-        """How far behind the last pair the pressure ends, p**2 being linear; None where it does not fall."""
+        """How far behind the last pair the pressure ends, p**2 being linear, at most at the first open pair: there where it rises at
+        the end. None where it is not below half of the largest."""
         opened = [other for other in beside[run[-1]] if not touching[other]]
         if len(run) < 2 or not opened or pressure[run[-1]] >= 0.5 * max(pressure[name] for name in run):
             return None
-        drop = pressure[run[-2]] ** 2 - pressure[run[-1]] ** 2
-        step = apart(run[-1], run[-2])
-        return min(step * pressure[run[-1]] ** 2 / drop, apart(run[-1], opened[-1])) if drop > 0.0 else 0.0
+        drop, to_open = pressure[run[-2]] ** 2 - pressure[run[-1]] ** 2, apart(run[-1], opened[-1])
+        return min(apart(run[-1], run[-2]) * pressure[run[-1]] ** 2 / drop, to_open) if drop > 0.0 else to_open
 
     length = math.fsum(apart(a, b) for a, b in zip(run, run[1:]))
     ends = [beyond(run[::-1]), beyond(run)]
