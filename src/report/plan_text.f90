@@ -3,7 +3,7 @@ module epcont_report_plan_text
   use epcont_base_kinds, only: i8, wp
   use epcont_base_text, only: plural, short_real, text_of
   use epcont_geometry_boundary_line, only: boundary_line
-  use epcont_model_controls, only: method_inistr, method_name, method_newton, precision_double, &
+  use epcont_model_controls, only: method_inistr, method_name, method_newton, rule_joined, precision_double, &
       precision_name, precision_open, precision_single, solver_auto, &
       solver_band, solver_frontal, solver_name
   use epcont_model_model, only: line_contact, model_type
@@ -129,6 +129,10 @@ contains
         if (iteration%rule_chosen_here) &
           call say('  chosen here (AUTO): the faster rule from '//text_of(many_pairs)//' pairs on')
       end if
+      if (scene%model%controls%rule == rule_joined .and. .not. (iteration%joined .or. scene%apart)) &
+        call say('  not JOINED: '//when(size(scene%model%sum%first) + size(scene%model%spring) > 0, &
+          'freedoms that follow others (MPC, RBE2 that turns) or have springs are not joined', &
+          'at some pairs nothing gives way'))
     end subroutine say_rule
 
     !> A contact of lines.

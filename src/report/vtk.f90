@@ -249,13 +249,34 @@ contains
     call file%line('<VTKFile type="Collection" version="1.0">')
     call file%line('<Collection>')
     do k = 1, size(id)
-      call file%line(data_set//text_of(id(k))//'" file="'//stem(index(stem, '/', back=.true.) + 1:)// &
-                     '.case'//text_of(id(k))//'.vtu"/>')
+      call file%line(data_set//text_of(id(k))//'" file="'// &
+        escaped(stem(index(stem, '/', back=.true.) + 1:))//'.case'//text_of(id(k))//'.vtu"/>')
     end do
     call file%line('</Collection>')
     call file%line('</VTKFile>')
     call file%finish(error)
   end subroutine write_collection
+
+  !> Text as it may stand between the quotes of XML.
+  pure function escaped(text) result(xml)
+    character(len=*), intent(in) :: text
+    character(len=:), allocatable :: xml
+    integer :: i
+
+    xml = ''
+    do i = 1, len(text)
+      select case (text(i:i))
+      case ('&')
+        xml = xml//'&amp;'
+      case ('<')
+        xml = xml//'&lt;'
+      case ('"')
+        xml = xml//'&quot;'
+      case default
+        xml = xml//text(i:i)
+      end select
+    end do
+  end function escaped
 
   !> The load cases that an earlier run has left in DECK.pvd; none where there is no such file.
   function collected(stem) result(id)

@@ -7,6 +7,7 @@ import re
 import subprocess
 import tempfile
 import unittest
+import xml.etree.ElementTree
 
 PROGRAM = os.environ["EPCONT_PROGRAM"]
 INPUT = pathlib.Path(os.environ["EPCONT_SOURCE_DIR"]) / "input"
@@ -176,6 +177,14 @@ class LoadCases(unittest.TestCase):
             deck = of_factors(INPUT / "hertz/hertz44_elastic.dat", [0.5, 1.0, 0.25], param=f"PARAM,ACCURACY,{accuracy}\n")
             last = run(deck)[1]["listing"].decode().splitlines()[-1]
             self.assertEqual(last, f"  wanted error of contact pressures {words}")
+
+    def test_names_that_xml_would_read(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / 'a&b<"c.dat'
+            path.write_text(of_factors(INPUT / "hertz/hertz44_elastic.dat", [1.0, 2.0]))
+            subprocess.run([PROGRAM, path, "--vtk", "--quiet"], cwd=folder, check=True)
+            sets = xml.etree.ElementTree.parse(path.with_suffix(".pvd")).getroot()[0]
+            self.assertEqual([one.attrib["file"] for one in sets], ['a&b<"c.case1.vtu', 'a&b<"c.case2.vtu'])
 
     def test_the_largest_status_is_that_of_the_run(self):
         """A case that nothing carries stands beside those that are answered."""

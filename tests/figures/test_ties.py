@@ -109,6 +109,43 @@ class Ties(scene.Extremes):
         self.near(run.nodes[3]["ux"], 0.02 / 50, 1e-9)
         self.near(run.summary["spring_950"], 0.02, 1e-9)
 
+    def hot(self, cards, case="TEMPERATURE(LOAD) = 7", density=""):
+        """A beam that expands by 1E-5 a degree, and has mass."""
+        return self.valid(beam(cards, case).replace(f"MAT1,1,{YOUNG!r},,0.0", f"MAT1,1,{YOUNG!r},,0.0,{density},1.0E-5"))
+
+    def test_heat_and_ties(self):
+        """What expands presses a spring, follows equations, and turns a leader: by temperatures along the beam, and across it."""
+        end = "RBE2,901,53,1,51,52,54,55|SPC1,1,2,53"
+        run = self.hot(f"{end}|CELAS2,950,100.0,53,1|TEMPD,7,40.0")
+        self.near(run.summary["spring_950"], -0.2, 1e-9)   # free it would go 4E-3; half of that is pressed back
+        self.near(run.nodes[53]["ux"], 2e-3, 1e-9)
+        run = self.hot(f"{end}|GRID,990,,20.0,0.0,0.0|SPC1,1,2,990|MPC,9,990,1,1.0,53,1,-2.0|TEMPD,7,40.0", "MPC = 9\nTEMPERATURE(LOAD) = 7")
+        self.near(run.nodes[990]["ux"], 8e-3, 1e-9)
+        heat = "|".join(f"TEMP,7,{node},{40.0 * ((node - 1) % 5 - 2)!r}" for node in range(1, 56) if (node - 1) // 5 % 2 == 0 or (node - 1) % 5 % 2 == 0)
+        bent = -1e-5 * 160.0 * LENGTH / HEIGHT
+        run = self.hot(f"GRID,900,,{LENGTH},0.0,0.0|{RIGHT}|MOMENT,1,900,,0.0,0.0,0.0,1.0|{heat}|TEMP,7,900,0.0")
+        self.near(run.summary["angle_900"], bent, 1e-8)
+        self.near(run.nodes[900]["uy"], bent * LENGTH / 2, 1e-8)
+        run = self.hot(f"GRID,900,,{LENGTH},0.0,0.0|{RIGHT}|SPC1,1,6,900|MOMENT,1,900,,0.0,0.0,0.0,1.0|{heat}|TEMP,7,900,0.0")
+        self.near(run.summary["moment_900"], -bent * STIFFNESS / LENGTH, 1e-8)
+
+    def test_weight_and_ties(self):
+        """The own weight turns the leader at a beam's end; along the beam it pulls a spring."""
+        weight = "GRAV,1,,1.0,0.0,-1.0,0.0|GRAV,2,,1.0,1.0,0.0,0.0|MOMENT,1,900,,0.0,0.0,0.0,1.0|MOMENT,2,900,,0.0,0.0,0.0,1.0"
+        cards = f"GRID,900,,{LENGTH},0.0,0.0|{RIGHT}|CELAS2,950,100.0,900,1|{weight}"
+        angle, pulled = -1e-3 * LENGTH**3 / (6 * STIFFNESS), 1e-3 * LENGTH**2 / (2 * YOUNG) / 2
+        run = self.hot(cards, "LOAD = 1", density="1.0E-3")
+        self.near(run.summary["angle_900"], angle, 1e-8)
+        run = self.hot(cards, "LOAD = 2", density="1.0E-3")
+        self.near(run.summary["angle_900"], 0.0, 1e-8, 1e-3)
+        self.near(run.nodes[900]["ux"], pulled, 1e-8)
+        self.near(run.summary["spring_950"], -100.0 * pulled, 1e-8)
+
+    def test_what_is_not_joined(self):
+        """The plan says so, where joined bodies are asked for."""
+        run = self.valid(beam("CELAS2,950,100.0,53,1|FORCE,1,53,,0.02,1.0,0.0,0.0|PARAM,RULE,JOINED|GRID,991,,5.0,-0.6,0.0|SPC1,1,12,991|CGAP,700,701,23,991|PGAP,701"))
+        self.assertIn("  not JOINED: freedoms that follow others (MPC, RBE2 that turns) or have springs are not joined\n", run.listing)
+
     def test_yielding(self):
         """With a spring and a platen that turns each method finds the same beyond yield."""
         cards = (f"GRID,900,,{LENGTH},0.0,0.0|{RIGHT}|MOMENT,1,900,,0.002,0.0,0.0,1.0|CELAS2,950,1.0,900,2|"
