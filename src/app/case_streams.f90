@@ -19,8 +19,10 @@ module epcont_app_case_streams
   private
   public :: copies_of, run_names, solve_pattern
 
-  !> Cases of a stream: what is copied at its begin is little beside them.
-  integer, parameter :: least_cases = 8
+  !> Least number of cases of a stream, in cases and in square roots of all cases: copying the factors at its
+  !! begin costs half a case.
+  integer, parameter :: least_cases = 12
+  real(wp), parameter :: least_roots = 2.4_wp
   !> Scenes that take more have one stream [bytes]: threads share their fronts, and each further stream takes
   !! as much again.
   integer(i8), parameter :: large = 1000000000_i8
@@ -171,7 +173,7 @@ contains
 
     count = 1
     ! Their length grows with their number: neither copies nor threads without work are many.
-    if (bytes <= large) count = max(1, (cases - 1)/max(least_cases, nint(sqrt(real(cases, wp)))))
+    if (bytes <= large) count = max(1, (cases - 1)/max(least_cases, nint(least_roots*sqrt(real(cases, wp)))))
     allocate (stream(count))
     do s = 1, count
       stream(s)%from = 2 + (s - 1)*(cases - 1)/count

@@ -107,12 +107,9 @@ contains
       answer%largest_at(e) = first - 1 + first_largest(mises(:last - first + 1))
       answer%largest_stress(e) = maxval(mises(:last - first + 1))
       do p = first, last
-        if (allocated(answer%point)) then
-          point = answer%point(p)
-        else
-          call law%update(answer%strain(:, p), point_state(), point)
-        end if
         modulus = law%young
+        point%total = mises(p - first + 1)/modulus
+        if (allocated(answer%point)) point = answer%point(p)
         if (point%yielded) modulus = 1.0_wp/(1.0_wp/point%modulus + law%shift)
         share = volume(p)/whole
         answer%stress(:, e) = answer%stress(:, e) + share*answer%point_stress(:, p)
