@@ -1,6 +1,6 @@
 !> From the cards of a deck to the scene, and what is found of it to messages with their places in the deck.
 module epcont_build_build
-  use epcont_base_diagnostic, only: diagnostic, diagnostics
+  use epcont_base_diagnostic, only: diagnostic, diagnostics, severity_note
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: sorted_order
   use epcont_base_text, only: text_of
@@ -8,14 +8,16 @@ module epcont_build_build
   use epcont_build_choices, only: check_once, read_controls
   use epcont_build_contacts, only: build_contacts
   use epcont_build_mesh, only: build_mesh, element_cards
-  use epcont_build_reference, only: card_index, check_unique, chosen_sets, index_of
-  use epcont_build_supports, only: build_ties, hold_nodes
+  use epcont_build_reference, only: card_index, check_unique, chosen_sets, index_of, note_unnamed
+  use epcont_build_supports, only: build_ties, check_displacements, hold_nodes
   use epcont_build_temperatures, only: build_temperatures
   use epcont_contact_geometry_complete, only: check_controls, finish_model
   use epcont_contact_geometry_line_contacts, only: find_contacts
   use epcont_deck_card_kinds, only: card_bconp, card_blseg, card_celas1, card_celas2, card_cgap, &
-      card_cord2r, card_grav, card_grid, card_mat1, card_mats1, card_mpc, card_param, card_pgap, &
-      card_pshell, card_psolid, card_rbe2, card_rforce, card_spc, card_spc1, card_tables1
+      card_cord2r, card_grav, card_grid, card_load, card_mat1, card_mats1, card_mpc, card_mpcadd, &
+      card_param, card_pelas, card_pgap, card_pshell, card_psolid, card_rbe2, card_rforce, card_spc, &
+      card_spc1, card_tables1
+  use epcont_deck_case_control, only: subcase_control
   use epcont_deck_deck, only: deck_type
   use epcont_deck_entry, only: least_cause
   use epcont_element_element_kind, only: element_kind
@@ -24,17 +26,17 @@ module epcont_build_build
   use epcont_model_body_checks, only: check_body_loads
   use epcont_model_element_shapes, only: check_axis
   use epcont_model_arrays, only: angle
-  use epcont_model_finding, only: findings, of_body, of_body_load, of_couple, of_element, of_equation, &
-      of_line, of_node, of_pair, of_paper_ratio, of_scene
-  use epcont_model_load_cases, only: contact_all, load_cases, put_case
+  use epcont_model_finding, only: and_more, findings, of_body, of_body_load, of_couple, of_element, &
+      of_equation, of_line, of_node, of_pair, of_paper_ratio, of_scene
+  use epcont_model_load_cases, only: contact_all, contact_none, load_cases, put_case
   use epcont_model_model, only: model_type
   implicit none
   private
   public :: build_model, tell
 
   !> Cards with ids of their own.
-  integer, parameter :: own_ids(8) = [card_grid, card_mat1, card_mats1, card_tables1, card_pgap, &
-      card_cord2r, card_blseg, card_bconp]
+  integer, parameter :: own_ids(10) = [card_grid, card_mat1, card_mats1, card_tables1, card_pgap, &
+      card_cord2r, card_blseg, card_bconp, card_load, card_mpcadd]
 
 contains
 
@@ -49,6 +51,7 @@ contains
     type(card_index) :: nodes
     type(load_cases) :: cases
     integer :: chosen, pattern   ! contacts, and what of_pattern says
+    logical, allocatable :: always_held(:, :)   ! by all patterns [angle, nodes]
     integer :: k
 
     pattern = 1
@@ -66,7 +69,7 @@ contains
     call build_cases(deck, nodes, model, cases, faults)
     call build_temperatures(deck, nodes, model, cases, faults)
     call hold_patterns()
-    call build_ties(deck, nodes, cases%patterns == 1, model, faults)
+    call build_ties(deck, nodes, always_held, model, faults)
     chosen = cases%case(findloc(cases%case%pattern, pattern, dim=1))%contact
     call check_axis(model, faults)
     ! What iterations of a mesher leave of zero. Sides are longer by far, but what it makes of gaps would load
@@ -84,6 +87,7 @@ contains
       call check_body_loads(model, cases%body%given, faults)
       call finish_model(model, faults)
     end if
+    call note_without_effect()
     if (present(all_cases)) all_cases = cases
     call find_card_of_contact()
     call tell(deck, model%kinds, faults)
@@ -101,6 +105,8 @@ contains
         call take_pattern(k, held, first)
       end do
       cases%patterns = size(first)
+      always_held = all(held, dim=3)
+      call check_displacements(cases, model, held, faults)
       call hold(held(:, :, min(pattern, cases%patterns)))
     end subroutine hold_patterns
 
@@ -142,6 +148,38 @@ contains
       model%platen%held = held(angle, model%platen%leader)
     end subroutine hold
 
+    !> Note the cards that nothing uses: no other card, or no load case.
+    subroutine note_without_effect()
+      integer, allocatable :: sections(:)
+      integer :: c
+
+      associate (elements => element_cards(deck, model%kinds), cid => deck%card(card_cgap)%column('CID'))
+        sections = [(ids(elements(c), 2), c=1, size(elements))]
+        call note_unnamed(deck, card_pshell, 1, sections, 'element', faults)
+        call note_unnamed(deck, card_psolid, 1, sections, 'element', faults)
+        call note_unnamed(deck, card_mat1, 1, [ids(card_pshell, 2), ids(card_psolid, 2)], &
+                          'PSHELL or PSOLID', faults)
+        call note_unnamed(deck, card_tables1, 1, ids(card_mats1, 2), 'MATS1', faults)
+        call note_unnamed(deck, card_pgap, 1, ids(card_cgap, 2), 'CGAP', faults)
+        call note_unnamed(deck, card_cord2r, 1, ids(card_cgap, cid), 'CGAP', faults)
+        call note_unnamed(deck, card_pelas, 1, ids(card_celas1, 2), 'CELAS1', faults)
+        call note_unnamed(deck, card_pelas, 5, ids(card_celas1, 2), 'CELAS1', faults)
+      end associate
+      if (all(cases%case%contact /= contact_all)) &
+        call note_unnamed(deck, card_bconp, 1, cases%case%contact, 'BCONTACT', faults)
+      if (all(cases%case%contact == contact_none) .and. deck%card(card_cgap)%count > 0) &
+        call faults%add(diagnostic(severity_note, of=card_cgap, which=1, item=1, remedy='', what= &
+          ': BCONTACT is NONE in all load cases'//and_more(deck%card(card_cgap)%count, ' (', ' more CGAPs)')))
+    end subroutine note_without_effect
+
+    !> The ids in a column of a table.
+    pure function ids(card, column)
+      integer, intent(in) :: card, column
+      integer :: ids(deck%card(card)%count)
+
+      ids = nint(deck%card(card)%value(column, :))
+    end function ids
+
     !> Of contacts the only one is chosen: what is found of it is of its card.
     subroutine find_card_of_contact()
       integer :: i
@@ -155,10 +193,11 @@ contains
   end subroutine build_model
 
   !> Put the names of their cards before what was found of the scene, with the places of these.
-  subroutine tell(deck, kinds, faults)
+  subroutine tell(deck, kinds, faults, case)
     type(deck_type), intent(in) :: deck          !! its cards
     type(element_kind), intent(in) :: kinds(:)   !! of elements
     type(diagnostics), intent(inout) :: faults   !! of the deck, and findings of the scene that it makes
+    integer, intent(in), optional :: case        !! the first one with the supports of the scene
     integer, allocatable :: elements(:)   ! the cards of elements
     integer :: i
 
@@ -179,6 +218,7 @@ contains
       card = card_of(one)
       one%place = deck%place(card(1), card(2), card(3))
       if (one%of /= of_body) one%what = deck%card(card(1))%identity(card(2))//one%what
+      if (one%of == of_body .and. present(case)) call name_supports(one, deck%subcase, case)
       one%of = of_scene
       one%which = 0
     end subroutine name_card
@@ -234,6 +274,26 @@ contains
       end associate
     end function list_item
   end subroutine tell
+
+  !> Name the supports of a load case in a fault that depends on them, if other cases have other supports.
+  subroutine name_supports(one, subcase, case)
+    type(diagnostic), intent(inout) :: one
+    type(subcase_control), intent(in) :: subcase(:)   !! [cases]
+    integer, intent(in) :: case                       !! which of them
+    character(len=:), allocatable :: name
+    integer :: other
+
+    other = findloc(subcase%spc%id /= subcase(case)%spc%id, .true., dim=1)
+    if (other == 0) return
+    name = 'SUBCASE '//text_of(subcase(case)%id)
+    if (subcase(case)%spc%id > 0) then
+      one%what = name//', SPC = '//text_of(subcase(case)%spc%id)//': '//one%what
+    else
+      one%what = name//' has no SPC: '//one%what
+      one%remedy = 'SPC = '//text_of(subcase(other)%spc%id)//' in it; or '//one%remedy
+      one%place = subcase(case)%place
+    end if
+  end subroutine name_supports
 
   !> The SPC1 cards, in free field, that hold some nodes in direction 1.
   pure function holding_cards(deck, ids) result(text)

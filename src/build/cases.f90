@@ -5,12 +5,12 @@ module epcont_build_cases
   use epcont_base_sorting, only: new_id_index
   use epcont_base_text, only: short_real, text_of
   use epcont_build_mass_loads, only: build_mass_loads
-  use epcont_build_reference, only: card_index, chosen_sets, note_unused, resolve
+  use epcont_build_reference, only: card_index, check_combinations, chosen_sets, note_unused, resolve
   use epcont_deck_card_kinds, only: card_bconp, card_force, card_grav, card_load, card_moment, card_ploadx1, &
       card_rforce, card_spc, card_spc1, card_spcd
   use epcont_deck_deck, only: deck_type
   use epcont_deck_entry, only: farthest, least_cause
-  use epcont_build_tie_cards, only: find_moments, find_platens, names, turn
+  use epcont_build_tie_cards, only: check_directions, find_moments, find_platens, names, turn
   use epcont_model_arrays, only: angle, side_pressure
   use epcont_model_finding, only: and_more, findings, of_element
   use epcont_model_load_cases, only: load_case, load_cases, nodal_force, set_displacement, set_pressure
@@ -50,7 +50,8 @@ contains
       call combine(loads(k), cases%case(k))
       used = [used, cases%case(k)%set]
     end do
-    call check_combinations()
+    call check_combinations(deck, card_load, load_cards, 'loads', &
+                            'the set of FORCE, PLOADX1, MOMENT, GRAV, RFORCE or SPCD cards', found)
     call check_contacts()
     call note_unused(deck, load_cards, used, found)
     call note_unused(deck, [card_load], loads, found)
@@ -84,27 +85,6 @@ contains
       end associate
     end subroutine combine
 
-    !> LOAD combines sets of other cards, by an id that is none of theirs.
-    subroutine check_combinations()
-      integer, allocatable :: id(:)   ! sets of loads
-      integer :: i, item, set
-
-      associate (combined => deck%card(card_load))
-        id = [(nint(deck%card(load_cards(i))%value(1, :)), i=1, size(load_cards))]
-        do i = 1, combined%count
-          if (.not. (combined%sound(i) .and. deck%whole)) cycle
-          if (any(id == nint(combined%value(1, i)))) &
-            call found%add_error(card_load, i, 1, ': the id is that of a set of loads', 'an id of its own')
-          do item = combined%list_start(i), combined%list_start(i + 1) - 1
-            set = nint(combined%list(item)%number(2))
-            if (any(id == set)) cycle
-            call found%add_error(card_load, i, -item, ': there is no set '//text_of(set)//' of loads', &
-                                 'the set of FORCE, PLOADX1, MOMENT, GRAV, RFORCE or SPCD cards')
-          end do
-        end do
-      end associate
-    end subroutine check_combinations
-
     !> BCONTACT names a BCONP.
     subroutine check_contacts()
       integer :: k
@@ -112,6 +92,7 @@ contains
       do k = 1, size(deck%subcase)
         associate (contact => deck%subcase(k)%contact)
           if (contact%id <= 0 .or. any(nint(deck%card(card_bconp)%value(1, :)) == contact%id)) cycle
+          if (any(deck%subcase(:k - 1)%contact%id == contact%id)) cycle   ! it has been reported
           call found%add_error(contact%place, 'BCONTACT = '//text_of(contact%id)// &
                                ': there is no such BCONP', 'ALL, NONE or the id of a BCONP')
         end associate
@@ -134,6 +115,9 @@ contains
           factor = force%number('F', i)
           direction = [force%number('N1', i), force%number('N2', i)]
           largest = maxval(abs(direction))
+          if (all(direction == 0.0_wp)) &
+            call found%add_error(card_force, i, force%column('N1'), ': N1 and N2 are 0.0: no direction', &
+                                 'the direction of the force, such as 0.0 and -1.0')
           if (force%number('N3', i) /= 0.0_wp) &
             call found%add_error(card_force, i, force%column('N3'), ': field 8 (N3) points off the plane', &
                                  '0.0: scenes lie in the x-y plane')
@@ -207,15 +191,17 @@ contains
         do i = 1, size(node)
           associate (value => deck%card(card)%value(:, i))
             if (node(i) == 0 .or. all(sets /= nint(value(1)))) cycle
+            if (value(k + 2) /= 0.0_wp) &
+              call check_directions(model, node(i), value(k + 1), [card, i, k + 1], found)
             do c = 1, 2
               if (all(mod(nint(value(k + 1))/10**[0, 1, 2, 3, 4, 5], 10) /= c)) cycle
               last = last + 1
-              displacements(last) = set_displacement(nint(value(1)), c, node(i), value(k + 2))
+              displacements(last) = set_displacement(nint(value(1)), c, node(i), value(k + 2), i, k)
             end do
             platen = findloc(model%platen%leader, node(i), dim=1)
             if (platen == 0 .or. .not. names(value(k + 1), turn)) cycle
             last = last + 1
-            displacements(last) = set_displacement(nint(value(1)), angle, platen, value(k + 2))
+            displacements(last) = set_displacement(nint(value(1)), angle, platen, value(k + 2), i, k)
           end associate
         end do
       end do

@@ -37,11 +37,12 @@ contains
     allocate (model%line(deck%card(card_blseg)%count), model%couple(deck%card(card_bconp)%count))
     model%line%id = nint(deck%card(card_blseg)%value(1, :))
     model%couple%id = nint(deck%card(card_bconp)%value(1, :))
-    do i = 1, size(model%line)
-      call read_line()
-    end do
     do k = 1, 2
       call resolve(deck, card_bconp, 1 + k, index_of(deck, card_blseg), found, model%couple%line(k))
+    end do
+    do i = 1, size(model%line)
+      model%line(i)%is_named = any(model%couple%line(1) == i .or. model%couple%line(2) == i)
+      call read_line()
     end do
     if (chosen /= contact_all) model%couple = pack(model%couple, model%couple%id == chosen)
 

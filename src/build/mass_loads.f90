@@ -74,6 +74,9 @@ contains
       associate (card => deck%card(card_rforce))
         do i = 1, size(load)
           if (load(i)%factor == 0.0_wp .or. .not. card%sound(i)) cycle
+          if (.not. (card%has('A', i) .or. card%has('RACC', i))) call found%add_error( &
+            card_rforce, i, card%column('A'), ': neither field 5 (A) nor field 13 (RACC) is given: no spin', &
+            'A, or RACC on the next line')
           call want_zero(card_rforce, i, 'R1', 'along x', '0.0: '//axis_is())
           call want_zero(card_rforce, i, merge('R3', 'R2', rings), merge('along z', 'along y', rings), &
                          '0.0: '//axis_is())

@@ -1,9 +1,11 @@
 !> Nodes, materials, sections and elements from their cards.
 module epcont_build_mesh
+  use epcont_base_diagnostic, only: diagnostic, severity_note
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: short_real
   use epcont_build_reference, only: card_index, index_of, resolve
-  use epcont_deck_card_kinds, only: card_grid, card_mat1, card_mats1, card_pshell, card_psolid, card_tables1
+  use epcont_deck_card_kinds, only: card_grid, card_mat1, card_mats1, card_param, card_pshell, card_psolid, &
+      card_tables1
   use epcont_deck_deck, only: deck_type
   use epcont_element_element_kind, only: element_kind
   use epcont_element_kinematics, only: axisymmetric, plane_strain, plane_stress
@@ -98,6 +100,9 @@ contains
         material(i)%expansion = mat1%number('A', i)
         material(i)%reference_temperature = mat1%number('TREF', i)
         material(i)%density = mat1%number('RHO', i)
+        if (mat1%has('TREF', i) .and. mat1%entry%field(mat1%column('TREF'))%used .and. &
+            material(i)%expansion == 0.0_wp) call note(card_mat1, i, mat1%column('TREF'), &
+                                                       ': field 8 (TREF) has no effect without A')
         if (count([mat1%has('E', i), mat1%has('G', i), mat1%has('NU', i)]) < 2) then
           call refuse(card_mat1, i, 'E', ': of E, G and NU two are needed', 'E and NU, say')
         else if (.not. mat1%has('NU', i)) then
@@ -168,6 +173,14 @@ contains
       end associate
     end subroutine read_table
 
+    !> A field has no effect.
+    subroutine note(card, i, column, what)
+      integer, intent(in) :: card, i, column
+      character(len=*), intent(in) :: what
+
+      call found%add(diagnostic(severity_note, of=card, which=i, item=column, what=what, remedy=''))
+    end subroutine note
+
     !> A field is at fault.
     subroutine refuse(card, i, name, what, remedy)
       integer, intent(in) :: card, i
@@ -192,6 +205,9 @@ contains
           if (named(s) > 0) section(s) = material(named(s))
           if (s <= shell%count) call choose_kinematics(s, kinematics(s))
         end do
+        if (deck%parameter_word('PLANE') == 'STRESS' .and. all(kinematics /= plane_stress) .and. &
+            shell%count > 0) &
+          call note(card_param, deck%parameter_row('PLANE'), 2, ': no PSHELL leaves the choice to it')
         call set_sections(model%scene_type, section%young, section%poisson, kinematics)
         model%curve = section%curve
         model%expansion = section%expansion
@@ -215,7 +231,7 @@ contains
       end associate
     end subroutine take_ids
 
-    !> Plane strain or plane stress of a PSHELL: it says so, or PARAM PLANE.
+    !> Plane strain or plane stress of a PSHELL: it says plane strain, or PARAM PLANE chooses.
     subroutine choose_kinematics(i, kinematics)
       integer, intent(in) :: i
       integer, intent(out) :: kinematics
@@ -225,10 +241,9 @@ contains
       associate (shell => deck%card(card_pshell))
         if (.not. shell%sound(i)) return
         strain = shell%number('MID2', i) < 0.0_wp
-        if (strain .and. kinematics == plane_stress) then
-          call refuse(card_pshell, i, 'MID2', ': field 5 (MID2) says plane strain, PARAM PLANE says STRESS', &
-                      'one of the two only')
-        else if (.not. strain .and. deck%parameter_row('PLANE') == 0) then
+        if (strain) then
+          kinematics = plane_strain
+        else if (deck%parameter_row('PLANE') == 0) then
           call refuse(card_pshell, i, 'MID2', ': neither plane strain nor plane stress is chosen', &
                       '-1 here for plane strain, or PARAM,PLANE,STRAIN or PARAM,PLANE,STRESS')
         end if

@@ -7,11 +7,13 @@ module epcont_build_reference
   use epcont_deck_card_kinds, only: card_blseg
   use epcont_deck_case_control, only: set_choice
   use epcont_deck_deck, only: deck_type
+  use epcont_deck_table, only: list_item
   use epcont_model_finding, only: findings
   use epcont_system_threads, only: threads_over
   implicit none
   private
-  public :: card_index, index_of, check_unique, resolve, chosen_sets, note_unused
+  public :: card_index, index_of, check_combinations, check_unique, resolve, chosen_sets
+  public :: note_unnamed, note_unused
 
   !> The ids that fields may name, and what they are of.
   type, extends(id_index) :: card_index
@@ -113,10 +115,70 @@ contains
     end if
     do k = 1, size(set)
       if (set(k) == 0 .or. any(id == set(k)) .or. .not. deck%whole .or. any(id == 0)) cycle
+      if (any(set(:k - 1) == set(k))) cycle   ! it has been reported
       call found%add_error(choice(k)%place, word//' = '//text_of(set(k))// &
                            ': the deck has no such set', 'the set of the cards in the deck')
     end do
   end subroutine chosen_sets
+
+  !> Check the cards that combine sets under one id, LOAD or MPCADD. Their id is not that of a set, and the
+  !! sets exist: they are those of other cards.
+  subroutine check_combinations(deck, card, members, noun, remedy, found)
+    type(deck_type), intent(in) :: deck           !! its cards
+    integer, intent(in) :: card                   !! table of those that combine
+    integer, intent(in) :: members(:)             !! tables of the cards in the sets
+    character(len=*), intent(in) :: noun, remedy  !! the sets are of these; cards that they hold
+    type(findings), intent(inout) :: found        !! what is wrong is added
+    character(len=:), allocatable :: what
+    integer, allocatable :: id(:)                 ! of the sets
+    integer :: i, item, set
+
+    id = [(nint(deck%card(members(i))%value(1, :)), i=1, size(members))]
+    associate (combined => deck%card(card))
+      do i = 1, combined%count
+        if (.not. (combined%sound(i) .and. deck%whole)) cycle
+        if (any(id == nint(combined%value(1, i)))) &
+          call found%add_error(card, i, 1, ': the id is that of a set of '//noun, 'an id of its own')
+        do item = combined%list_start(i), combined%list_start(i + 1) - 1
+          set = member_of(combined%list(item))
+          if (any(id == set)) cycle
+          what = ': there is no set '//text_of(set)//' of '//noun
+          if (any(nint(combined%value(1, :)) == set)) what = ': set '//text_of(set)// &
+            ' combines sets itself ('//trim(combined%entry%name)//'), and such sets do not nest'
+          call found%add_error(card, i, -item, what, remedy)
+        end do
+      end do
+    end associate
+  end subroutine check_combinations
+
+  !> The set that an item of the list of LOAD or MPCADD names: behind its factor, or alone.
+  pure integer function member_of(item) result(set)
+    type(list_item), intent(in) :: item
+
+    set = item%from
+    if (set == 0) set = nint(item%number(2))
+  end function member_of
+
+  !> Note the cards that no other card names.
+  pure subroutine note_unnamed(deck, card, column, names, by, found)
+    type(deck_type), intent(in) :: deck       !! its cards
+    integer, intent(in) :: card, column       !! table of those that may be named, and field of their ids
+    integer, intent(in) :: names(:)           !! ids in the fields that name them
+    character(len=*), intent(in) :: by        !! cards with these fields
+    type(findings), intent(inout) :: found    !! notes are added
+    type(id_index) :: named
+    integer :: i
+
+    named = new_id_index(names)
+    associate (table => deck%card(card))
+      do i = 1, table%count
+        if (.not. table%given(column, i)) cycle
+        if (named%find(nint(table%value(column, i))) > 0) cycle
+        call found%add(diagnostic(severity_note, of=card, which=i, item=column, remedy='', &
+          what=': no '//by//' names '//text_of(nint(table%value(column, i)))))
+      end do
+    end associate
+  end subroutine note_unnamed
 
   !> A note for each card whose set no load case uses.
   pure subroutine note_unused(deck, cards, used, found)

@@ -1,20 +1,22 @@
 !> Supports, ties and reference freedoms from GRID PS, SPC, SPC1, RBE2, SUPORT, MPC and springs.
 module epcont_build_supports
+  use epcont_base_diagnostic, only: diagnostic, severity_note
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of
-  use epcont_build_tie_cards, only: build_equations, build_springs, names, turn
+  use epcont_build_tie_cards, only: build_equations, build_springs, check_directions, names, turn
   use epcont_build_reference, only: card_index, resolve
-  use epcont_deck_card_kinds, only: card_grid, card_rbe2, card_spc, card_spc1, card_suport
+  use epcont_deck_card_kinds, only: card_grid, card_rbe2, card_spc, card_spc1, card_spcd, card_suport
   use epcont_deck_deck, only: deck_type
   use epcont_element_kinematics, only: directions
-  use epcont_model_finding, only: findings
+  use epcont_model_finding, only: findings, of_node
   use epcont_model_arrays, only: angle
   use epcont_model_freedoms, only: follow_to_the_end, freedom, set_reference, tie
+  use epcont_model_load_cases, only: load_cases
   use epcont_model_model, only: model_type
   use epcont_model_ties, only: complete_ties, turn_with
   implicit none
   private
-  public :: build_ties, hold_nodes
+  public :: build_ties, check_displacements, hold_nodes
 
   !> A node that a card names, with some of its freedoms.
   type :: named_node
@@ -87,13 +89,61 @@ contains
     end subroutine hold
   end subroutine hold_nodes
 
+  !> Check that each SPCD of a load case moves a DOF that the supports of the case fix, and that no DOF has
+  !! two different displacements. Each SPCD is reported once.
+  subroutine check_displacements(cases, model, held, found)
+    type(load_cases), intent(in) :: cases
+    type(model_type), intent(in) :: model
+    logical, intent(in) :: held(:, :, :)      !! DOFs that are fixed, by direction or `angle`, node, pattern
+    type(findings), intent(inout) :: found    !! what is wrong is added
+    logical :: reported(size(cases%moved))
+    integer, allocatable :: before(:, :)      ! first displacement that each DOF has; 0: none
+    integer :: i, k, node
+
+    reported = .false.
+    do k = 1, size(cases%case)
+      before = spread(spread(0, 1, angle), 2, model%nodes)
+      do i = 1, size(reported)
+        associate (at => cases%moved(i))
+          if (all(cases%case(k)%set /= at%set) .or. reported(i)) cycle
+          node = at%node
+          if (at%c == angle) node = model%platen(at%node)%leader
+          if (before(at%c, node) == 0) before(at%c, node) = i
+          if (.not. held(at%c, node, cases%case(k)%pattern)) then
+            call refuse(' is not fixed', 'SPC or SPC1 of this direction, in the set that the case has')
+          else if (displacement(i) /= displacement(before(at%c, node))) then
+            call refuse(' has another displacement already', 'one displacement for each direction')
+          end if
+        end associate
+      end do
+    end do
+
+  contains
+
+    pure real(wp) function displacement(i)
+      integer, intent(in) :: i
+
+      displacement = cases%case(k)%share_of(cases%moved(i)%set)*cases%moved(i)%displacement
+    end function displacement
+
+    subroutine refuse(why, remedy)
+      character(len=*), intent(in) :: why, remedy
+
+      reported(i) = .true.
+      associate (at => cases%moved(i))
+        call found%add_error(card_spcd, at%card, at%field, ': '//freedom(model, at%c, node)//why// &
+                             cases%case(k)%where_text(), remedy)
+      end associate
+    end subroutine refuse
+  end subroutine check_displacements
+
   !> Ties of the freedoms that no support holds, of which chains are followed to their end; then the reference
   !! freedoms, which must be free of both.
-  subroutine build_ties(deck, nodes, of_all, model, found)
+  subroutine build_ties(deck, nodes, always_held, model, found)
     type(deck_type), intent(in) :: deck        !! its cards
     type(card_index), intent(in) :: nodes      !! ids of GRID
-    !> Other load cases may hold other freedoms: of a SUPORT those that are held here are none of reference
-    logical, intent(in) :: of_all
+    !> Fixed in all load cases; a SUPORT DOF that is fixed in some of them has no effect there [angle, nodes]
+    logical, intent(in) :: always_held(:, :)
     type(model_type), intent(inout) :: model   !! the scene, with its supports
     type(findings), intent(inout) :: found     !! what is wrong with it is added
     type(named_node), allocatable :: named(:)
@@ -101,6 +151,7 @@ contains
 
     model%sum_of = spread([0, 0], 2, model%nodes)
     call resolve(deck, card_rbe2, 2, nodes, found, leader)
+    call check_ties()
     named = nodes_of_lists(deck, card_rbe2, nodes, found)
     do i = 1, size(named)
       associate (card => named(i)%card, node => named(i)%node)
@@ -117,13 +168,15 @@ contains
     do i = 1, size(named)
       associate (card => named(i)%card, node => named(i)%node)
         do c = 1, directions
-          if (model%held(c, node) .and. .not. of_all) cycle
+          if (model%held(c, node) .and. .not. always_held(c, node)) cycle
           if (names(deck%card(card_suport)%value(named(i)%digits, card(2)), c)) &
             call set_reference(model, c, node, card, found)
         end do
+        call check_directions(model, node, deck%card(card_suport)%value(named(i)%digits, card(2)), &
+                              [card_suport, card(2), named(i)%digits], found)
         platen = findloc(model%platen%leader, node, dim=1)
         if (platen == 0) cycle
-        if (model%platen(platen)%held .and. .not. of_all) cycle
+        if (model%platen(platen)%held .and. .not. always_held(angle, node)) cycle
         if (names(deck%card(card_suport)%value(named(i)%digits, card(2)), turn)) &
           call set_reference(model, angle, node, card, found)
       end associate
@@ -131,6 +184,26 @@ contains
     call build_equations(deck, nodes, model, found)
     call complete_ties(model, found)
     call build_springs(deck, nodes, model, found)
+
+  contains
+
+    !> An RBE2 ties direction 1 or 2; if its leader rotates, both.
+    subroutine check_ties()
+      logical :: tied(directions)
+      integer :: i
+
+      do i = 1, size(leader)
+        tied = names(deck%card(card_rbe2)%value(3, i), [1, 2])
+        if (all(tied) .or. leader(i) == 0) cycle
+        if (any(model%platen%leader == leader(i))) then
+          call found%add(diagnostic(severity_note, of=card_rbe2, which=i, item=3, remedy='', &
+            what=': '//model%name_of(of_node, leader(i))//' rotates, so GM follow in directions 1 and 2'))
+        else if (.not. any(tied)) then
+          call found%add_warning(card_rbe2, i, 3, ': field 4 (CM) ties neither direction 1 nor 2', &
+                                 'the directions in which GM move as GN does, such as 12')
+        end if
+      end do
+    end subroutine check_ties
   end subroutine build_ties
 
   !> SPC and SUPORT: nodes, each with its directions in the next field.

@@ -130,6 +130,9 @@ contains
       if (k > 0 .and. default_by == 0) call found%add_error(of_node, k, 1, &
         ': has no temperature in set '//text_of(set)//and_more(count(unnamed), '; nor have ', ' more'), &
         'TEMP or TEMPD')
+      if (default_by > 0 .and. .not. any(unnamed) .and. any(expands)) &
+        call found%add(diagnostic(severity_note, of=card_tempd, which=default_by, item=1, &
+                                  what=': all nodes have a TEMP in set '//text_of(set), remedy=''))
       if (found%errors > 0) return   ! it may be what could not be read
       vain = named_by(1, :) > 0 .and. .not. expands
       k = findloc(vain, .true., dim=1)

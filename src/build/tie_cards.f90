@@ -4,7 +4,7 @@ module epcont_build_tie_cards
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: id_index, new_id_index
   use epcont_base_text, only: text_of
-  use epcont_build_reference, only: card_index, chosen_sets, note_unused, resolve
+  use epcont_build_reference, only: card_index, check_combinations, chosen_sets, note_unused, resolve
   use epcont_deck_card_kinds, only: card_celas1, card_celas2, card_moment, card_mpc, card_mpcadd, &
       card_pelas, card_rbe2, card_spc, card_spcd, card_suport
   use epcont_deck_deck, only: deck_type
@@ -15,7 +15,7 @@ module epcont_build_tie_cards
   use epcont_model_ties, only: check_equation
   implicit none
   private
-  public :: build_equations, build_springs, find_platens, find_moments, names
+  public :: build_equations, build_springs, check_directions, find_platens, find_moments, names
 
   !> The digit of a turn about z.
   integer, parameter, public :: turn = 6
@@ -31,6 +31,24 @@ contains
 
     names = any(mod(nint(digits)/10**[0, 1, 2, 3, 4, 5], 10) == c)
   end function names
+
+  !> Report a direction that a field names and the node does not have: 3 to 5, and 6 unless it leads an RBE2
+  !! that rotates.
+  subroutine check_directions(model, node, digits, card, found)
+    type(model_type), intent(in) :: model     !! the scene: which leaders turn
+    integer, intent(in) :: node
+    real(wp), intent(in) :: digits            !! of the field
+    integer, intent(in) :: card(3)            !! table, card, field of the directions
+    type(findings), intent(inout) :: found    !! an error is added
+    integer :: c
+
+    do c = 3, turn
+      if (.not. names(digits, c) .or. (c == turn .and. any(model%platen%leader == node))) cycle
+      call found%add_error(card(1), card(2), card(3), ': '//model%name_of(of_node, node)// &
+                           ' has no direction '//text_of(c), 'direction 1 or 2; 6 at the GN of an RBE2')
+      return
+    end do
+  end subroutine check_directions
 
   !> Leaders of RBE2 that turn: a SUPORT, a displacement or a MOMENT of sets that are used names their turn.
   !! Others are held.
@@ -114,6 +132,9 @@ contains
         if (any([cards%number('N1', i), cards%number('N2', i)] /= 0.0_wp)) then
           call found%add_error(card_moment, i, cards%column('N1'), ': the moment is not about z', &
                                'N1 and N2 0.0'//in_plane)
+        else if (cards%number('N3', i) == 0.0_wp) then
+          call found%add_error(card_moment, i, cards%column('N3'), ': field 8 (N3) is 0.0: no direction', &
+                               '1.0, or -1.0 for clockwise')
         else if (platen == 0) then
           call found%add_error(card_moment, i, 2, ': '//model%name_of(of_node, node(i))// &
                                ' leads no RBE2, and elements have no rotations', &
@@ -140,18 +161,12 @@ contains
     k = findloc(set /= set(1), .true., dim=1)
     if (k > 0) call found%add_error(deck%subcase(k)%mpc%place, 'MPC is not that of the first load case', &
                                     'the same equations in all of them')
+    call check_combinations(deck, card_mpcadd, [card_mpc], 'MPC', 'the set of MPC cards', found)
     sets = set(:1)
     associate (sums => deck%card(card_mpcadd))
       do i = 1, sums%count
         if (nint(sums%value(1, i)) /= set(1)) cycle
-        associate (first => sums%list_start(i), last => sums%list_start(i + 1) - 1)
-          sets = [sets, sums%list(first:last)%from]
-          do k = first, last
-            if (.not. any(nint(deck%card(card_mpc)%value(1, :)) == sums%list(k)%from) .and. deck%whole) &
-              call found%add_error(card_mpcadd, i, -k, ': there is no set '// &
-                                   text_of(sums%list(k)%from)//' of MPC', 'the set of MPC cards')
-          end do
-        end associate
+        sets = [sets, sums%list(sums%list_start(i):sums%list_start(i + 1) - 1)%from]
       end do
     end associate
     call note_unused(deck, [card_mpc], sets, found)
@@ -272,12 +287,16 @@ contains
       type(spring_type), intent(in) :: spring
       integer, intent(in) :: id(2)             !! of its nodes, 0: the ground
       integer, intent(in) :: card(3)           !! table, card, field of the first node
-      integer :: bare
+      integer :: bare, grounded   ! end without a direction; with the direction of the ground; 0: none
 
+      grounded = findloc(id == 0 .and. spring%component > 0, .true., dim=1)
       bare = findloc(id > 0 .and. spring%component == 0, .true., dim=1)
       if (all(id == 0)) then
         call found%add_error(card(1), card(2), card(3), ': has no node', &
                              'a node and its direction at one end; 0 or blank: the ground')
+      else if (grounded > 0) then
+        call found%add_error(card(1), card(2), card(3) + 2*grounded - 1, ': has a direction at the ground', &
+                             '0 or blank, or a node before it')
       else if (bare > 0) then
         call found%add_error(card(1), card(2), card(3) + 2*bare - 1, ': has no direction there', &
                              'direction 1 or 2')

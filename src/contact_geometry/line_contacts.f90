@@ -45,7 +45,7 @@ contains
       model%body_outline = find_outline(model, found)
     end if
     call find_line_sides(model, found)
-    used = .false.
+    used = [.false., model%line%is_named]
     do i = 1, size(model%couple)
       used(model%couple(i)%line) = .true.
       if (all(model%couple(i)%line > 0)) call check_couple()

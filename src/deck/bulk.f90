@@ -9,7 +9,7 @@ module epcont_deck_bulk
   use epcont_deck_card_reader, only: read_card
   use epcont_deck_case_control, only: keyword
   use epcont_deck_catalogue, only: catalogue, parameters
-  use epcont_deck_entry, only: card_entry, field_entry, kind_word
+  use epcont_deck_entry, only: card_entry, field_entry, kind_word, listed
   use epcont_deck_field, only: scan_sound, scan_word
   use epcont_deck_refused, only: refused_card
   use epcont_deck_source, only: source
@@ -217,13 +217,29 @@ contains
         value_entry%name = 'VALUE'
         value_entry%used = .true.
         if (.not. parameter_entry(i)%used) &
-          call faults%add_note(card%place(1), 'PARAM '//trim(word)//' has no effect')
+          call faults%add_note(card%place(1), &
+                               'PARAM '//trim(word)//' has no effect'//without(parameter_entry(i)))
       else
         call faults%add_error(card%place(1), 'unknown parameter '//trim(word), &
                               suggestion(word, parameter_entry%name, &
                                          'epcont --cards PARAM lists the parameters'))
       end if
     end subroutine choose_parameter
+
+    !> ` without GRAV or RFORCE`: cards without which a field has no effect; empty if they do not matter.
+    pure function without(field) result(text)
+      type(field_entry), intent(in) :: field
+      character(len=:), allocatable :: text
+      integer :: k
+
+      text = ''
+      if (field%with_cards == '') return
+      text = field%with_cards(2:index(field%with_cards, '/', back=.true.) - 1)
+      do k = 1, len(text)
+        if (text(k:k) == '/') text(k:k) = ' '
+      end do
+      text = ' without '//listed(text)
+    end function without
 
     !> List once each field that was filled and has no effect.
     subroutine note_fields(cards)

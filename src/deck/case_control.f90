@@ -4,7 +4,7 @@ module epcont_deck_case_control
   use epcont_base_diagnostic, only: diagnostics, place_type
   use epcont_base_kinds, only: i8
   use epcont_base_text, only: text_of, upper
-  use epcont_deck_entry, only: largest_id
+  use epcont_deck_entry, only: largest_id, listed
   use epcont_deck_field, only: scan_integer, scan_sound
   use epcont_deck_source, only: source
   use epcont_deck_spelling, only: suggestion
@@ -50,7 +50,7 @@ module epcont_deck_case_control
   type :: statement
     character(len=:), allocatable :: word      !! in capitals
     character(len=:), allocatable :: value     !! behind `=`, or behind the word
-    character(len=:), allocatable :: option    !! in parentheses between, with these, in capitals
+    character(len=:), allocatable :: option    !! in parentheses between, with these; no blanks
     type(place_type) :: word_place, option_place, value_place   !! of line 0: there is none
   end type statement
 
@@ -97,9 +97,7 @@ contains
       if (k == 0 .and. len(parts%word) > 3) k = findloc(index(keyword, parts%word) == 1, .true., dim=1)
       if (k == 0) then
         call faults%add_error(parts%word_place, 'unknown case control statement '//parts%word, &
-          suggestion(parts%word, keyword, &
-                     'SOL, CEND, TITLE, SUBTITLE, LABEL, SUBCASE, SPC, LOAD, BCONTACT, ECHO, '// &
-                     'DISPLACEMENT, STRESS or SPCFORCES'))
+          suggestion(parts%word, keyword, listed(all_keywords())))
         return
       end if
       if (stated(k)) &
@@ -251,6 +249,17 @@ contains
     end subroutine refuse
   end subroutine read_case_control
 
+  !> All keywords, with a blank between two of them.
+  pure function all_keywords() result(words)
+    character(len=:), allocatable :: words
+    integer :: k
+
+    words = trim(keyword(1))
+    do k = 2, size(keyword)
+      words = words//' '//trim(keyword(k))
+    end do
+  end function all_keywords
+
   !> The line behind BEGIN BULK; 1 where there is none.
   pure integer function behind_begin_bulk(lines) result(bulk)
     type(source), intent(in) :: lines
@@ -272,7 +281,7 @@ contains
   pure type(statement) function cut(text, line) result(parts)
     character(len=*), intent(in) :: text
     integer, intent(in) :: line   !! its number
-    integer :: first, last, at
+    integer :: at, first, k, last
 
     first = verify(text, ' ')
     last = first + scan(text(first:)//' ', ' =(') - 2
@@ -283,7 +292,9 @@ contains
     if (text(at:min(at, len(text))) == '(') then
       last = at + index(text(at:)//')', ')') - 1
       parts%option_place = place_type(line, at, min(last, len(text)))
-      parts%option = upper(text(at:min(last, len(text))))
+      do k = at, min(last, len(text))
+        if (text(k:k) /= ' ') parts%option = parts%option//upper(text(k:k))
+      end do
       at = last + verify(text(last + 1:)//'.', ' ')
     end if
     if (text(at:min(at, len(text))) == '=') at = at + verify(text(at + 1:)//'.', ' ')

@@ -228,6 +228,7 @@ module epcont_deck_catalogue
     '  N1; real zero; direction x; 0.0 of rings', &
     '  N2; real zero; direction y', &
     '  N3; real zero; direction z; 0.0 in plane scenes', &
+    '  MB; whole from=-1 to=0 noted; of superelements', &
     'RFORCE: forces of a spin, away from its axis, on all mass', &
     '  SID; id; set', &
     '  G; system; node that the axis goes through; 0 or blank: the origin', &
@@ -278,7 +279,7 @@ module epcont_deck_catalogue
     '  GE1; real noted; damping', &
     '  S1; real noted; stress coefficient', &
     '  PID2; id with_next; second property', &
-    '  K2; real positive; stiffness [force/length]', &
+    '  K2; real positive with_last; stiffness [force/length]', &
     '  GE2; real noted; damping', &
     '  S2; real noted; stress coefficient']
 
@@ -286,31 +287,31 @@ module epcont_deck_catalogue
 
   !> All PARAMs: the field VALUE for each NAME.
   character(len=*), parameter :: choices(*) = [character(len=180) :: &
-    'PLANE; word STRAIN STRESS; every PSHELL with blank MID2', &
-    'RULE; word AUTO CONRY BLOCK JOINED; contact entry rule; default AUTO', &
-    'GAPGEOM; word NO YES; YES adds the distance of the nodes to each gap; default NO', &
+    'PLANE; for=PSHELL word STRAIN STRESS; every PSHELL with blank MID2', &
+    'RULE; for=CGAP/BCONP word AUTO CONRY BLOCK JOINED; contact entry rule; default AUTO', &
+    'GAPGEOM; for=CGAP word NO YES; YES adds the distance of the nodes to each gap; default NO', &
     'UNITS; word; printed with the results; nothing is converted', &
-    'METHOD; word AUTO SECANT MODSEC INISTR NEWTON; plastic iteration; default AUTO', &
-    'TOL; real positive below=1; largest change of a displacement, of the largest, that ends the'// &
-    ' iteration; default 0.01, for NEWTON 1.E-8', &
-    'MAXIT; whole from=1 to=100000; iterations of a load step; default 100', &
-    'MUP; word EXACT PAPER; Poisson''s ratio in the equivalent strain: exact, or formula (2-4);'// &
-    ' default EXACT', &
+    'METHOD; for=MATS1 word AUTO SECANT MODSEC INISTR NEWTON; plastic iteration; default AUTO', &
+    'TOL; real positive below=1 for=MATS1; largest change of a displacement, of the largest, that ends'// &
+    ' the iteration; default 0.01, for NEWTON 1.E-8', &
+    'MAXIT; whole from=1 to=100000 for=MATS1; iterations of a load step; default 100', &
+    'MUP; for=MATS1 word EXACT PAPER; Poisson''s ratio in the equivalent strain: exact, or formula'// &
+    ' (2-4); default EXACT', &
     'ORIGINAL; word NO YES; all as in about 1980: SOLVER BAND, FLEXIB INVERT, RULE CONRY, METHOD'// &
     ' SECANT, TOL 0.01, NLOAD 1, MUP PAPER, PRECIS DOUBLE, no ACCURACY; default NO', &
-    'NLOAD; whole from=1 to=10000; load steps; default 1', &
-    'SEARCH; real positive; how far BCONP looks for a segment; default twice the longest segment of'// &
-    ' the two lines [length]', &
+    'NLOAD; whole from=1 to=10000 for=MATS1; load steps; default 1', &
+    'SEARCH; real positive for=BCONP; how far BCONP looks for a segment; default twice the longest'// &
+    ' segment of the two lines [length]', &
     'SOLVER; word AUTO BAND FRONTAL; matrices of the bodies: panels of a band, or nested fronts;'// &
     ' default AUTO', &
-    'FLEXIB; word AUTO INVERT; flexibility of the contact by inversion always, or by substitution'// &
-    ' where that is cheaper; default AUTO', &
+    'FLEXIB; for=CGAP/BCONP word AUTO INVERT; flexibility of the contact by inversion always, or by'// &
+    ' substitution where that is cheaper; default AUTO', &
     'PRECIS; word DOUBLE MIXED SINGLE; factors in double or single precision, these refined to'// &
     ' double (MIXED) or not; default DOUBLE', &
     'ACCURACY; real positive below=1; wanted relative error of contact pressures: sets TOL, METHOD'// &
     ' and PRECIS where they are left out', &
-    'CORNER; real positive to=180; sides of a boundary line that turn by more than this meet at a'// &
-    ' corner; default: decided from the turns beside it [degree]', &
+    'CORNER; real positive to=180 for=BCONP; sides of a boundary line that turn by more than this meet at'// &
+    ' a corner; default: decided from the turns beside it [degree]', &
     'WTMASS; real positive for=GRAV/RFORCE; factor of all mass: of RHO and NSM; default 1.0', &
     'LGDISP; whole from=-1 to=-1 noted; no effect | displacements are small', &
     'INREL; whole only_zero noted; no effect | supports and contact hold bodies']

@@ -3,9 +3,11 @@ module epcont_deck_deck
   use epcont_base_diagnostic, only: diagnostics, place_type
   use epcont_base_error, only: error_type
   use epcont_base_kinds, only: wp
+  use epcont_base_text, only: upper
   use epcont_deck_bulk, only: read_bulk
   use epcont_deck_card, only: card_fields, gather
-  use epcont_deck_card_kinds, only: card_param
+  use epcont_deck_card_kinds, only: card_cbar, card_celas1, card_celas2, card_cgap, card_cquad4, &
+      card_cquad8, card_ctrax3, card_ctrax6, card_ctria3, card_ctria6, card_grid, card_param
   use epcont_deck_case_control, only: case_control, read_case_control
   use epcont_deck_source, only: read_source, source
   use epcont_deck_table, only: card_table
@@ -41,7 +43,52 @@ contains
     deck%whole = faults%errors == 0
     call read_case_control(deck%source, deck%case_control, bulk, faults)
     call read_bulk(deck%source, bulk, any(deck%subcase%temperature%id > 0), deck%card, faults)
+    if (.not. deck%source%ended) call check_end(deck, faults)
   end subroutine read_deck
+
+  !> Without ENDDATA a deck looks cut off, unless its header counts the nodes and elements that were read.
+  subroutine check_end(deck, faults)
+    type(deck_type), intent(inout) :: deck       !! what was read of it; it is not whole if it looks cut off
+    type(diagnostics), intent(inout) :: faults   !! an error or a note is added
+    integer, parameter :: elements(*) = [card_ctria3, card_ctria6, card_cquad4, card_cquad8, card_ctrax3, &
+                                         card_ctrax6, card_cbar, card_cgap, card_celas1, card_celas2]
+    integer :: counts(2)
+    type(place_type) :: place
+
+    call read_header(deck%source, counts, place)
+    deck%whole = deck%whole .and. all(counts == [deck%card(card_grid)%count, sum(deck%card(elements)%count)])
+    if (place%line > 0 .and. deck%whole) then
+      call faults%add_note(place, 'ENDDATA is missing; nodes and elements are as many as this header says')
+    else
+      deck%whole = .false.
+      call faults%add_error(place_type(), 'ENDDATA is missing: the deck looks cut off', &
+                            'ENDDATA as the last line')
+    end if
+  end subroutine check_end
+
+  !> The numbers of nodes and elements in a header by pyNastran: comments such as `$pyNastran: nnodes=9`.
+  subroutine read_header(lines, counts, place)
+    type(source), intent(in) :: lines        !! of the deck
+    integer, intent(out) :: counts(2)        !! -1 if there is none
+    type(place_type), intent(out) :: place   !! of the last of them
+    character(len=*), parameter :: key(2) = [character(len=10) :: 'NNODES=', 'NELEMENTS=']
+    integer, parameter :: longest = 80       ! line of a header
+    character(len=:), allocatable :: text
+    integer :: at, k, line, status
+
+    counts = -1
+    do line = 1, lines%count
+      text = upper(lines%whole_line(line, 1, longest))
+      if (index(text, '$PYNASTRAN:') /= 1) cycle
+      do k = 1, size(key)
+        at = index(text, trim(key(k)))
+        if (at == 0) cycle
+        read (text(at + len_trim(key(k)):), '(i20)', iostat=status) counts(k)
+        if (status /= 0) counts(k) = -1
+        place = place_type(line, 1, len(text))
+      end do
+    end do
+  end subroutine read_header
 
   !> The text, unless it is to be listed, and the fields of all cards but the parameters are done with: their
   !! memory is free for what follows. How many cards there are remains known.

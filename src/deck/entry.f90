@@ -4,7 +4,7 @@ module epcont_deck_entry
   use epcont_base_text, only: formatted, text_of
   implicit none
   private
-  public :: field_entry, card_entry, new_field, number_of
+  public :: field_entry, card_entry, listed, new_field, number_of
 
   !> Kinds of fields.
   integer, parameter, public :: &

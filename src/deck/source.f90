@@ -46,6 +46,7 @@ module epcont_deck_source
     integer :: count = 0                         !! number of lines
     type(source_line), allocatable :: line(:)    !! [count or more]
     type(source_file), allocatable :: files(:)   !! [files]
+    logical :: ended = .false.                   !! the deck has its ENDDATA
   contains
     procedure :: file_name
     procedure :: text_of_line
@@ -63,7 +64,6 @@ contains
     type(diagnostics), intent(inout) :: faults   !! inside, which are added
     type(error_type), allocatable, intent(out) :: error   !! where the deck itself cannot be read
     character(len=:), allocatable :: trouble
-    logical :: ended
 
     allocate (lines%files(0))
     lines%text = ''
@@ -73,9 +73,7 @@ contains
       return
     end if
     allocate (lines%line(1 + lines%used/usual_line))
-    call cut(1, ended)
-    if (.not. ended) call faults%add_error(place_type(), 'ENDDATA is missing: the deck looks cut off', &
-        'ENDDATA as the last line')
+    call cut(1, lines%ended)
 
   contains
 

@@ -46,6 +46,7 @@ module epcont_model_arrays
     !> In their order along the boundary, in either sense; none: they were not sound
     integer, allocatable :: node(:)
     integer :: id = 0                         !! of its card
+    logical :: is_named = .false.             !! by a contact, perhaps one that is off in this load case
     integer, allocatable :: side(:)           !! of the outline, with the body to the left; found
     !> Least and largest coordinates of their ends [length] [2, 2]; found
     real(wp) :: box(directions, 2) = 0.0_wp

@@ -2,6 +2,7 @@
 !> bears one case at a time (`put_case`).
 module epcont_model_load_cases
   use epcont_base_kinds, only: wp
+  use epcont_base_text, only: text_of
   use epcont_element_kinematics, only: directions
   use epcont_model_arrays, only: angle, body_load, side_pressure
   use epcont_model_body_forces, only: put_body_forces
@@ -48,6 +49,7 @@ module epcont_model_load_cases
     integer :: set = 0                          !! by its id
     integer :: c = 0, node = 0                  !! direction and node; or `angle` and platen
     real(wp) :: displacement = 0.0_wp           !! [length]
+    integer :: card = 0, field = 0              !! SPC or SPCD that says so, and its field with the node
   end type set_displacement
 
   !> Temperatures of all nodes.
@@ -65,6 +67,9 @@ module epcont_model_load_cases
     integer :: temperatures = 0                 !! set of these, by its id; 0: none
     integer :: contact = 0                      !! the only BCONP that it has; contact_all or contact_none
     integer :: pattern = 1                      !! of the freedoms that supports hold, and contacts
+  contains
+    procedure :: share_of
+    procedure :: where_text
   end type load_case
 
   !> All cases, and what their sets say.
@@ -105,22 +110,22 @@ contains
     associate (case => cases%case(k))
       model%load = 0.0_wp
       do i = 1, size(cases%force)
-        share = share_of(case, cases%force(i)%set)
+        share = case%share_of(cases%force(i)%set)
         associate (load => model%load(:, cases%force(i)%node))
           if (share /= 0.0_wp) load = load + share*cases%force(i)%force
         end associate
       end do
       do i = 1, size(cases%pressure)
-        share = share_of(case, cases%pressure(i)%set)
+        share = case%share_of(cases%pressure(i)%set)
         if (share /= 0.0_wp) call add_pressure(model, cases%pressure(i)%given, share)
       end do
       model%body_load = cases%body%given
       do i = 1, size(cases%body)
-        model%body_load(i)%factor = share_of(case, cases%body(i)%set)*model%body_load(i)%factor
+        model%body_load(i)%factor = case%share_of(cases%body(i)%set)*model%body_load(i)%factor
       end do
       call put_body_forces(model)
       do i = 1, size(cases%moment)
-        share = share_of(case, cases%moment(i)%set)
+        share = case%share_of(cases%moment(i)%set)
         call add_moment(model, cases%moment(i)%platen, share*cases%moment(i)%moment, model%load)
       end do
     end associate
@@ -158,12 +163,7 @@ contains
     end do
     do i = 1, size(cases%moved)   ! SPCD stands in place of SPC
       associate (at => cases%moved(i))
-        if (share_of(case, at%set) /= 0.0_wp) prescribed(at%c, at%node) = 0.0_wp
-      end associate
-    end do
-    do i = 1, size(cases%moved)
-      associate (at => cases%moved(i))
-        prescribed(at%c, at%node) = prescribed(at%c, at%node) + share_of(case, at%set)*at%displacement
+        if (any(case%set == at%set)) prescribed(at%c, at%node) = case%share_of(at%set)*at%displacement
       end associate
     end do
     model%prescribed = prescribed(:directions, :model%nodes)
@@ -172,7 +172,7 @@ contains
 
   !> The factor of a set of loads in a case; 0 where it is none of it.
   pure real(wp) function share_of(case, set) result(share)
-    type(load_case), intent(in) :: case
+    class(load_case), intent(in) :: case
     integer, intent(in) :: set
     integer :: i
 
@@ -181,4 +181,13 @@ contains
       if (case%set(i) == set) share = share + case%factor(i)
     end do
   end function share_of
+
+  !> ` in SUBCASE 2`; empty if the deck has no SUBCASE.
+  pure function where_text(case) result(text)
+    class(load_case), intent(in) :: case
+    character(len=:), allocatable :: text
+
+    text = ''
+    if (case%id > 0) text = ' in SUBCASE '//text_of(case%id)
+  end function where_text
 end module epcont_model_load_cases

@@ -3,13 +3,14 @@ module deck_faults
   use deck_texts, only: bars, read_lines, told
   use epcont_deck_deck, only: deck_type
   use epcont_base_diagnostic, only: diagnostics
-  use epcont_deck_render, only: render
+  use epcont_deck_render, only: render, render_notes
   use epcont_build_build, only: build_model, tell
+  use epcont_model_load_cases, only: load_cases
   use epcont_model_model, only: model_type
   use epcont_plan_planned_scene, only: planned_scene
   implicit none
   private
-  public :: faults_of, model_of, told
+  public :: faults_of, model_of, notes_of, told
 
   !> A square of two triangles: nodes 1 to 4, elements 1 and 2; two of its nodes held.
   character(len=*), parameter, public :: square = &
@@ -34,20 +35,52 @@ module deck_faults
 
 contains
 
-  !> What is said of a deck, its lines ended by bars; the lines of the answer are, too.
+  !> The errors and warnings of a deck, its lines ended by bars; the lines of the answer are, too.
   function faults_of(cards) result(words)
     character(len=*), intent(in) :: cards
     character(len=:), allocatable :: words
     type(deck_type) :: deck
     type(diagnostics) :: faults
-    type(planned_scene) :: scene
 
-    call read_lines(cards//'ENDDATA|', deck, faults)
-    call build_model(deck, scene%model, faults)
-    if (faults%errors == 0) call scene%find_motions(faults)
-    call tell(deck, scene%model%kinds, faults)
+    call check_deck(cards, deck, faults)
     words = bars(render(faults, deck%source))
   end function faults_of
+
+  !> The warnings and notes of a deck, as the listing has them.
+  function notes_of(cards) result(words)
+    character(len=*), intent(in) :: cards
+    character(len=:), allocatable :: words
+    type(deck_type) :: deck
+    type(diagnostics) :: faults
+
+    call check_deck(cards, deck, faults)
+    words = bars(render_notes(faults, deck%source))
+  end function notes_of
+
+  !> Read a deck and check it, with the supports and contacts of each load case.
+  subroutine check_deck(cards, deck, faults)
+    character(len=*), intent(in) :: cards
+    type(deck_type), intent(out) :: deck
+    type(diagnostics), intent(out) :: faults
+    type(diagnostics) :: of_pattern
+    type(load_cases) :: cases
+    type(planned_scene) :: scene
+    integer :: i, p
+
+    call read_lines(cards//'ENDDATA|', deck, faults)
+    call build_model(deck, scene%model, faults, cases)
+    if (faults%errors == 0) call scene%find_motions(faults)
+    call tell(deck, scene%model%kinds, faults, 1)
+    do p = 2, cases%patterns
+      of_pattern = diagnostics()
+      call build_model(deck, scene%model, of_pattern, of_pattern=p)
+      if (of_pattern%errors == 0) call scene%find_motions(of_pattern)
+      call tell(deck, scene%model%kinds, of_pattern, findloc(cases%case%pattern, p, dim=1))
+      do i = 1, of_pattern%count
+        if (.not. faults%has(of_pattern%list(i))) call faults%add(of_pattern%list(i))
+      end do
+    end do
+  end subroutine check_deck
 
   !> The scene of a deck that is sound, its lines ended by bars.
   function model_of(cards) result(model)
