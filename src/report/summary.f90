@@ -186,7 +186,8 @@ contains
       call put('iteration_error_force', none, rounding, run%answer%history(last)%force_error, &
                when(size(run%answer%history) > 1 .and. run%model%pairs > 0, &
                     'iteration error, of the largest force'))
-      if (run%model%controls%paper_ratio) call put('stress_below_curve', none, part, run%answer%shortfall)
+      if (run%model%controls%paper_ratio .and. run%iteration%yields) &
+        call put('stress_below_curve', none, part, run%answer%shortfall)
     end subroutine put_iteration
 
     !> What the mesh makes of the figures; `max_pressure_is` unbounded, or not resolved.
