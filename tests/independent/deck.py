@@ -135,10 +135,10 @@ class Deck:
                 found += ([(node, card[2], 0.0) for node in ids(card[3:])] if card[0] == "SPC1"
                           else [(int(card[i]), card[i + 1], real(at(card, i + 2))) for i in (2, 5) if at(card, i)])
         for card in self.of("SPCD"):
-            factor = self.loads().get(int(card[1]), 0.0)
+            factor = self.loads().get(int(card[1]))
             for node, digit, value in [(int(card[i]), digit, real(at(card, i + 2))) for i in (2, 5) if at(card, i) for digit in card[i + 1]]:
-                if factor:
-                    moved[node, digit] = moved.get((node, digit), 0.0) + factor * value
+                if factor is not None:
+                    moved[node, digit] = factor * value
         return found + [(node, digit, value) for (node, digit), value in moved.items()]
 
     def frames(self):
@@ -202,7 +202,7 @@ def take_case_control(deck, lines):
     """What stands above the first SUBCASE holds for all."""
     now = deck.case
     for line in lines:
-        match = re.match(r"\s*(?:(SPC|LOAD)|(TEMP|BCON|SUBC)[A-Z]*)(?:\((?:LOAD|BOTH)\))?[\s=]\s*=?\s*(\d+)\s*$", line)
+        match = re.match(r"\s*(?:(SPC|LOAD)|(TEMP|BCON|SUBC)[A-Z]*)(?:\s*\(\s*(?:LOAD|BOTH)\s*\))?[\s=]\s*=?\s*(\d+)\s*$", line)
         off = re.match(r"\s*BCON[A-Z]*[\s=]\s*=?\s*(ALL|NONE)\s*$", line)
         if match and match[2] == "SUBC":
             now = dict(deck.case, SUBCASE=int(match[3]))
