@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 KNOWN = {"GRID", "CTRIA3", "CTRIA6", "CQUAD4", "CQUAD8", "CTRAX3", "CTRAX6", "PSHELL", "PSOLID", "MAT1", "SPC", "SPC1", "FORCE", "PLOADX1",
          "RBE2", "SUPORT", "CORD2R", "CGAP", "PGAP", "CBAR", "PARAM", "SPCADD", "LOAD", "MATS1", "TABLES1", "BLSEG", "BCONP", "SPCD", "TEMP",
-         "TEMPD", "GRAV", "RFORCE"}
+         "TEMPD", "GRAV", "RFORCE", "MOMENT", "MPC", "MPCADD", "CELAS1", "CELAS2", "PELAS"}
 
 #: Columns of the tables, by what their largest is the measure of.
 KINDS = {"contact": {"force": ["force"], "length": ["initial_gap", "gap"], "pressure": ["pressure"], "normal": ["nx", "ny"],
@@ -41,7 +41,7 @@ class Deck:
             contact = case.get("BCON", "ALL")
             keep = [card for card in self.cards
                     if contact == "ALL" or card[0] not in ("CGAP", "BCONP") or card[0] == "BCONP" and card[1] == str(contact)]
-            yield Deck(case, keep)
+            yield Deck(case, keep, self.cases)
 
     @property
     def number(self):
@@ -50,7 +50,7 @@ class Deck:
 
     def loads(self):
         """Factors of the sets of loads, by their ids."""
-        sets = [int(card[1]) for name in ("FORCE", "PLOADX1", "SPCD", "GRAV", "RFORCE", "LOAD") for card in self.of(name)]
+        sets = [int(card[1]) for name in ("FORCE", "PLOADX1", "SPCD", "GRAV", "RFORCE", "MOMENT", "LOAD") for card in self.of(name)]
         chosen = self.case.get("LOAD", 0 if "several" in self.case else next(iter(sets), 0))
         if not chosen and len(set(sets)) > 1 and "several" not in self.case:
             raise DeckError("several sets of loads and no choice")
@@ -127,6 +127,43 @@ class Deck:
                               axis * real(at(card, 4)), axis * real(at(card, 9))))
         return found
 
+    def rotating(self):
+        """Master nodes of RBE2 that rotate: a SUPORT, a displacement or a MOMENT of a set that some load case uses names this."""
+        cases = [Deck(case, self.cards) for case in self.cases or [self.case]]
+        supports, loads = {case.supports() for case in cases}, {chosen for case in cases for chosen in case.loads()}
+        named = {int(card[i]) for card in self.of("SUPORT") for i in range(1, len(card) - 1, 2) if "6" in card[i + 1]}
+        for name, sets in (("SPC", supports), ("SPCD", loads)):
+            named |= {int(card[i]) for card in self.of(name) for i in (2, 5) if int(card[1]) in sets and "6" in at(card, i + 1) and real(at(card, i + 2))}
+        named |= {int(card[2]) for card in self.of("MOMENT") if int(card[1]) in loads}
+        return [node for node in dict.fromkeys(int(card[2]) for card in self.of("RBE2")) if node in named]
+
+    def moments(self):
+        """Counter-clockwise, by master node."""
+        found, factors = {}, self.loads()
+        for card in self.of("MOMENT"):
+            moment = factors.get(int(card[1]), 0.0) * real(card[4]) * real(at(card, 7))
+            found[int(card[2])] = found.get(int(card[2]), 0.0) + moment
+        return found
+
+    def equations(self):
+        """Of each MPC of the case its terms ((node, component), coefficient), the dependent one first."""
+        sets = [int(card[1]) for name in ("MPC", "MPCADD") for card in self.of(name)]
+        chosen = self.case.get("MPC", next(iter(sets), 0))
+        used = {chosen} | {number for card in self.of("MPCADD") if int(card[1]) == chosen for number in ids(card[2:])}
+        for card in self.of("MPC"):
+            if int(card[1]) in used:   # two terms a line: fields 3 to 8, then 4 to 9 less the first
+                items = [card[i:i + 3] for k in range(2, len(card), 8) for i in (k, k + 3) if at(card, i)]
+                terms = [((int(node), int(digit) - 1), real(value)) for node, digit, value in items]
+                yield terms[:1] + [term for term in terms[1:] if term[1]]
+
+    def springs(self):
+        """Of each spring (id, stiffness, [its ends (node, component), None at the ground])."""
+        stiffness = {int(card[i]): real(card[i + 1]) for card in self.of("PELAS") for i in (1, 5) if at(card, i)}
+        for card in self.of("CELAS1") + self.of("CELAS2"):
+            ends = [(integer(at(card, i)), integer(at(card, i + 1)) - 1) for i in (3, 5)]
+            value = stiffness[int(card[2])] if card[0] == "CELAS1" else real(card[2])
+            yield int(card[1]), value, [end if end[0] else None for end in ends]
+
     def held(self):
         """(node, digits, value) of GRID, of the SPC1 and SPC of the case, and of its SPCDs, which stand in place of these."""
         found, chosen, moved = [(int(card[1]), at(card, 8), 0.0) for card in self.of("GRID")], self.supports(), {}
@@ -202,7 +239,7 @@ def take_case_control(deck, lines):
     """What stands above the first SUBCASE holds for all."""
     now = deck.case
     for line in lines:
-        match = re.match(r"\s*(?:(SPC|LOAD)|(TEMP|BCON|SUBC)[A-Z]*)(?:\s*\(\s*(?:LOAD|BOTH)\s*\))?[\s=]\s*=?\s*(\d+)\s*$", line)
+        match = re.match(r"\s*(?:(SPC|LOAD|MPC)|(TEMP|BCON|SUBC)[A-Z]*)(?:\s*\(\s*(?:LOAD|BOTH)\s*\))?[\s=]\s*=?\s*(\d+)\s*$", line)
         off = re.match(r"\s*BCON[A-Z]*[\s=]\s*=?\s*(ALL|NONE)\s*$", line)
         if match and match[2] == "SUBC":
             now = dict(deck.case, SUBCASE=int(match[3]))

@@ -4,16 +4,19 @@ import scipy.sparse as sp
 
 from body import body_forces
 from boundary import boundary, edge_forces
-from deck import DeckError, at, ids, real
+from deck import DeckError, at, real
 from kinds import KINDS
 from lines import pairs_of_lines
 from shapes import folded, strain_matrices
+from ties import end_of_chains, resolved, rigid_ties, sums
 from yielding import Law
 
 
 class Model:
-    def __init__(self, deck):
-        self.deck = deck
+    """`told`: nodes of pairs of lines that the other program has: pairs that came near as loads moved them are found from these."""
+
+    def __init__(self, deck, told=None):
+        self.deck, self.told = deck, told
         self.nodes()
         self.materials()
         self.elements()
@@ -117,6 +120,10 @@ class Model:
             strain[which] += np.einsum("eij,ej->ei", b, u[freedom])
         return strain
 
+    def unbalanced(self, u, stress, force):
+        """Forces that are missing at all nodes: of stresses, springs, loads and contact forces."""
+        return self.nodal(stress) + self.stretch.T @ (self.pull @ u) - self.force - self.gap_matrix.T @ force
+
     def mean(self, values):
         """Of each element, over the volumes of its points."""
         whole = np.bincount(self.owner, self.volume, len(self.element))
@@ -130,9 +137,9 @@ class Model:
         return force
 
     def stiffness(self, d):
-        """Of material matrices [n, 4, 4]."""
+        """Of material matrices [n, 4, 4], and of the springs."""
         n = 2 * len(self.node)
-        total = sp.csr_matrix((n, n))
+        total = self.stretch.T @ self.pull
         for which, freedom, b in self.parts:
             values = b.transpose(0, 2, 1) @ (self.volume[which, None, None] * (d[which] @ b))
             rows, columns = np.repeat(freedom, freedom.shape[1], axis=1), np.tile(freedom, (1, freedom.shape[1]))
@@ -140,31 +147,44 @@ class Model:
         return total
 
     def freedoms(self):
-        """u = tie @ v + held: v the freedoms left."""
-        n = 2 * len(self.node)
-        held = np.full(n, np.nan)
-        master = np.arange(n)
-        for g, digits, value in self.deck.held():
-            for digit in set(digits) & {"1", "2"}:
-                held[2 * self.row[g] + int(digit) - 1] = value
-        for card in self.deck.of("RBE2"):
-            for g in ids(card[4:]):
-                for digit in set(card[3]) & {"1", "2"}:
-                    master[2 * self.row[g] + int(digit) - 1] = 2 * self.row[int(card[2])] + int(digit) - 1
-        for _ in range(50):
-            master = master[master]
-        self.leader = {(f // 2, f % 2): (int(m) // 2, int(m) % 2) for f, m in enumerate(master) if m != f}
-        own = [i for i in range(n) if master[i] == i and np.isnan(held[i])]
-        number = {f: j for j, f in enumerate(own)}
-        rows = [i for i in range(n) if master[i] in number]
-        self.tie = sp.csr_matrix((np.ones(len(rows)), (rows, [number[master[i]] for i in rows])), shape=(n, len(own)))
-        self.held = np.where(np.isnan(held[master]), 0.0, held[master])
-        self.is_held = ~np.isnan(held)
-        self.support = []
-        for card in self.deck.of("SUPORT"):
-            for i in range(1, len(card) - 1, 2):
-                if card[i]:
-                    self.support += [(int(card[i]), int(digit)) for digit in card[i + 1] if digit in "12"]
+        """u = tie @ v + held: v the DOFs left. Those of `lead` are of all nodes, then the rotations of the master nodes of RBE2."""
+        n, self.rotating = 2 * len(self.node), self.deck.rotating()
+        rigid = rigid_ties(self.deck, self.rotating)
+        terms = resolved(rigid, sums(self.deck, lambda node: self.x[self.row[node]], self.rotating))
+        column = {(node, c): 2 * i + c for i, node in enumerate(self.node) for c in (0, 1)}
+        column.update({(node, 2): n + k for k, node in enumerate(self.rotating)})
+        entries = [(i, column[master], weight) for dof, i in column.items() for master, weight in terms.get(dof, {dof: 1.0}).items()]
+        rows, columns, weights = zip(*entries)
+        self.lead = sp.csr_matrix((weights, (rows, columns)), shape=(len(column), len(column)))[:n]
+        given = np.full(len(column), np.nan)
+        for node, digits, value in self.deck.held():
+            for dof in [(node, int(digit) - 1 if digit in "12" else 2) for digit in set(digits) & set("126")]:
+                if dof in column:
+                    given[column[dof]] = value
+        self.dof_held, self.given = ~np.isnan(given), np.nan_to_num(given)
+        self.own = [i for dof, i in column.items() if dof not in terms and not self.dof_held[i]]
+        self.tie, self.held, self.is_held = self.lead[:, self.own], self.lead @ self.given, self.dof_held[:n]
+        self.leader = {(self.row[node], c): (self.row[end[0]], end[1]) for (node, c), end in end_of_chains(rigid).items()}
+        support = [(int(card[i]), int(digit)) for card in self.deck.of("SUPORT") for i in range(1, len(card) - 1, 2) if card[i] for digit in card[i + 1]]
+        at = [(node, digit, column.get((node, min(digit, 3) - 1))) for node, digit in support if digit in (1, 2, 6)]
+        self.support = [(node, digit, i) for node, digit, i in at if i is not None and not self.dof_held[i]]
+        self.twist = np.zeros(len(column))
+        for node, moment in self.deck.moments().items():
+            self.twist[column[node, 2]] = moment
+        self.springs = list(self.deck.springs())
+        self.stretch, self.pull = (sp.lil_matrix((len(self.springs), n)) for _ in range(2))
+        for k, (_, stiffness, ends) in enumerate(self.springs):
+            for end, sign in zip(ends, (-1.0, 1.0)):
+                if end:
+                    self.stretch[k, column[end]] = sign
+                    self.pull[k, column[end]] = sign * stiffness
+        self.stretch, self.pull = self.stretch.tocsr(), self.pull.tocsr()
+
+    def masters(self, v):
+        """Displacements of all DOFs that depend on nothing."""
+        values = self.given.copy()
+        values[self.own] = v
+        return values
 
     def motion(self, row, c):
         """What moves a node along a direction: a freedom, or how far it is held."""
@@ -186,7 +206,8 @@ class Model:
         held = {(int(f) // 2, int(f) % 2) for f in np.flatnonzero(self.is_held)}
         everywhere = {(row, c) for row in range(len(self.node)) for c in (0, 1) if self.leader.get((row, c), (row, c)) in held}
         self.stands_on = [()] * len(found)
-        for contact in pairs_of_lines(self.deck, self.parameter, self.boundary, self.x, everywhere, self.motion, self.row.get):
+        for contact in pairs_of_lines(self.deck, self.parameter, self.boundary, self.x, everywhere, self.motion, self.row.get,
+                                     None if self.told is None else [self.row[node] for node in self.told]):
             self.contacts.append(range(len(found), len(found) + len(contact)))
             for pair in contact:
                 found.append((self.node[pair.node], (pair.other(), pair.node), pair.normal, pair.gap, pair.weights()))

@@ -5,7 +5,7 @@
 
 One stiffness matrix of all bodies with the free motions left in it; a saddle-point matrix of displacements and contact
 forces, factored afresh (SuperLU) for every guess of the set of touching pairs. The guess: all pairs exchanged at once
-(primal-dual active set); where that goes round, one at a time, the first wrong one (Murty), with weak springs at the
+(primal-dual active set); if that goes round in a circle, one at a time, the first wrong one (Murty), with weak springs at the
 SUPORT freedoms until the set is found. The answer is solved without springs and refined.
 
 Yielding (yielding.py): secant steps, each with its contact, until they settle; then Newton with tangents by
@@ -46,7 +46,7 @@ class Problem:
         self.n = (model.gap_matrix @ model.tie).tocsr()
         self.g = model.initial + model.gap_matrix @ model.held
         self.exchanges = 0
-        self.u = np.zeros(2 * len(model.node))
+        self.touching = np.ones(len(self.g), bool)   # where the search begins
         nothing = np.zeros((len(model.volume), 4))
         self.linearise(model.of_points("secant_matrix", nothing, 4, 4), nothing)
         self.stiff = abs(self.k.diagonal()).max()
@@ -57,15 +57,12 @@ class Problem:
         self.full = model.stiffness(d)
         self.k = (model.tie.T @ self.full @ model.tie).tocsc()
         unmoved = initial - np.einsum("eij,ej->ei", d, model.free)
-        self.f = model.tie.T @ (model.force - model.nodal(unmoved) - self.full @ model.held)
+        self.f = model.tie.T @ (model.force - model.nodal(unmoved) - self.full @ model.held) + model.twist[model.own]
 
     def springs(self, factor):
         """Weak springs at the SUPORT freedoms."""
-        weak = np.zeros(self.k.shape[0])
-        for node, digit in self.model.support:
-            column = self.model.tie[2 * self.model.row[node] + digit - 1].indices
-            weak[column] = factor * self.stiff
-        return sp.diags(weak)
+        weak = np.isin(self.model.own, [i for *_, i in self.model.support])
+        return sp.diags(factor * self.stiff * weak)
 
     def solve(self, touching, spring=0.0):
         """Displacements, forces of the touching pairs, gaps."""
@@ -102,18 +99,19 @@ class Problem:
         return np.where(touching, force < -1e-11 * total, gap < -1e-11 * reach)
 
     def find(self, spring, one_by_one, limit):
-        touching = np.ones(len(self.g), bool)
+        touching, tried = self.touching, set()
         for _ in range(limit):
+            if not one_by_one and touching.tobytes() in tried:
+                return None
+            tried.add(touching.tobytes())
             answer = self.solve(touching, spring)
             if answer is None:
                 return None
             wrong = self.wrong(touching, *answer)
             if not wrong.any():
+                self.touching = touching
                 return touching, answer
-            if one_by_one:
-                touching[np.argmax(wrong)] ^= True
-            else:
-                touching = touching ^ wrong
+            touching = touching ^ (wrong if not one_by_one else np.arange(len(wrong)) == np.argmax(wrong))
         return None
 
     def check_free(self):
@@ -140,7 +138,7 @@ class Problem:
         """Largest unbalanced force at a free freedom, of the stresses on the curve."""
         model = self.model
         stress = model.respond(model.strains(u))[0]
-        rest = model.tie.T @ (model.nodal(stress) - model.force - model.gap_matrix.T @ force)
+        rest = model.tie.T @ model.unbalanced(u, stress, force) - model.twist[model.own]
         return abs(rest).max(initial=0.0) / model.nodal(stress, abs).max()
 
     def yielding_answer(self, found):
@@ -219,8 +217,9 @@ def tables(problem, v, force, gap, touching):
     model = problem.model
     u = model.tie @ v + model.held
     stress, total, secant, plastic = model.respond(model.strains(u))
-    reaction = model.nodal(stress) - model.force - model.gap_matrix.T @ force
-    reaction = np.where(model.is_held, reaction, 0.0).reshape(-1, 2)
+    reaction = np.where(model.dof_held, model.lead.T @ model.unbalanced(u, stress, force) - model.twist, 0.0)
+    reaction, moments = reaction[:len(u)].reshape(-1, 2), reaction[len(u):]
+    masters, pulls = model.masters(v), model.pull @ u
     u = u.reshape(-1, 2)
     within = {int(row) for members in model.members for row in members}
     places = [(b if b in within else a, n, nodes) for (a, b), n, nodes in zip(model.ends, model.normal, model.pair_weights)]
@@ -246,10 +245,12 @@ def tables(problem, v, force, gap, touching):
                ["plastic_elements", int(yielded.sum()), ""],
                ["max_equivalent_stress", float(mises.max(initial=0.0)), ""],
                ["max_displacement", float(np.hypot(*u.T).max()), ""]]
-    for node, digit in model.support:
-        if model.is_held[2 * model.row[node] + digit - 1]:
-            continue
-        summary.append([f"approach_{node}_{digit}", u[model.row[node], digit - 1], ""])
+    summary += [[f"approach_{node}_{digit}", masters[i], ""] for node, digit, i in model.support]
+    for k, node in enumerate(model.rotating, len(model.is_held)):
+        summary.append([f"angle_{node}", masters[k], ""])
+        if model.dof_held[k]:
+            summary.append([f"moment_{node}", moments[k - len(model.is_held)], ""])
+    summary += [[f"spring_{number}", pull, ""] for (number, *_), pull in zip(model.springs, pulls)]
     return {"summary": (["key", "value", "unit"], summary),
             "contact": ("pair ga gb x y nx ny initial_gap force pressure gap status".split(), contact),
             "nodes": ("node x y ux uy rx ry".split(), nodes),
@@ -260,11 +261,12 @@ def text(value):
     return f"{value:.17g}" if isinstance(value, float) else str(value)
 
 
-def solve(path):
-    """(number of the load case, its tables, its problem), or in their place None and why not, of each case of a deck."""
+def solve(path, told=None):
+    """(number of the load case, its tables, its problem), or in their place None and why not, of each case of a deck. `told`: nodes of the
+    pairs of lines of each, if another program has found them."""
     for deck in read(path).by_case():
         try:
-            problem = Problem(Model(deck))
+            problem = Problem(Model(deck, told and told.get(deck.number)))
             yield deck.number, tables(problem, *problem.answer()), problem
         except (DeckError, NoEquilibrium) as error:
             yield deck.number, None, error

@@ -1,17 +1,21 @@
 #!/usr/bin/env python3
-"""Write random scenes that yield: stacks of up to four blocks, tongues in sockets held by contact alone, tubes and hollow balls
+"""Write random models that yield: stacks of up to four blocks, tongues in sockets held by contact alone, tubes and hollow balls
 in one another, and blocks or rings of any element that press one another, node on node or line on line.
 
     . tools/venv && python tests/independent/write_random.py DIRECTORY [-n 40] [--seed 1]
-    python tests/independent/compare.py build/release/epcont DIRECTORY/*.dat --tolerance 1e-7
 
-Each block has a material of its own: elastic, bilinear, flat, or a curve of five points; plane strain or plane stress;
-meshes with random places, gaps, loads, prescribed displacements, temperatures, gravity and spins. Not kept: the seed makes them again.
+`compare.py PROGRAM --random 300 --seed 1` writes them, runs both programs and compares.
+
+Each block has a material of its own: elastic, bilinear, flat, or a curve of five points; plane strain or plane stress; meshes with random
+coordinates, gaps, loads, moments, prescribed displacements, temperatures, gravity and spins; RBE2, MPC and springs (random_ties.py); one to
+five load cases. Not kept: the seed makes them again.
 """
 import argparse
 import math
 import pathlib
 import random
+
+from random_ties import ties
 
 HEAT = 10.0   # temperatures, about zero: strains up to that of yielding
 
@@ -22,12 +26,29 @@ class Scene:
         self.chance = random.Random(repr(rng.getstate()[1][:4]))   # of temperatures alone
         self.heated = self.chance.random() < 0.5
         self.rng, self.lines, self.nodes, self.elements, self.pairs, self.materials = rng, [], 0, 0, 0, 0
+        self.spot, self.bodies = {}, []   # coordinates of the nodes, and the nodes of each body
+        self.held, self.support = {}, []  # prescribed values by (node, digit), and SUPORT (node, digit)
+        self.control = []                 # statements of case control
         self.lines += [] if rings else [f"PARAM,PLANE,{'STRAIN' if strain else 'STRESS'}"]
         self.lines += ["PARAM,GAPGEOM,YES", "CORD2R,1,,0.0,0.0,0.0,0.0,0.0,1.0,+", "+,0.0,1.0,0.0", "PGAP,900,0.0"]
 
     def add(self, *fields):
         self.lines.append(",".join(f"{f:.12G}" + ("" if "." in f"{f:.12G}" else ".0" if "E" not in f"{f:.12G}" else "")
                                    if isinstance(f, float) else str(f) for f in fields))
+
+    def grid_point(self, x, y):
+        """A node of the last body."""
+        self.nodes += 1
+        self.spot[self.nodes] = (x, y)
+        self.bodies[-1].append(self.nodes)
+        self.add("GRID", self.nodes, "", float(x), float(y))
+        return self.nodes
+
+    def hold(self, digits, *nodes, value=0.0):
+        self.held.update({(node, digit): value for node in nodes for digit in digits})
+
+    def suport(self, *pairs):
+        self.support += pairs
 
     def material(self, scale=1.0):
         """A section of thickness 0.5 to 2 on a random material; returns its number."""
@@ -39,7 +60,7 @@ class Scene:
         else:
             self.add("PSHELL", number, number, rng.uniform(0.5, 2.0))
         self.add("MAT1", number, young, "", nu, rng.uniform(0.5, 2.0), *self.expansion())
-        kind = rng.choice(["elastic", "bilinear", "flat", "curve", "curve"])
+        kind = rng.choice(3 * ["elastic", "bilinear", "curve", "curve"] + ["flat"])
         if kind in ("bilinear", "flat"):
             self.add("MATS1", number, "", "PLASTIC", young * rng.uniform(0.01, 0.3) if kind == "bilinear" else 0.0, 1, 1, stress)
         elif kind == "curve":
@@ -67,13 +88,12 @@ class Scene:
 
     def grid(self, xs, ys, section, keep=lambda x, y: True):
         """Nodes by (column, row)."""
+        self.bodies.append([])
         at = {}
         cells = [(i, j) for i in range(len(xs) - 1) for j in range(len(ys) - 1)
                  if keep((xs[i] + xs[i + 1]) / 2, (ys[j] + ys[j + 1]) / 2)]
         for i, j in sorted({(i + a, j + b) for i, j in cells for a in (0, 1) for b in (0, 1)}):
-            self.nodes += 1
-            at[i, j] = self.nodes
-            self.add("GRID", self.nodes, "", float(xs[i]), float(ys[j]))
+            at[i, j] = self.grid_point(xs[i], ys[j])
         for i, j in cells:
             a, b, c, d = at[i, j], at[i + 1, j], at[i + 1, j + 1], at[i, j + 1]
             for corners in ((a, b, c), (a, c, d)) if self.rng.random() < 0.5 else ((a, b, d), (b, c, d)):
@@ -85,6 +105,7 @@ class Scene:
         """Elements of 3 or 4 corners, with middles or without, turning either way, the inner nodes out of line. Nodes by
         (column, row), where middles lie at halves; `place` moves the whole."""
         at, spot, rng = {}, {}, self.rng
+        self.bodies.append([])
 
         def node(i, j, ends=()):
             if (i, j) not in at:
@@ -92,9 +113,7 @@ class Scene:
                 reach = (0.03 if ends else 0.15) * inside
                 middle = [sum(spot[end][c] for end in ends) / 2 for c in (0, 1)] if ends else (xs[i], ys[j])
                 spot[i, j] = tuple(middle[c] + rng.uniform(-reach, reach) * (v[1] - v[0]) for c, v in ((0, xs), (1, ys)))
-                self.nodes += 1
-                at[i, j] = self.nodes
-                self.add("GRID", self.nodes, "", *(float(v) for v in place(*spot[i, j])))
+                at[i, j] = self.grid_point(*place(*spot[i, j]))
             return at[i, j]
 
         for i in range(len(xs) - 1):
@@ -110,7 +129,7 @@ class Scene:
                     if self.rings and middles:
                         ends, between = [n for two in zip(ends, between) for n in two], []
                     name = f"C{'TRAX' if self.rings else 'QUAD' if corners == 4 else 'TRIA'}{len(ends + between)}"
-                    self.add(name, self.elements, section, *ends, *between)
+                    self.add_long(name, self.elements, section, *ends, *between)
                     for p, q in round_it:
                         self.side[at[p], at[q]] = self.side[at[q], at[p]] = self.elements
         return at
@@ -127,22 +146,32 @@ class Scene:
         self.pairs += 1
         self.add("CGAP", 100000 + self.pairs, 900, a, b, "", "", "", 1)
 
+    def supports(self, number, held):
+        """A set of SPC1, and of SPC for values other than zero."""
+        for digit in "126":
+            nodes = [node for (node, own), value in held.items() if own == digit and not value]
+            if nodes:
+                self.add_long("SPC1", number, digit, *nodes)
+        for (node, digit), value in held.items():
+            if value:
+                self.add("SPC", number, node, digit, value)
+
     def cases(self, chance):
-        """Several load cases in half of all scenes, in any order of their numbers: sets of loads times factors, one with displacements
-        of what is held; other supports, which hold the SUPORT freedoms too, with contact or without. What case control says."""
-        if chance.random() < 0.5:
-            return []
-        held = [line for k, line in enumerate(self.lines) if line.startswith("SPC1,1,")
-                or line.startswith(",") and [own for own in self.lines[:k] if own[0] != ","][-1].startswith("SPC1,1,")]
-        self.lines += [line.replace("SPC1,1,", "SPC1,2,") for line in held]
-        for card in [line.split(",") for line in self.lines if line.startswith("SUPORT")]:
-            self.lines += [f"SPC1,2,{digit},{node}" for node, digit in zip(card[1::2], card[2::2])]
+        """Several load cases in most models, in any order of their numbers: sets of loads times factors, one with displacements
+        of what is held; other supports, which hold the SUPORT DOFs too, with contact or without. What case control says."""
+        self.supports(1, self.held)
+        if self.support:
+            self.add_long("SUPORT", *[field for pair in self.support for field in pair])
+        if chance.random() < 0.3:
+            return ["LOAD = 1"]
+        self.supports(2, {**self.held, **dict.fromkeys(self.support, 0.0)})
         forces = [line.replace("FORCE,1,", "FORCE,2,") for line in self.lines if line.startswith("FORCE,1,")]
         self.lines += forces
-        digits, node = next(line for line in held if line.startswith(f"SPC1,1,{2 if self.rings else ''}")).split(",")[2:4]
-        self.add("SPCD", 3, node, digits[0], chance.uniform(-1e-4, 1e-4))
+        for digit in ("2", "6"):
+            for node in [node for node, own in self.held if own == digit][:1]:
+                self.add("SPCD", 3, node, digit, chance.uniform(-1e-4, 1e-4))
         statements = []
-        for number in chance.sample(range(1, 100), chance.randint(2, 4)):
+        for number in chance.sample(range(1, 100), chance.randint(2, 5)):
             self.add("LOAD", 1000 + number, chance.choice([1.0, 0.5]), chance.uniform(0.1, 1.2), 1,
                      *chance.choice([(), (chance.uniform(-0.5, 0.5), 2 if forces else 1), (chance.uniform(0.5, 1.0), 3)]))
             statements += [f"SUBCASE {number}", f"LOAD = {1000 + number}", f"SPC = {chance.choice([1, 1, 2]) if statements else 1}"]
@@ -153,7 +182,7 @@ class Scene:
         if self.heated:
             self.warm()
         cases = self.cases(random.Random(self.chance.random()))
-        return "\n".join(["TEMPERATURE(LOAD) = 7"] * self.heated + cases + ["BEGIN BULK"] + self.lines + ["ENDDATA", ""])
+        return "\n".join(["TEMPERATURE(LOAD) = 7"] * self.heated + self.control + cases + ["BEGIN BULK"] + self.lines + ["ENDDATA", ""])
 
 
 def places(rng, low, high, parts, uneven=0.4):
@@ -175,17 +204,16 @@ def stack(rng):
         height = rng.uniform(0.5, 1.5)
         rows = rng.randint(2, 4)
         at = scene.grid(xs, places(rng, y, y + height, rows), scene.material())
-        scene.add("SPC1", 1, 1, *[at[0, j] for j in range(rows + 1)][:6])
+        scene.hold("1", *[at[0, j] for j in range(rows + 1)])
         if below is None:
-            for i in range(columns + 1):
-                scene.add("SPC1", 1, 2, at[i, 0])
+            scene.hold("2", *[at[i, 0] for i in range(columns + 1)])
         else:
             for i in range(columns + 1):
                 scene.pair(below[i], at[i, 0])
-            scene.add("SUPORT", at[rng.randint(0, columns), rows], 2)
+            scene.suport((at[rng.randint(0, columns), rows], "2"))
         below = [at[i, rows] for i in range(columns + 1)]
         y += height + rng.choice([0.0, 0.0, 0.0002, 0.001])
-    total = rng.uniform(0.6, 2.2)
+    scene.top, total = below, rng.uniform(0.6, 2.2)
     for i in range(columns + 1):
         scene.add("FORCE", 1, below[i], 0, total * 3.0 / (columns + 1) * rng.uniform(0.2, 1.8), rng.uniform(-0.05, 0.2), -1.0)
     return scene
@@ -202,14 +230,14 @@ def tongue(rng):
     half = 0.5 + clearance
     rows = places(rng, -half - 1.0, -half, 2) + places(rng, half, half + 1.0, 2)
     socket = scene.grid([-1.5, -0.7] + inside, rows, scene.material(), lambda x, y: x < -0.7 or abs(y) > half)
-    for j in range(6):
-        scene.add("SPC1", 1, 12, socket[0, j])
+    scene.hold("12", *[socket[0, j] for j in range(6)])
     for i in range(columns + 1):
         scene.pair(socket[i + 2, 2], at[i, 0])
         scene.pair(at[i, slot], socket[i + 2, 3])
     last = columns + len(outside)
-    scene.add("SPC1", 1, 1, at[columns, 1])
-    scene.add("SUPORT", at[0, 0], 2, at[last, 0], 2)
+    scene.hold("1", at[columns, 1])
+    scene.suport((at[0, 0], "2"), (at[last, 0], "2"))
+    scene.top, scene.straight = [at[last, j] for j in range(slot + 1)], [at[i, 0] for i in range(columns + 1)]
     scene.add("FORCE", 1, at[last, 0], 0, rng.uniform(0.03, 0.12), rng.uniform(-0.3, 0.3), rng.choice([-1.0, 1.0]))
     return scene
 
@@ -235,11 +263,16 @@ def row(at, j, middles):
     return [at[i, k] for i, k in sorted(at) if k == j and (middles or i == int(i))]
 
 
+def element(rng, rings):
+    """Corners, and whether there are mid-side nodes."""
+    return rng.choice([(3, False), (3, True)] if rings else [(3, False), (3, True), (4, False), (4, True)])
+
+
 def pressed(rng):
     """One body on another, of random elements: node on node, or a bent line on a line of other columns."""
     rings, by_lines = rng.random() < 1 / 3, rng.random() < 0.5
     scene = Scene(rng, rng.random() < 0.5, rings)
-    kinds = [rng.choice([(3, False), (3, True)] if rings else [(3, False), (3, True), (4, False)]) for _ in range(2)]
+    kinds = [element(rng, rings) for _ in range(2)]
     left = rng.choice([0.0, 1.0]) if rings else 0.0
     columns = rng.randint(4, 8)
     xs = places(rng, left, left + 3.0, columns)
@@ -253,10 +286,13 @@ def pressed(rng):
         xs = places(rng, left, left + rng.uniform(1.5, 2.9), columns)
     high = scene.mesh(xs, places(rng, 0.0, 1.0, upper_rows), scene.material(), *kinds[1],
                       lambda x, y: (x, y + gap + (1.0 - y) * (bend + dent) * (x - left) ** 2))
-    scene.add_long("SPC1", 1, 2, *row(low, 0, True))
+    scene.hold("2", *row(low, 0, True))
+    if rng.random() < 0.3:
+        scene.hold("2", row(low, 0, False)[-1], value=rng.uniform(-5e-4, 5e-4))
     if left == 0.0:
-        scene.add_long("SPC1", 1, 1, *[n for at in (low, high) for (i, _), n in at.items() if i == 0])
-    scene.add("SUPORT", high[0, upper_rows], 2)
+        scene.hold("1", *[n for at in (low, high) for (i, _), n in at.items() if i == 0])
+    scene.suport((high[0, upper_rows], "2"))
+    scene.top = row(high, upper_rows, True)
     face, under, full = row(low, rows, kinds[0][1]), row(high, 0, kinds[1][1]), rng.random() < 0.5
     if by_lines:
         scene.segments(1, face if full else row(low, rows, False))
@@ -285,12 +321,12 @@ def nested(rng):
 
     bodies, faces = [], []
     for low, high in ((0.7, 1.0), (1.0 - fit, 1.4)):
-        corners, middles = rng.choice([(3, False), (3, True)] if rings else [(3, False), (3, True), (4, False)])
+        corners, middles = element(rng, rings)
         rows, columns = rng.randint(2, 3), rng.randint(4, 9)
         around, across = places(rng, 0.0, math.pi / 2, columns), places(rng, low, high, rows)
         at = scene.mesh(around, across, scene.material(2.0), corners, middles, on_arc)
-        scene.add_long("SPC1", 1, 1, *[n for (i, _), n in at.items() if i == 0])
-        scene.add_long("SPC1", 1, 2, *[n for (i, _), n in at.items() if i == columns])
+        scene.hold("1", *[n for (i, _), n in at.items() if i == 0])
+        scene.hold("2", *[n for (i, _), n in at.items() if i == columns])
         bodies.append(at)
         faces.append(row(at, 0 if bodies[1:] else rows, middles))
     for number, face in enumerate(faces, 1):
@@ -298,9 +334,23 @@ def nested(rng):
         scene.segments(number, part)
     scene.add("BCONP", 1, *rng.choice([(1, 2), (2, 1)]), "", 1.0, "", 1, 0)
     inside, total = row(bodies[0], 0, False), rng.uniform(0.1, 0.3)
+    scene.top = row(bodies[1], max(int(j) for _, j in bodies[1]), True)[1:4]
     for a, b in zip(inside, inside[1:]):
         scene.add("PLOADX1", 1, scene.side[a, b], total * rng.uniform(0.5, 1.5), total * rng.uniform(0.5, 1.5), a, b)
     return scene
+
+
+def write(directory, number, seed):
+    """Returns the paths."""
+    directory.mkdir(parents=True, exist_ok=True)
+    paths = [directory / f"model{k:03}.dat" for k in range(number)]
+    for k, path in enumerate(paths):
+        rng = random.Random(f"{seed} {k}")
+        scene = (pressed if k % 2 else [stack, nested, tongue][k // 2 % 3])(rng)
+        body_loads(rng, scene)
+        ties(rng, scene)
+        path.write_text(scene.text(), encoding="ascii")
+    return paths
 
 
 def main():
@@ -309,12 +359,7 @@ def main():
     parser.add_argument("-n", "--number", type=int, default=40)
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
-    options.directory.mkdir(parents=True, exist_ok=True)
-    for k in range(options.number):
-        rng = random.Random(f"{options.seed} {k}")
-        scene = (pressed if k % 2 else [stack, nested, tongue][k // 2 % 3])(rng)
-        body_loads(rng, scene)
-        (options.directory / f"scene{k:03}.dat").write_text(scene.text(), encoding="ascii")
+    write(options.directory, options.number, options.seed)
 
 
 if __name__ == "__main__":

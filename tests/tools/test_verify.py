@@ -126,6 +126,21 @@ class Edits(Case):
         self.check(LINES, 1)
 
 
+class Joined(Case):
+    def test_gaps_and_bodies_but_for_rounding(self):
+        """Joined bodies leave gaps of pairs in contact that are 5e-13 of the displacements, and forces on bodies that cancel but for rounding."""
+        for name in ("lost_on_a_travel_twin.dat", "slide_rot0p001.bdf"):
+            deck = self.place / name
+            deck.write_text((ROOT / "tests/found" / name).read_text().replace("BEGIN BULK\n", "BEGIN BULK\nPARAM,RULE,JOINED\n", 1))
+            self.solved(deck)
+            self.assertEqual(self.told(deck, "--quiet"), (0, ""), name)
+        rows = self.rows(deck, "contact")
+        column = rows[0].index("gap")
+        touching = next(row for row in rows if row[-1] == "touching")
+        touching[column] = "1.0E-6"
+        self.assertRegex(self.spoilt(deck, "contact", rows)[1], "(?m)^contact gap .*WRONG$")
+
+
 class Wholesale(Case):
     """What a single cell is not."""
 
@@ -175,6 +190,7 @@ class Wholesale(Case):
         status, text = self.spoilt(HERTZ, "summary", [*rows, ["remarks", "BCONP 1: a word", ""], ["penetration", "1.0E-3", "length"]])
         self.assertEqual(0, status, text)
         self.assertRegex(text, "(?m)^not read: summary.csv .*factorizations, .*condition, .*, weak_pairs, remarks, penetration$")
+        self.assertRegex(text, "(?m)^not read: bodies.csv mesh_error_x, mesh_error_y$")
         self.assertRegex(text, "(?m)^not read: hertz44.lst, hertz44.pivots.csv$")
 
     def test_quiet(self):

@@ -7,6 +7,7 @@ from kinds import KINDS
 from pressures import pressures
 from verification.elements import free_strains, places, strain_of, unit_strains
 from verification.material import respond, von_mises
+from verification.ties import angle, gather, pull_springs
 
 # Names of the figures in the summary; the key on the left is ours.
 KEYS = {
@@ -61,6 +62,7 @@ class Recomputed:
     figures: dict = field(default_factory=dict)
     force: float = 0.0       # scales
     length: float = 0.0
+    scale: float = 0.0       # of forces at nodes
     spread: float = 0.0      # largest error in the column of gaps
     lost: float = 0.0        # part of the stresses and forces that is lost, where a travel leaves few digits of the strains
     most: float = 0.0        # largest force that the largest stress could make, over the scale
@@ -70,6 +72,10 @@ class Recomputed:
     held_force: float = 0.0
     elements: dict = field(default_factory=dict)
     gaps: dict = field(default_factory=dict)
+    pulls: dict = field(default_factory=dict)      # of springs
+    angle: dict = field(default_factory=dict)      # of rotating master nodes
+    arm: dict = field(default_factory=dict)        # the longest of each
+    moment: dict = field(default_factory=dict)     # of their supports
 
 
 def recompute_element(scene, tables, element, moved):
@@ -129,6 +135,7 @@ def add_elements(scene, tables, u, rest, result):
             for c in (0, 1):
                 rest.setdefault((node, c), []).append(-sums[c])
             magnitude.setdefault(node, []).append(max(map(abs, sums)))
+    result.pulls = pull_springs(scene, u, rest, magnitude, stored)
     return max((math.fsum(m) for m in magnitude.values()), default=0.0), stored, lost, lost_force, reach
 
 
@@ -164,18 +171,18 @@ def recompute(scene, tables):
         for node, w in pair.weights.items():
             for i in (0, 1):
                 rest.setdefault((node, i), []).append(w * force * pair.normal[i])
-    gathered = {}
-    for freedom, values in rest.items():
-        for _ in range(50):
-            freedom = scene.leader.get(freedom, freedom)
-        gathered.setdefault(freedom, []).extend(values)
+    found = {master: angle(scene, u, master) for master in scene.rotating}
+    result.angle, result.arm = ({master: pair[k] for master, pair in found.items()} for k in (0, 1))
+    result.moment = {master: -math.fsum(gather(scene, rest, {}).get((master, 2), [])) for master in scene.rotating if (master, 2) in scene.held}
+    works += [moment * result.angle[master] for moments in (scene.moment, result.moment) for master, moment in moments.items()]
+    gathered = gather(scene, rest, result.moment)
     loads = [abs(math.fsum(values)) for values in scene.load.values()]
     result.force = max([abs(f) for f in forces] + loads, default=0.0)
     result.length = max([math.hypot(*v) for v in u.values()] + [abs(pair.initial) for pair in scene.pair.values()], default=0.0)
     scale = max(element_force, result.force, PART_OF_HELD * result.held_force)
     terms = math.fsum(map(abs, works)) + abs(math.fsum(stored)) + PART_OF_HELD * math.fsum(result.held_work)
     result.figures = {
-        "equilibrium": max((abs(math.fsum(v)) for v in gathered.values()), default=0.0) / (scale or 1.0),
+        "equilibrium": max((abs(math.fsum(v)) / (result.arm[node] if c == 2 else 1.0) for (node, c), v in gathered.items()), default=0.0) / (scale or 1.0),
         "smallest_force": min(forces, default=0.0),
         "smallest_gap": min(gaps, default=0.0),
         "product": max((abs(f * g) for f, g in zip(forces, gaps)), default=0.0),
@@ -183,6 +190,7 @@ def recompute(scene, tables):
         "energy": max(abs(math.fsum(works) - math.fsum(stored)), math.fsum(result.released) - math.fsum(stored)) / (terms or 1.0),
     }
     result.lost = max([part(lost_force, scale)] + [part(lost[element], own.scale(result.stress, min)) for element, own in result.elements.items()])
+    result.scale = scale
     result.most = result.stress * reach / (scale or 1.0)
     return result
 
@@ -246,12 +254,29 @@ def check(scene, tables, tolerance, found=None):
         good = told == "" if peak is None else told != "" and abs(peak - float(told)) <= tolerance * (peak or 1.0)
         line("max_pressure", math.nan if peak is None else peak, told, good)
         line("pressure column, largest error", worst, "", worst <= tolerance * (peak or 1.0))
+    for key, ours, small in [*approaches(scene, tables, found), *of_ties(scene, found)]:
+        told = tables.summary.get(key, "nan")
+        line(key, ours, told, abs(ours - float(told)) <= tolerance * small)
+    return lines, faults
+
+
+def approaches(scene, tables, found):
+    """(key, value, its scale) of each SUPORT DOF that is not fixed."""
     for c in scene.deck.of("SUPORT"):
         for i in range(1, len(c) - 1, 2):
             for digit in (c[i + 1] if c[i] else ""):
-                if digit in "12" and (integer(c[i]), int(digit) - 1) not in scene.held:
-                    key = f"approach_{integer(c[i])}_{digit}"
-                    ours = float(tables.nodes[int(c[i])]["ux" if digit == "1" else "uy"])
-                    told = tables.summary.get(key, "nan")
-                    line(key, ours, told, abs(ours - float(told)) <= tolerance * length)
-    return lines, faults
+                node, component = integer(c[i]), {"1": 0, "2": 1, "6": 2}.get(digit)
+                if component == 2 and node in found.angle and (node, 2) not in scene.held:
+                    yield f"approach_{node}_6", found.angle[node], abs(found.angle[node]) + found.length / found.arm[node]
+                elif component in (0, 1) and (node, component) not in scene.held:
+                    yield f"approach_{node}_{digit}", float(tables.nodes[node][("ux", "uy")[component]]), found.length
+
+
+def of_ties(scene, found):
+    """The same of rotating master nodes and springs."""
+    for master, turned in found.angle.items():
+        yield f"angle_{master}", turned, abs(turned) + found.length / found.arm[master]
+        if master in found.moment:
+            yield f"moment_{master}", found.moment[master], abs(found.moment[master]) + found.scale * found.arm[master]
+    for number, stiffness, _ in scene.springs:
+        yield f"spring_{number}", found.pulls[number], abs(found.pulls[number]) + stiffness * found.length

@@ -9,6 +9,7 @@ from tables import rows as table_rows
 from verification.material import von_mises
 from verification.run import number
 from verification.scene import node_of
+from verification.ties import tied_cells
 from verification.zones import zones
 
 #: Of a sum that is taken in another order, over its largest term: in double precision, and of the tolerance of another one.
@@ -22,6 +23,14 @@ UNITS = {"status": "", "max_pressure": "force/length2", "total_contact_force": "
          "lowest_temperature": "temperature", "highest_temperature": "temperature", "curve_tolerance": "", "stress_off_curve_limit": "", "energy_balance": "", "load_factor": ""}
 #: Figures that are rounding in a valid answer: held to their tolerance, not digit by digit.
 BOUNDS = ("equilibrium_residual", "smallest_force", "smallest_gap", "largest_force_gap_product", "energy_balance", "stress_off_curve_limit")
+
+
+def unit_of(key):
+    """None of what is not read."""
+    kind, _, number_of = key.partition("_")
+    if kind == "approach":
+        return "radian" if number_of.endswith("_6") else "length"
+    return UNITS.get(key, {"angle": "radian", "moment": "force*length", "spring": "force"}.get(kind))
 
 
 class Report:
@@ -55,7 +64,7 @@ class Report:
 def check_columns(scene, tables, found, tolerance):
     """Lines of the report and the number of faults. `found`: what recompute gives."""
     report = Report(max(ROUNDING, OF_TOLERANCE * tolerance))
-    check_nodes(report, scene, tables, found)
+    check_nodes(report, scene, tables, found, tolerance)
     check_elements(report, scene, tables, found, tolerance)
     if scene.pair:
         check_contact(report, scene, tables, found, tolerance)
@@ -65,14 +74,15 @@ def check_columns(scene, tables, found, tolerance):
     return report.lines, report.faults
 
 
-def check_nodes(report, scene, tables, found):
+def check_nodes(report, scene, tables, found, tolerance):
     rows = tables.nodes
     for c, (place, move, reaction) in enumerate((("x", "ux", "rx"), ("y", "uy", "ry"))):
         report.column(f"nodes {place}", ((n, scene.x[n][c], row[place], 0.0) for n, row in rows.items()))
-        small = report.rounding * found.length   # of a rigid motion
+        # Of a rigid-body displacement, which satisfies MPC to the tolerance of the certificate: their coefficients have the digits of their fields.
+        rounding = tolerance if scene.sums else report.rounding
+        small = rounding * found.length
         held = [(n, scene.given[n, c], rows[n][move], small) for n in rows if (n, c) in scene.held]
-        tied = [(n, float(rows[leader[0]][("ux", "uy")[leader[1]]]), rows[n][move], small) for (n, digit), leader in scene.leader.items() if digit == c]
-        report.column(f"nodes {move}, held or tied,", held + tied)
+        report.column(f"nodes {move}, held or tied,", held + list(tied_cells(scene, tables, found, rounding, c, move)))
         free = [(n, 0.0, row[reaction], 0.0) for n, row in rows.items() if (n, c) not in scene.held]
         report.column(f"nodes {reaction}, not held,", free)
 
@@ -122,12 +132,14 @@ def check_contact(report, scene, tables, found, tolerance):
     rows = tables.contact
     size = max(abs(v) for place in scene.x.values() for v in place)
 
-    def column(name, value, small=None):
-        """`value`: of a pair and what is told of it; `small`: what rounding makes it the sum of, None where it is exact."""
+    def column(name, value, small=None, closed=0.0):
+        """`value`: of a pair and what is told of it; `small`: what rounding makes it the sum of, None where it is exact; `closed`: what a cell
+        of a pair in contact may be off by."""
         cells = []
         for pair, own in scene.pair.items():
             ours, told = value(pair, own), rows[pair][name]
-            cells.append((pair, ours, told, 0.0 if small is None else tolerance * abs(ours) + report.rounding * small))
+            allowed = 0.0 if small is None else tolerance * abs(ours) + report.rounding * small
+            cells.append((pair, ours, told, max(allowed, closed * (rows[pair]["status"] == "touching"))))
         report.column(f"contact {name}", cells)
 
     column("x", lambda _, own: scene.x[own.ends[1]][0])
@@ -137,7 +149,7 @@ def check_contact(report, scene, tables, found, tolerance):
     column("nx", lambda _, own: float(own.normal[0]), 1.0)
     column("ny", lambda _, own: float(own.normal[1]), 1.0)
     column("initial_gap", lambda _, own: own.initial, size)
-    column("gap", lambda pair, _: found.gaps[pair], found.length + size)
+    column("gap", lambda pair, _: found.gaps[pair], found.length + size, tolerance * found.length)   # as the certificate has it
     states = []
     for pair, row in rows.items():
         word, force, gap = row["status"], float(row["force"]), float(row["gap"])
@@ -195,7 +207,7 @@ def check_bodies(report, scene, tables, tolerance):
         for first, b in firsts.items():
             if first not in told:
                 continue
-            ours, all_of_it = (add([each[c] for each in terms[b]]) for add in (math.fsum, lambda each: math.fsum(map(abs, each))))
+            ours, all_of_it = math.fsum(each[c] for each in terms[b]), math.fsum(math.hypot(*each) for each in terms[b])
             value = "" if c == 0 and scene.has_rings else ours
             cells.append((first, value, told[first][name], tolerance * abs(ours) + report.rounding * all_of_it))
         report.column(f"bodies {name}, first node", cells)
@@ -248,7 +260,7 @@ def check_summary(report, scene, tables, found, tolerance):
     loose = 10 * max(1.0, found.most) * float(summary.get("stress_off_curve", 0.0)) if several else 0.0
     report.line("residual, of the program's", ours, f"{residual:.16E}", ours <= LIKE * residual + report.rounding + found.lost + loose)
     for key in sorted(summary):
-        unit = "length" if key.startswith("approach_") else UNITS.get(key)
+        unit = unit_of(key)
         if unit is not None and tables.units[key] != unit:
             report.line(f"unit of {key}", unit, tables.units[key], False)
     report.line("status", "valid", summary.get("status", "missing"), summary.get("status") == "valid")
@@ -280,7 +292,7 @@ def check_highest(report, tables, tolerance):
 
 def not_read(tables):
     """Lines that name what nothing here looks at, and what is held to a bound only."""
-    keys = [key for key in tables.summary if key not in UNITS and not key.startswith("approach_")]
+    keys = [key for key in tables.summary if unit_of(key) is None]
     files = sorted(path.name for path in tables.directory.glob(f"{glob_safe(tables.stem)}.*")
                    if path.name not in {tables.path(name).name for name in ("summary", "nodes", "elements", "contact", "zones", "bodies", "history", "cases")})
     lines = [f"not read: {name}.csv {', '.join(columns)}" for name, columns in (("summary", keys), *tables.unread.items()) if columns]

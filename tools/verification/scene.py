@@ -3,9 +3,10 @@ import math
 
 from body import body_forces
 from boundary import boundary, edge_forces
-from deck import DeckError, at, ids, real
+from deck import DeckError, at, real
 from kinds import KINDS
 from lines import pairs_of_lines
+from ties import resolved, rigid_ties, sums
 
 
 class Section:
@@ -69,14 +70,15 @@ class Scene:
         return [self.temperature(node) - none_at for nodes, none_at in expanding for node in nodes]
 
     def supports(self):
-        """Held directions with their displacements, and the leaders of tied ones."""
-        self.given = {(node, int(digit) - 1): value for node, digits, value in self.deck.held() for digit in set(digits) & {"1", "2"}}
+        """Fixed DOFs with their displacements, and what ties the others: master DOFs (`leader`, not those of rotating RBE2), sums, springs."""
+        self.rotating = self.deck.rotating()
+        named = [(node, {"1": 0, "2": 1, "6": 2}[digit], value) for node, digits, value in self.deck.held() for digit in set(digits) & set("126")]
+        self.given = {(node, c): value for node, c, value in named if c < 2 or node in self.rotating}
         self.held = set(self.given)
-        self.leader = {}
-        for c in self.deck.of("RBE2"):
-            for node in ids(c[4:]):
-                for digit in set(c[3]) & {"1", "2"}:
-                    self.leader[node, int(digit) - 1] = (int(c[2]), int(digit) - 1)
+        self.leader = rigid_ties(self.deck, self.rotating)
+        self.sums = sums(self.deck, self.x.get, self.rotating)
+        self.terms = resolved(self.leader, self.sums)
+        self.springs, self.moment = list(self.deck.springs()), self.deck.moments()
 
     def pairs(self, told):
         frame = self.deck.frames()
@@ -112,7 +114,10 @@ class Scene:
                 node = above[node]
             return node
 
-        for nodes in [nodes for _, nodes, _ in self.element.values()] + [(node, leader[0]) for (node, _), leader in self.leader.items()]:
+        joined = [nodes for _, nodes, _ in self.element.values()]
+        joined += [(node, *(master for master, _ in terms)) for (node, _), terms in self.terms.items()]
+        joined += [[end[0] for end in ends if end] for *_, ends in self.springs]
+        for nodes in joined:
             for node in nodes[1:]:
                 above[top(node)] = top(nodes[0])
         return {node: top(node) for node in self.x}
