@@ -3,6 +3,7 @@
 import collections
 import os
 import pathlib
+import re
 import signal
 import subprocess
 import sys
@@ -64,6 +65,31 @@ class Whole(Case):
                 self.assertEqual([row["p_max"] == rows[2]["p_max"] for row in rows], [True, False, True])
                 self.assertIn("2 decks, 3 load cases in ", run.stdout)
                 self.assertIn("cases.dat SUBCASE 3: no equilibrium: the body of GRID 1 moves off", run.stdout)
+
+    def test_titles_and_warnings_of_load_cases(self):
+        """SUBTITLE and LABEL, those above the first SUBCASE for all; a warning of a case arrives in its row, though the deck has only notes."""
+        cards = SMALL.read_text().split("BEGIN BULK")[1]
+        (self.place / "cases.dat").write_text("LABEL = of all\nSUBCASE 7\nSUBTITLE = first, of two\nLOAD = 1\nSUBCASE 3\nlabel=heavy\nLOAD = 99\nBEGIN BULK\n"
+                                              f"LOAD,99,4000.0,1.0,1\nFORCE,77,41,,1.0,0.0,1.0{cards}")
+        for options in [], ["--one-table"]:
+            self.run_it(0, "cases.dat", "-o", "out", *options)
+            rows = self.table()
+            self.assertEqual([(row["subtitle"], row["label"]) for row in rows], [("first, of two", "of all"), ("", "heavy")])
+            self.assertEqual([row["first_warning"].partition(":")[0] for row in rows], ["", "warning"])
+
+    def test_half_width_and_approach(self):
+        """The zone with the largest pressure; the approach of whatever node in one column; both in one table too."""
+        deck = self.deck("roller.dat", ROOT / "input" / "hertz" / "hertz_ctria6.dat")
+        renamed = re.sub(r"(?m)^(SUPORT +|RBE2 +\d+ +|FORCE +\d+ +)41 ", r"\g<1>43 ", SMALL.read_text()).replace("      43      44", "      41      44")
+        (self.place / "other.dat").write_text(renamed)
+        self.decks("small.dat")
+        for options in [], ["--one-table"]:
+            self.run_it(0, deck, "other.dat", "small.dat", "-o", "out", *options)
+            rows = self.table()
+            self.assertEqual([row["approach_dof"] for row in rows][1:], ["43 2", "41 2"])
+            self.assertEqual(rows[1]["approach"][:10], rows[2]["approach"][:10])
+            self.assertEqual((rows[2]["half_width"], rows[2]["half_width_error"][:3]), ("2.35958E-02", "0.4"))
+            self.assertGreater(float(rows[0]["half_width"]), 0.0)
 
     def test_figures_are_those_of_the_summary(self):
         self.decks("a.dat")

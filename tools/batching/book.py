@@ -13,7 +13,7 @@ import json
 import os
 
 from .decks import Deck, Refused, fingerprint
-from .outcome import ANSWERED, COLUMNS, KILLED, NOT_RUN, SUMMARY, number
+from .outcome import ANSWERED, CASE_COLUMNS, COLUMNS, KILLED, NOT_RUN, SUMMARY, number
 
 ENDED = {"place", "row", "inputs", "at", "version", "listing"}   # what a line that tells of an end has
 NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP)
@@ -108,7 +108,7 @@ class Book:
 
     def write_table(self, plan, ends):
         rows, first = self.rows(plan, ends), plan["decks"][0].rows
-        cases = ["subcase"] if any("subcase" in row for row in rows) else []
+        cases = CASE_COLUMNS if any("subcase" in row for row in rows) else []
         columns = COLUMNS[:1] + cases + (list(first[0][1]) if first else []) + COLUMNS[1:]
         columns += dict.fromkeys(key for row in rows for key in row if key.startswith(SUMMARY) and key not in columns)
         text = io.StringIO()

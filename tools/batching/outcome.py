@@ -4,8 +4,10 @@ import os
 import re
 import signal
 
-COLUMNS = ["deck", "status", "exit_status", "message", "seconds", "memory_MB", "nodes", "p_max", "p_max_is", "approach", "p_max_error",
-           "certificate", "certificate_part", "warnings", "first_warning"]
+COLUMNS = ["deck", "status", "exit_status", "message", "seconds", "memory_MB", "nodes", "p_max", "p_max_is", "approach", "approach_dof", "p_max_error",
+           "half_width", "half_width_error", "certificate", "certificate_part", "warnings", "first_warning"]
+#: Further columns of tables with load cases.
+CASE_COLUMNS = ["subcase", "subtitle", "label"]
 #: With --one-table: what stands before a figure of the summary, and those that have a column already.
 SUMMARY = "summary_"
 TAKEN = ("status", "warnings", "max_pressure", "max_pressure_is")
@@ -28,7 +30,8 @@ def row_of(deck, stem, ended, one_table=False):
     words = [summary.get("status", "") for summary in cases.values()] or [""]
     row["status"], row["message"] = judge(ended, listing, next((word for word in words if word != "valid"), "valid"))
     if row["status"] in ANSWERED:
-        found = [case_row(case, listing, summary, ended, one_table) for case, summary in cases.items()]
+        words = titles(deck.path) if len(cases) > 1 else {}
+        found = [{**case_row(case, listing, summary, ended, one_table), **words.get(case, {})} for case, summary in cases.items()]
         row.update({"cases": found} if len(cases) > 1 else found[0])
     return row
 
@@ -44,6 +47,20 @@ def case_row(case, listing, summary, ended, one_table):
     if one_table:
         row.update((f"{SUMMARY}{key}", value) for key, value in summary.items() if key not in TAKEN)
     return row
+
+
+def titles(path):
+    """SUBTITLE and LABEL of each SUBCASE, by its number; those before the first SUBCASE are for all."""
+    found, now = {}, {"subtitle": "", "label": ""}
+    of_all = now
+    for line in re.split(r"(?im)^\s*BEGIN", read_text(path), maxsplit=1)[0].splitlines():
+        match = re.match(r"\s*(SUBC|SUBT|LABE)[A-Z]*\s*[\s=]\s*(.*?)\s*$", line, re.IGNORECASE)
+        word = match and match[1].upper()
+        if word == "SUBC":
+            found[match[2]] = now = dict(of_all)
+        elif word:
+            now["subtitle" if word == "SUBT" else "label"] = match[2]
+    return found
 
 
 def part_of(listing, case):
@@ -103,7 +120,9 @@ def figures(listing, summary):
     if nodes:
         found["nodes"] = nodes[1]
     found["p_max"], found["p_max_is"] = summary.get("max_pressure", ""), summary.get("max_pressure_is", "")
-    found["approach"] = next((value for key, value in summary.items() if key.startswith("approach_")), "")
+    approach = next((key for key in summary if key.startswith("approach_")), "")
+    found["approach"], found["approach_dof"] = summary.get(approach, ""), approach.removeprefix("approach_").replace("_", " ")
+    found["half_width"], found["half_width_error"] = half_width(listing, summary)
     error, pressure = number(summary.get("mesh_error_max_pressure")), number(found["p_max"])
     if error is not None and pressure:
         found["p_max_error"] = f"{error / pressure:.3g}"
@@ -114,10 +133,19 @@ def figures(listing, summary):
     return found
 
 
+def half_width(listing, summary):
+    """Of the zone with the largest pressure, and its error, relative."""
+    section = re.search(r"^ZONES .*\n.*\n((?:  .*\n)+)", listing, re.MULTILINE)
+    rows = [line.split() for line in section[1].splitlines()] if section else []
+    zone = max(rows, key=lambda row: number(row[4]) or -1.0, default=[""])
+    width, error = number(zone[-1]), number(summary.get(f"mesh_error_half_width_zone_{zone[0]}"))
+    return zone[-1] if width is not None else "", f"{error / width:.3g}" if width and error is not None else ""
+
+
 def first_warning(listing):
-    """With its place, in one line again."""
-    section = re.search(r"^WARNINGS AND NOTES .*\n((?:  .*\n)+)", listing, re.MULTILINE)
-    lines = re.sub(r"\n {4}(?! )", " ", section[1]).splitlines() if section else []
+    """With its place, in one line again; of a load case its own before that of the deck."""
+    sections = re.findall(r"^WARNINGS AND NOTES .*\n((?:  .*\n)+)", listing, re.MULTILINE)
+    lines = re.sub(r"\n {4}(?! )", " ", "".join(reversed(sections))).splitlines()
     return next((line.strip() for line in lines if re.match(r"  (?:.*?\d+:\d+(?:-\d+)?: )?warning: ", line)), "")
 
 
