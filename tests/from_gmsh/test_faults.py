@@ -4,6 +4,7 @@ import os
 import pathlib
 import random
 import re
+import signal
 import subprocess
 import sys
 import tempfile
@@ -212,6 +213,47 @@ class Mistakes(unittest.TestCase):
         for old, new, expected in SCENE:
             with self.subTest(f"{old} -> {new}"):
                 self.rejected(expected, toml=self.replaced(TOML, old, new))
+
+    def test_all_mistakes_at_once(self):
+        """Of the keys, of the names in the mesh, and of each table: two conflicts are two errors."""
+        toml = TOML
+        for old, new in (("units =", "unit ="), ("E = 210000.0", "E = -1.0"), ("floor.y = 0", "flor.y = 0\nface.y = 0\nunder.y = 0"), ('corner = "y"', 'corner = "z"'),
+                         ("top.pressure", "tip.pressure"), ("[body.above]", "[body.abov]"), ("[free]", '[platen]\nface = "y"\nunder = "y"\n[free]')):
+            toml = self.replaced(toml, old, new)
+        self.rejected(["unit: is no key here", f"{TOP}; did you mean 'units'?",
+                       "[material.steel] E: is -1.0", "Young's modulus, above zero, such as E = 210000.0",
+                       "[free] corner: is the text \"z\"", 'directions of free motion: x, y or xy, such as corner = "y"',
+                       "[body.abov]: two.geo has no Physical Surface of that name", "its surfaces: below, above; did you mean 'above'?",
+                       "[body]: the surface 'above' of two.geo has no table", '[body.above] and below it material = "..."',
+                       "[support.flor]: two.geo has no line or point 'flor'", f"{POINTS}; did you mean 'floor'?",
+                       "[platen] face: its node at (2, 2) is held or tied in y by [support.face], too", "each direction of a node in one of them only",
+                       "[platen] under: its node at (0, 2) is held or tied in y by [support.under], too", "each direction of a node in one of them only",
+                       "[load.tip] pressure: two.geo has no line 'tip'", f"{LINES}; did you mean 'top'?"], toml=toml)
+
+    def test_bodies_that_coherence_has_glued(self):
+        """By the one point at which they touch, an end of both lines in contact."""
+        geo = """
+Point(1) = {0, 0, 0, 1};  Point(2) = {2, 0, 0, 1};  Point(3) = {2, 2, 0, 1};  Point(4) = {0, 2, 0, 1};
+Point(5) = {4, 2, 0, 1};  Point(6) = {4, 4, 0, 1};  Point(7) = {2, 4, 0, 1};
+Line(1) = {1, 2};  Line(2) = {2, 3};  Line(3) = {3, 4};  Line(4) = {4, 1};  Line(5) = {3, 5};  Line(6) = {5, 6};  Line(7) = {6, 7};  Line(8) = {7, 3};
+Curve Loop(1) = {1:4};  Plane Surface(1) = {1};  Curve Loop(2) = {5:8};  Plane Surface(2) = {2};
+Physical Surface("below") = {1};  Physical Surface("above") = {2};  Physical Curve("floor") = {1};  Physical Curve("face") = {3};
+Physical Curve("under") = {5};  Physical Curve("top") = {7};  Physical Curve("wall") = {4};  Physical Point("corner") = {6};
+"""
+        self.rejected(["[[contact]]: Gmsh's Coherence has glued 'above' and 'below': they share 1 node, the first at (2, 2)",
+                       "points and curves of their own for each body: no Coherence, no BooleanFragments, and Geometry.AutoCoherence = 0 in two.geo"], geo=geo)
+
+    def test_output_that_nobody_reads(self):
+        """Ends it without a word; the deck is written."""
+        for name, text in (("scene.toml", TOML), ("two.geo", GEO)):
+            (self.place / name).write_text(text, encoding="utf-8")
+        reader, writer = os.pipe()
+        os.close(reader)
+        run = subprocess.run([sys.executable, "-m", "from_gmsh", "scene.toml"], cwd=self.place, stdout=writer, stderr=subprocess.PIPE, text=True,
+                             env={**os.environ, "PYTHONPATH": str(TOOLS)})
+        os.close(writer)
+        self.assertEqual((run.stderr, run.returncode), ("", -signal.SIGPIPE))
+        self.assertTrue((self.place / "scene.dat").exists())
 
     def test_meshes(self):
         for old, new, expected in MESH:

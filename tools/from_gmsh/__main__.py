@@ -13,7 +13,7 @@ import re
 import subprocess
 import sys
 
-from wording import parser_of
+from wording import parser_of, run
 
 from .faults import Faults, Rejected
 from .scene import read_scene
@@ -104,4 +104,4 @@ def main(arguments=None):
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    run(main)

@@ -2,7 +2,7 @@
 from .cards import card
 from .faults import listed, spot
 from .lines import nodes_of, shares
-from .match import Groups, check_bodies
+from .match import APART, Groups, check_bodies
 
 AXES = {"1": "x", "2": "y"}
 ELEMENTS = {3: "CTRIA3", 4: "CQUAD4", 6: "CTRIA6", 8: "CQUAD8"}
@@ -28,7 +28,7 @@ class Maker:
         heated = any(case.temperature is not None for case in scene.cases)
         if not (faults.errors or moved or heated or any(case.has_loads for case in scene.cases)):
             faults.note("[load]", "there is none, and no support that moves: nothing but overlaps of the drawing gives forces")
-        faults.end_stage()
+        faults.end()
         self.number = self.numbers()
         self.first = {}   # number of the first element of each body
         for name, elements in mesh.bodies.items():
@@ -40,12 +40,13 @@ class Maker:
         found = []
         for k, (slave, master) in enumerate(self.scene.contacts, 1):
             where = f"[[contact]] {k}" if len(self.scene.contacts) > 1 else "[[contact]]"
-            lines = self.groups.chain(f"{where} slave", slave), self.groups.chain(f"{where} master", master)
+            lines = [self.groups.chain(f"{where} {role}", name) if name else [] for role, name in (("slave", slave), ("master", master))]
+            if slave == master or not all(lines) or self.groups.share_nodes(where, slave, master):
+                continue
             common = set(lines[0][1:-1]) & set(lines[1]) | set(lines[1][1:-1]) & set(lines[0])
             if common:
                 self.faults.add(where, f"'{slave}' and '{master}' have {len(common)} nodes in common, the first at "
-                                f"{spot(self.mesh.place[min(common)])}", "points and curves of their own for each body: no Coherence, no "
-                                f"BooleanFragments, and Geometry.AutoCoherence = 0 in {self.mesh.file}")
+                                f"{spot(self.mesh.place[min(common)])}", APART + self.mesh.file)
             found.append(lines)
         return found
 
@@ -54,13 +55,11 @@ class Maker:
         held = {}
         for name, values in self.scene.supports.items():
             where = f"[support.{name}]"
-            for node in self.groups.find(where, name):
-                for digit, value in values.items():
-                    other, table = held.setdefault(node, {}).setdefault(digit, (value, where))
-                    if other != value:
-                        self.faults.add(where, f"{AXES[digit]} = {value:g} at {spot(self.mesh.place[node])}, where {table} says {other:g}",
-                                        "one displacement for a node")
-                        return held
+            nodes = self.groups.find(where, name)
+            given = [(node, digit, value, *held.setdefault(node, {}).setdefault(digit, (value, where))) for node in nodes for digit, value in values.items()]
+            for node, digit, value, other, table in [each for each in given if each[2] != each[3]][:1]:
+                self.faults.add(where, f"{AXES[digit]} = {value:g} at {spot(self.mesh.place[node])}, where {table} says {other:g}",
+                                "one displacement for a node")
         for node, place in self.mesh.place.items():
             if self.scene.rings and place[0] == 0.0:
                 held.setdefault(node, {}).setdefault("1", (0.0, "the axis of the rings"))
@@ -72,14 +71,11 @@ class Maker:
         for name, digits in self.scene.platens.items():
             where = f"[platen] {name}"
             nodes = self.groups.find(where, name, points_too=False)
-            for node in nodes:
-                for digit in digits:
-                    table = self.held.get(node, {}).get(digit, (0.0, tied.get((node, digit))))[1]
-                    if table:
-                        self.faults.add(where, f"its node at {spot(self.mesh.place[node])} is held or tied in {AXES[digit]} by {table}, too",
-                                        "each direction of a node in one of them only")
-                        return found
-                    tied[node, digit] = where
+            tables = {(node, digit): self.held.get(node, {}).get(digit, (0.0, tied.get((node, digit))))[1] for node in nodes for digit in digits}
+            for (node, digit), table in [each for each in tables.items() if each[1]][:1]:
+                self.faults.add(where, f"its node at {spot(self.mesh.place[node])} is held or tied in {AXES[digit]} by {table}, too",
+                                "each direction of a node in one of them only")
+            tied.update(dict.fromkeys(tables, where))
             found[name] = (digits, nodes)
         return found
 
@@ -110,13 +106,11 @@ class Maker:
         found = {}
         for name, values in case.moved.items():
             where = f"[{case.inside}support.{name}]"
-            for node in self.groups.find(where, name):
-                for digit, value in values.items():
-                    if digit not in self.held.get(node, {}):
-                        self.faults.add(where, f"{AXES[digit]} of the node at {spot(self.mesh.place[node])} is not held",
-                                        f"[support] {name}.{AXES[digit]} = 0.0, since all load cases hold the same; or what is held there")
-                        return found
-                    found[node, digit] = value
+            given = {(node, digit): value for node in self.groups.find(where, name) for digit, value in values.items()}
+            for node, digit in [(node, digit) for node, digit in given if digit not in self.held.get(node, {})][:1]:
+                self.faults.add(where, f"{AXES[digit]} of the node at {spot(self.mesh.place[node])} is not held",
+                                f"[support] {name}.{AXES[digit]} = 0.0, since all load cases hold the same; or what is held there")
+            found.update(given)
         return found
 
     def check_temperatures(self):

@@ -9,6 +9,7 @@ class Rejected(Exception):
 class Faults:
     def __init__(self, file):
         self.file, self.errors, self.notes = file, [], []
+        self.harmless = 0   # errors so far that leave what comes next to be checked
 
     def add(self, where, what, right):
         self.errors.append(f"{self.file}: {where}: {what}\n  {right}")
@@ -16,8 +17,16 @@ class Faults:
     def note(self, where, what):
         self.notes.append(f"{self.file}: note: {where}: {what}")
 
+    def go_on(self):
+        """The errors so far do not keep the mesh from being checked against the scene."""
+        self.harmless = len(self.errors)
+
     def end_stage(self):
-        """What comes next relies on what was checked so far."""
+        """What comes next relies on what was checked since then."""
+        if len(self.errors) > self.harmless:
+            raise Rejected
+
+    def end(self):
         if self.errors:
             raise Rejected
 

@@ -5,6 +5,7 @@ from .faults import likely, listed, spot
 from .lines import chains, nodes_of
 from .mesh import describe
 
+APART = "points and curves of their own for each body: no Coherence, no BooleanFragments, and Geometry.AutoCoherence = 0 in "
 NEGLIGIBLE = 1e-9    # of the size of all: a distance that is none
 
 
@@ -14,10 +15,12 @@ def check_bodies(scene, mesh, faults):
         if name not in mesh.bodies:
             faults.add(f"[body.{name}]", f"{mesh.file} has no Physical Surface of that name",
                        f"its surfaces: {listed(mesh.bodies)}{likely(name, mesh.bodies)}")
-    for name, elements in mesh.bodies.items():
+    for name in mesh.bodies:
         if name not in scene.bodies:
             faults.add("[body]", f"the surface '{name}' of {mesh.file} has no table", f'[body.{name}] and below it material = "..."')
-        elif not elements:
+    faults.go_on()
+    for name, elements in mesh.bodies.items():
+        if not elements:
             faults.add(f"[body.{name}]", f"the surface has no elements in {mesh.file}", "a surface that is meshed")
         elif scene.rings and any(corners == 4 for corners, _ in elements):
             faults.add(f"[body.{name}]", "rings have no quadrilaterals", f"no Recombine Surface in {mesh.file}, or another kind")
@@ -119,6 +122,18 @@ class Groups:
                 return []
             found.append((side, *owners[0][:2]))
         return found
+
+    def share_nodes(self, where, slave, master):
+        """Whether bodies in contact have nodes but no sides in common: told as a fault."""
+        bodies = [{self.sides[frozenset(side[:2])][0][0] for side in self.mesh.lines[name]} for name in (slave, master)]
+        for one, other in sorted((one, other) for one in bodies[0] for other in bodies[1] - {one}):
+            common = set.intersection(*({node for _, nodes in self.mesh.bodies[name] for node in nodes} for name in (one, other)))
+            joined = any({one, other} <= {owner[0] for owner in owners} for owners in self.sides.values())
+            if common and not joined:
+                self.faults.add(where, f"Gmsh's Coherence has glued '{one}' and '{other}': they share {len(common)} node{'s' * (len(common) != 1)}, the first at "
+                                f"{spot(self.mesh.place[min(common)])}", APART + self.mesh.file)
+                return True
+        return False
 
     def chain(self, where, name):
         """Nodes of a line in one piece, in their order; empty with a fault."""

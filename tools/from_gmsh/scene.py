@@ -204,7 +204,9 @@ def read_scene(path, faults: Faults):
             into[key] = DIRECTIONS.get(table.word(key, "y", f"{what}: x, y or xy", DIRECTIONS.__contains__), "")
     read_contacts(tables["contact"] or [], scene, faults)
     read_parameters(Table(tables["PARAM"] or {}, "[PARAM]", faults), scene, faults)
-    faults.end_stage()
+    if not (scene.mesh and scene.kind):
+        raise Rejected
+    faults.go_on()
     return scene
 
 
