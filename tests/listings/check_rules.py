@@ -35,8 +35,11 @@ def main():
     status = {rule: run(program, deck, rule, output / rule) for rule in ("CONRY", "BLOCK")}
     if status["CONRY"] != status["BLOCK"]:
         sys.exit(f"exit status {status['CONRY']} by CONRY, {status['BLOCK']} by BLOCK")
-    sys.exit(subprocess.run([sys.executable, compare, "--relative", "1e-9", "--absolute", "1e-12",
-                             output / "CONRY", output / "BLOCK"]).returncode)
+    names = [sorted(path.name for path in (output / rule).glob("*.csv")) for rule in ("CONRY", "BLOCK")]
+    if names[0] != names[1] or not names[0]:
+        sys.exit(f"tables {names[0]} by CONRY, {names[1]} by BLOCK")
+    sys.exit(max(subprocess.run([sys.executable, compare, "--relative", "1e-9", "--absolute", "1e-12",
+                                 output / "CONRY" / name, output / "BLOCK" / name]).returncode for name in names[0]))
 
 
 if __name__ == "__main__":
