@@ -20,7 +20,7 @@ import time
 
 import tables
 from scenes import cylinders, plastic
-from wording import parser_of
+from wording import parser_of, run
 
 TOP = pathlib.Path(__file__).resolve().parent.parent
 EPCONT = TOP / "build/release/epcont"
@@ -141,4 +141,4 @@ def main():
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    run(main)

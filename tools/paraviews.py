@@ -16,7 +16,7 @@ import sys
 import tempfile
 
 import tables
-from wording import parser_of
+from wording import parser_of, run
 
 TOP = pathlib.Path(__file__).resolve().parent.parent
 
@@ -83,4 +83,4 @@ def main():
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    run(main)

@@ -20,7 +20,7 @@ import sys
 
 from drawing import figure, kept, paper, style
 from drawing.run import Refused, Run
-from wording import parser_of
+from wording import parser_of, run
 
 
 def paper_figure(arguments):
@@ -78,4 +78,4 @@ def main():
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    run(main)

@@ -26,7 +26,7 @@ from process import peak, timed  # noqa: E402
 from report import short, table  # noqa: E402
 from scenes import lines, plastic, quads  # noqa: E402
 from score import figures_of  # noqa: E402
-from wording import parser_of  # noqa: E402
+from wording import parser_of, run  # noqa: E402
 
 METHODS, TOLERANCES = ("NEWTON", "SECANT", "MODSEC", "INISTR"), ("1.E-2", "1.E-4", "1.E-8")
 PRECISIONS, RULES = ("DOUBLE", "MIXED", "SINGLE"), ("CONRY", "BLOCK")
@@ -264,4 +264,4 @@ def main():
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    run(main)

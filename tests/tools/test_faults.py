@@ -5,6 +5,7 @@ Exit status not 0, no traceback, and words that name what is wrong.
 import os
 import pathlib
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -50,6 +51,19 @@ class Calls(Case):
             run = subprocess.run([sys.executable, "-B", ROOT / "tools" / tool, "--help"], capture_output=True, text=True)
             self.assertEqual((0, ""), (run.returncode, run.stderr), tool)
             self.assertIn("usage: ", run.stdout)
+
+    def test_output_that_nobody_reads(self):
+        """A closed pipe ends a tool without a word."""
+        for tool in ("accept", "batch", "compare", "deceive", "decks", "fuzz", "mutate", "sweep", "verify", "convergence.py", "paraviews.py", "plots.py", "tradeoffs.py"):
+            for arguments in ("--help",), ("hertz44.dat", "out"):
+                if arguments[0] == "--help" or tool == "verify":
+                    reader, writer = os.pipe()
+                    os.close(reader)
+                    run = subprocess.run([sys.executable, "-B", ROOT / "tools" / tool, *arguments], cwd=self.place, stdout=writer, stderr=subprocess.PIPE, text=True)
+                    os.close(writer)
+                    self.assertNotRegex(run.stderr, "(?i)broken ?pipe", tool)
+                    if "ModuleNotFoundError" not in run.stderr:   # packages that tools/make_venv provides
+                        self.assertEqual((run.stderr, run.returncode), ("", -signal.SIGPIPE), tool)
 
     def test_paraview(self):
         for near in ("0,0", "0,0,1,2", "x", ",,", "0,0,-1", "0,0,nan", "inf,0,1"):

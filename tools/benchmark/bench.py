@@ -36,7 +36,7 @@ import peers  # noqa: E402
 import report  # noqa: E402
 import solve_part  # noqa: E402
 from process import ONE_THREAD  # noqa: E402
-from wording import parser_of  # noqa: E402
+from wording import parser_of, run  # noqa: E402
 
 NODES, UNKNOWNS = (330, 1000, 3000, 11000, 42000), (50, 100, 200, 500, 1000, 2000)
 #: Of part 4 and of growth: nodes of meshes with twice as many unknowns.
@@ -158,4 +158,4 @@ def main():
         report.draw({part: found["rows"] for part, found in parts.items()}, HERE / "results.png")
 
 
-main()
+run(main)
