@@ -1,6 +1,7 @@
 !> Load cases from case control, and what the sets say that they have: FORCE, PLOADX1,
 !> GRAV, RFORCE, LOAD, SPC and SPCD.
 module epcont_build_cases
+  use epcont_base_diagnostic, only: diagnostic, severity_note
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: new_id_index
   use epcont_base_text, only: short_real, text_of
@@ -103,7 +104,9 @@ contains
     subroutine add_forces()
       integer :: i, node(deck%card(card_force)%count)
       real(wp) :: direction(2), factor, largest
+      logical :: idle(size(node))
 
+      idle = .false.
       call resolve(deck, card_force, 2, nodes, found, node)
       associate (force => deck%card(card_force))
         node = merge(node, 0, [(any(used == nint(force%value(1, i))), i=1, size(node))])
@@ -115,9 +118,7 @@ contains
           factor = force%number('F', i)
           direction = [force%number('N1', i), force%number('N2', i)]
           largest = maxval(abs(direction))
-          if (all(direction == 0.0_wp)) &
-            call found%add_error(card_force, i, force%column('N1'), ': N1 and N2 are 0.0: no direction', &
-                                 'the direction of the force, such as 0.0 and -1.0')
+          idle(i) = all(direction == 0.0_wp)
           if (force%number('N3', i) /= 0.0_wp) &
             call found%add_error(card_force, i, force%column('N3'), ': field 8 (N3) points off the plane', &
                                  '0.0: scenes lie in the x-y plane')
@@ -133,7 +134,26 @@ contains
           cases%force(count(node(:i) > 0))%force = factor*direction
         end do
       end associate
+      call report_idle(idle)
     end subroutine add_forces
+
+    !> A FORCE without a direction is an error. Vectors of zeros are no forces, which is noted once.
+    subroutine report_idle(idle)
+      logical, intent(in) :: idle(:)   !! N1 and N2 are zero [cards]
+      logical :: blank(size(idle))
+      integer :: i, n1
+
+      n1 = deck%card(card_force)%column('N1')
+      blank = .not. any(deck%card(card_force)%given(n1:n1 + 2, :), dim=1)
+      do i = 1, size(idle)
+        if (idle(i) .and. blank(i)) &
+          call found%add_error(card_force, i, n1, ': N1 and N2 are blank: no direction', &
+                               'the direction of the force, such as 0.0 and -1.0')
+      end do
+      i = findloc(idle .and. .not. blank, .true., dim=1)
+      if (i > 0) call found%add(diagnostic(severity_note, of=card_force, which=i, item=n1, remedy='', &
+        what=': N1 and N2 are 0.0: no force'//and_more(count(idle .and. .not. blank), '; so with ', ' more')))
+    end subroutine report_idle
 
     !> PLOADX1; one warning for all that press inside a body.
     subroutine add_pressures()

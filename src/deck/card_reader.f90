@@ -89,7 +89,7 @@ contains
       associate (field => table%entry%field(slot))
         table%value(slot, row) = field%default
         if (field%same_as /= 0) table%value(slot, row) = table%value(slot + field%same_as, row)
-        if (field%required .or. card%filled(slot + field%with)) &
+        if (field%required .or. card%filled(slot + field%with(1)) .or. card%filled(slot + field%with(2))) &
           call refuse(slot, 'is blank', field%allowed())
       end associate
     end subroutine take_blank

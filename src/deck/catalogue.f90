@@ -55,7 +55,7 @@ module epcont_deck_catalogue
     '  C1; digits; directions', &
     '  D1; real zero cause; displacement [length]', &
     '  G2; id with_next; second node', &
-    '  C2; digits with_last; directions', &
+    '  C2; digits with_last with_next; directions', &
     '  D2; real zero cause; displacement [length]', &
     'SPC1: supports', &
     '  SID; id; set', &

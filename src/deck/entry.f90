@@ -30,7 +30,7 @@ module epcont_deck_entry
     real(wp) :: heard_to = huge(1.0_wp)   !! larger values are noted too
     character(len=24) :: with_cards = ''  !! without one of these, with `/` between, it is noted; blank: any
     logical :: required = .false.      !! may not be blank
-    integer :: with = 0                !! may not be blank where the next (1), the last (-1) field is filled
+    integer :: with(2) = 0             !! may not be blank if the last (-1), the next (1) field is filled
     integer :: same_as = 0             !! a blank means the value of the last field (-1)
     real(wp) :: default = 0.0_wp       !! the value of a blank field
     logical :: has_default = .false.   !! false: a blank has a meaning of its own
@@ -154,7 +154,7 @@ contains
       form = adjustl(form(len(word) + 1:))
       call take_word()
     end do
-    field%required = field%required .or. .not. (may_be_blank .or. field%with /= 0)
+    field%required = field%required .or. .not. (may_be_blank .or. any(field%with /= 0))
 
   contains
 
@@ -220,9 +220,9 @@ contains
       case ('as_last')
         field%same_as = -1
       case ('with_next')
-        field%with = 1
+        field%with(2) = 1
       case ('with_last')
-        field%with = -1
+        field%with(1) = -1
       case ('needed')
         field%required = .true.
       case ('optional')
