@@ -140,8 +140,8 @@ class Deck:
     def moments(self):
         """Counter-clockwise, by master node."""
         found, factors = {}, self.loads()
-        for card in self.of("MOMENT"):
-            moment = factors.get(int(card[1]), 0.0) * real(card[4]) * real(at(card, 7))
+        for card in [card for card in self.of("MOMENT") if int(card[1]) in factors]:
+            moment = factors[int(card[1])] * real(card[4]) * real(at(card, 7))
             found[int(card[2])] = found.get(int(card[2]), 0.0) + moment
         return found
 

@@ -5,6 +5,7 @@ import io
 import os
 import pathlib
 import random
+import re
 import shutil
 import subprocess
 import unittest
@@ -124,6 +125,18 @@ class Edits(Case):
 
     def test_lines(self):
         self.check(LINES, 1)
+
+    def test_ties(self):
+        """MPC and MPCADD with springs (CELAS1); an RBE2 that rotates under a MOMENT, held there or not, with a spring (CELAS2)."""
+        for name, case, held in (("bolt", "MPC = 3\nSPC = 1\nLOAD = 1\n", "SPC1,1,1,5,10,15,26,32\n"), ("tilting_platen", "LOAD = 2\n", ""), ("tilting_platen", "LOAD = 2\n", "SPC1,1,6,33\n")):
+            with self.subTest(name + held):
+                cards = (ROOT / f"input/{name}/{name}.dat").read_text().split("BEGIN BULK\n")[1]
+                cards = re.sub("(?m)^(MAT1 .*)0.0$", r"\g<1>0.3", re.sub("(?m)^(FORCE   2 .* 10000. +)0.0", r"\g<1>0.2", cards))   # no column is noise
+                deck = self.place / f"{name}.dat"
+                deck.write_text(f"{case}BEGIN BULK\n{held}" + (cards.replace("SUPORT  33      6\n", "") if held else cards))
+                self.check(deck, 1)
+                keys = [row[0].partition("_")[0] for row in self.rows(deck, "summary")]
+                self.assertEqual([key for key in ("spring", "angle", "moment") if key in keys], ["spring"] + ["angle"] * (name != "bolt") + ["moment"] * held.startswith("SPC1,1,6"))
 
 
 class Joined(Case):
