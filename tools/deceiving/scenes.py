@@ -98,6 +98,9 @@ class Scene:
         self.alternate, self.falling = alternate, falling
         self.nodes, self.bodies = [], []
         self.supports, self.forces, self.platens, self.free = {}, [], [], []
+        self.rotating = []            # (master node, dependent nodes, moment) of platens that rotate
+        self.springs = []             # (node, direction, stiffness) to the ground
+        self.equations = []           # terms (node, direction, coefficient) of one direction; the first is dependent
         self.gravity, self.spins = [], []   # accelerations; (node of the axis, turns in a unit of time)
         self.lines, self.contacts, self.parameters = {}, [], {}
         self.needed = None            # contacts; those behind say again what these have said
@@ -145,7 +148,7 @@ class Scene:
 
     def turns(self):
         """May it be rotated by any angle? Only where supports hold both directions, and nothing is tied or free."""
-        return not self.rings and not self.platens and all(len(held) == 2 for held in self.supports.values())
+        return not (self.rings or self.platens or self.springs or self.equations) and all(len(held) == 2 for held in self.supports.values())
 
 
 class Twin:
@@ -251,6 +254,15 @@ def supports_of(scene, twin, numbers):
     turned = {"1": "2", "2": "1"} if twin.swaps() else {"1": "1", "2": "2"}
     for k, (leader, directions, nodes) in enumerate(scene.platens):
         cards.append(card("RBE2", 9000001 + k, numbers[leader], "".join(turned[d] for d in directions), *(numbers[m] for m in nodes)))
+    flip = -1.0 if twin.mirror else 1.0
+    for k, (master, nodes, moment) in enumerate(scene.rotating):
+        cards.append(card("RBE2", 9100001 + k, numbers[master], "12", *(numbers[m] for m in nodes)))
+        cards.append(card("MOMENT", 1, numbers[master], 0, flip * moment, 0.0, 0.0, 1.0))
+    for k, (node, direction, stiffness) in enumerate(scene.springs):
+        cards.append(card("CELAS2", 9200001 + k, stiffness, numbers[node], turned[direction]))
+    for terms in scene.equations:
+        fields = [field for k, (node, direction, a) in enumerate(terms) for field in ([""] * 2 if k and k % 2 == 0 else []) + [numbers[node], turned[direction], a]]
+        cards.append(card("MPC", 1, *fields))
     cards += [card("SUPORT", numbers[node], "".join(sorted(turned[d] for d in directions))) for node, directions in scene.free]
     cards += [card("FORCE", 1, numbers[node], 0, 1.0, *twin.vector(force), 0.0) for node, force in scene.forces]
     cards += [card("GRAV", 1, "", 1.0, *twin.vector(pull), 0.0) for pull in scene.gravity]

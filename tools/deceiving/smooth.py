@@ -23,6 +23,30 @@ def cylinder_on_block(pick, n):
 
 
 @family
+def sprung_platen(pick, n):
+    """A round nose under a platen that rotates (RBE2, MOMENT): an eccentric force, and two springs that stand on the ground; what is between
+    each spring and the platen is an equation (MPC)."""
+    d = Draw(pick, n, h=(0.1, 0.3))
+    half, radius = pick.uniform(0.4, 0.7), pick.uniform(0.8, 4.0)
+    floor = base(d, -1.6, 1.7)
+    body = d.slave()
+    profiled(body, [-half, 0.0, half], 1.0, nose(radius), d.h_slave)
+    nodes = body.line((half, 1.0), (-half, 1.0))
+    force = d.strain * min(body.young, d.young) * half
+    scene = d.scene
+    master, *ends = [len(scene.nodes) + k for k in range(5)]
+    scene.nodes += [(pick.uniform(-0.3, 0.3) * half, 1.3), (-1.5, 1.3), (1.5, 1.3), (-1.5, 0.8), (1.5, 0.8)]
+    scene.rotating.append((master, [*nodes, *ends[:2]], force * pick.uniform(-0.2, 0.2)))
+    scene.hold([master, *ends[2:]], "1")
+    scene.forces.append((master, (0.0, -force)))
+    for end, foot in zip(ends[:2], ends[2:]):
+        scene.equations.append([(foot, "2", 1.0), (end, "2", -pick.choice([1.0, 0.5]))])
+        scene.springs.append((foot, "2", d.young * 10.0 ** pick.uniform(-3, -1)))
+    d.either(body.line((-half, nose(radius)(half)), (half, nose(radius)(half))), floor.line((1.7, 0.0), (-1.6, 0.0)), 0.2)
+    return scene
+
+
+@family
 def pin_in_hole(pick, n):
     """A disc in the round hole of a plate, moved or pressed; whole outlines or the lower half."""
     d = Draw(pick, n, h=(0.12, 0.3))

@@ -163,6 +163,42 @@ def load(scene, top, total):
             scene.add("FORCE", 1, node, 0, total / len(top), *(round(turn(math.radians(angle)), 15) for turn in (math.cos, math.sin)))
     if pick.random() < 0.3:
         body_load(scene, total)
+    if pick.random() < 0.3:
+        ties(scene, top, total)
+
+
+def ties(scene, top, total):
+    """Springs, equations, an RBE2 that may rotate: most can be, some are of DOFs that are fixed, dependent or of a SUPORT."""
+    pick = scene.pick
+    nodes = [card.data[0] for card in scene.deck.cards if card.name == "GRID"]
+    named = {field for card in scene.deck.of("SPC1", "SPC", "SUPORT", "RBE2") for field in card.data[1:]}
+    free = [node for node in nodes if node not in named] or nodes
+    for k in range(pick.randint(0, 3)):
+        ends = [pick.choice(nodes), pick.choice("1111112"), *pick.choice([(), ("", ""), (pick.choice(nodes), pick.choice("1111112"))])]
+        if pick.random() < 0.5:
+            scene.add("CELAS2", 99998000 + k, total * 10.0 ** pick.uniform(0, 4), *ends)
+        else:
+            scene.add("CELAS1", 99998000 + k, 99998100 + k, *ends)
+            if pick.random() < 0.95:
+                scene.add("PELAS", 99998100 + k, total * 10.0 ** pick.uniform(0, 4), *pick.choice([(), ("", "", 99998200 + k, 1.0)]))
+    for k in range(pick.randint(0, 2)):
+        digit, part = pick.choice("12"), pick.choice([0.0, 0.5, 1.5])
+        a = pick.choice(free)
+        b, c = pick.sample([node for node in nodes if node != a], 2)
+        last = ("", "", c, digit, -part) if part or pick.random() < 0.5 else ()
+        scene.add("MPC", pick.choice([5] * 9 + [6]), a, digit, 1.0, b, digit, part - 1.0 or 1.0, *last)
+    if pick.random() < 0.2 and scene.deck.of("MPC"):
+        scene.add("MPCADD", 7, *sorted({card.data[0] for card in scene.deck.of("MPC")}))
+        scene.deck.head = [*(scene.deck.head or ["BEGIN BULK"])[:-1], "MPC = 7", "BEGIN BULK"]
+    if len(top) > 1 and not scene.rings and not scene.deck.of("RBE2") and pick.random() < 0.5:
+        scene.add("RBE2", 99999001, top[0], pick.choice(["12", "123456", "1"]), *top[1:])
+        rotates = pick.choice(["MOMENT"] * 3 + ["SPC"] * 3 + ["SUPORT", "none"])
+        if rotates == "MOMENT":
+            scene.add("MOMENT", 1, top[0], 0, total, 0.0, 0.0, pick.choice([1.0, -1.0, 0.0]))
+        elif rotates == "SPC":
+            scene.add("SPC", 1, top[0], "6", pick.choice([0.0, total * 1e-6]))
+        elif rotates == "SUPORT":
+            scene.add("SUPORT", top[0], "6")
 
 
 def body_load(scene, total):
