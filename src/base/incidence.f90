@@ -9,6 +9,7 @@ module epcont_base_incidence
     integer, allocatable :: start(:), group(:)
   contains
     procedure :: of
+    procedure :: members
   end type incidence
 
 contains
@@ -51,4 +52,13 @@ contains
 
     groups = self%group(self%start(member):self%start(member + 1) - 1)
   end function of
+
+  !> List the members that belong to at least one group, ascending.
+  pure function members(self)
+    class(incidence), intent(in) :: self
+    integer, allocatable :: members(:)
+    integer :: i
+
+    members = pack([(i, i=1, size(self%start) - 1)], self%start(2:) > self%start(:size(self%start) - 1))
+  end function members
 end module epcont_base_incidence

@@ -10,7 +10,7 @@ module epcont_certificate_certificate
   use epcont_certificate_mass_force, only: given_load
   use epcont_certificate_scene, only: scene_type
   use epcont_certificate_tied, only: check_springs, check_ties, gather_ties, longest_arms
-  use epcont_certificate_unit_strains, only: find_slopes, largest_of, strain_by, unit_strains
+  use epcont_certificate_unit_strains, only: find_slopes, largest_face, largest_of, strain_by, unit_strains
   use epcont_certificate_yielding, only: stress_on_curve, von_mises_stress
   use epcont_element_element_kind, only: most_nodes, most_points
   use epcont_element_kinematics, only: axisymmetric, components, directions, plane_stress
@@ -48,6 +48,8 @@ module epcont_certificate_certificate
     real(wp) :: off_curve = 0.0_wp        !! largest distance of a stress from its curve (`measure_stress`)
     real(wp) :: motion_strain = 0.0_wp    !! largest strain of the rigid motions / its rounding
     real(wp) :: lost_stress = 0.0_wp      !! largest stress that rounding of displacements makes, relative
+    real(wp) :: rounding_stress = 0.0_wp  !! the same [stress]
+    real(wp) :: stress_roundings = 0.0_wp !! largest stress / stress that rounding makes there
     real(wp) :: ties = 0.0_wp             !! what RBE2 that turns, or MPC, is off by / largest displacement
     real(wp) :: energy = 0.0_wp           !! |work of the forces - of the stresses| / sum of |terms|
     real(wp) :: force_scale = 1.0_wp      !! largest contact force [force]
@@ -69,6 +71,7 @@ module epcont_certificate_certificate
     real(wp), allocatable :: force(:, :, :)   !! on their nodes [force] [directions, nodes, elements]
     real(wp), allocatable :: work(:)          !! of the stresses [points]
     real(wp) :: off_curve = 0.0_wp, motion_strain = 0.0_wp, lost_stress = 0.0_wp   !! as in the certificate
+    real(wp) :: rounding_stress = 0.0_wp, stress_roundings = 0.0_wp
     type(expansion_type) :: expansion
   end type checked_elements
   integer, parameter :: at_once = 4096
@@ -99,17 +102,22 @@ contains
     real(wp) :: terms                        ! sum of the sizes of all that these two are sums of
     real(wp) :: forces, largest_force, largest_stress, length
     real(wp), dimension(size(model%platen)) :: torque, turn   ! of those that turn
+    real(wp) :: given_force   ! largest load or spring force [force]
+    logical :: unstressed     ! stresses and forces are rounding errors of zero
 
     found%tolerance = max(valid_to, rounding_errors*answer%rounding_error)
     load = answer%load_factor*given_load(model)
-    largest_stress = max(maxval(abs(answer%point_stress)), &
-                         part_of_held*held_stress(model, answer%load_factor))
     residual = 0.0_wp
     element_force = 0.0_wp
     stored = 0.0_wp
-    call add_elements()
     call check_springs(model, answer%displacement, residual, element_force, stored)
+    given_force = max(maxval(abs(load)), maxval(element_force))
+    largest_stress = maxval([abs(answer%point_stress), part_of_held*held_stress(model, answer%load_factor), &
+                             given_force/largest_face(model)])
+    call add_elements()
     residual = residual - load - answer%reaction
+    unstressed = given_force == 0.0_wp .and. found%stress_roundings <= most_roundings
+    if (unstressed) found%off_curve = 0.0_wp
     ! A rigid travel says nothing of how exact the gaps must be: only what the bodies give way does.
     ! Nor does a load that a support takes at once.
     forces = sum(abs(load + answer%reaction)) + sum(abs(answer%contact%force))
@@ -117,9 +125,8 @@ contains
     associate (u => answer%displacement, reaction => answer%reaction)
       ! Where stops take all loads at once, nothing moves but by rounding of what the forces would push in.
       if (maxval(abs(u)) <= roundings*epsilon(1.0_wp)*least_indentation()) length = least_indentation()
-      ! Where nothing presses on anything, bodies give way nowhere: the travels that close gaps are all there
-      ! is.
-      if (forces == 0.0_wp) length = maxval(abs(u))
+      ! Bodies without forces do not deform: rigid-body displacements close the gaps.
+      if (unstressed) length = maxval(abs(u))
       if (expansion%held_work > 0.0_wp) length = max(length, part_of_held*maxval(abs(answer%deformation)))
       found%length_scale = max(length, least_length)
       work = sum(load*u) + sum(reaction*u)
@@ -129,6 +136,10 @@ contains
     if (model%pairs > 0) call add_pairs()
     largest_force = max(maxval(element_force), maxval(abs(load)), part_of_held*expansion%held_force)
     if (any(answer%contact%force > 0.0_wp)) largest_force = max(largest_force, found%force_scale)
+    if (unstressed) then   ! forces and their work are compared with rounding errors, not with each other
+      largest_force = most_roundings*found%rounding_stress*largest_face(model)/found%tolerance
+      terms = terms + largest_force*maxval(abs(answer%displacement))
+    end if
     call gather_ties(model, residual, torque)
     call check_ties(model, answer%displacement, turn, found%ties)
     work = work + sum(answer%moment*turn)
@@ -232,6 +243,8 @@ contains
       found%off_curve = max(found%off_curve, part%off_curve)
       found%motion_strain = max(found%motion_strain, part%motion_strain)
       found%lost_stress = max(found%lost_stress, part%lost_stress)
+      found%rounding_stress = max(found%rounding_stress, part%rounding_stress)
+      found%stress_roundings = max(found%stress_roundings, part%stress_roundings)
     end subroutine add_part
 
     !> The integration points of an element.
@@ -298,6 +311,9 @@ contains
           stiffest = young*(1.0_wp - nu)/((1.0_wp + nu)*(1.0_wp - 2.0_wp*nu))
         part%lost_stress = max(part%lost_stress, ratio(young*rounding, scale), &
                                ratio(stiffest*rounding, largest_stress))
+        part%rounding_stress = max(part%rounding_stress, stiffest*rounding)
+        part%stress_roundings = max(part%stress_roundings, &
+                                    ratio(maxval(abs([stress, on_curve])), stiffest*rounding))
       end associate
     end subroutine check_stress
 

@@ -60,7 +60,7 @@ contains
     type(search_type) :: search
     integer :: k, side
 
-    associate (outline => model%body_outline, x => model%x)
+    associate (outline => model%body_outline, x => model%x, own => model%around%members())
       search%drawn = new_outline_shape(outline, x)
       search%now = new_outline_shape(outline, x + displacement)
       ! A middle that is not there has that of the first node, for which nobody asks.
@@ -74,9 +74,9 @@ contains
       end do
       search%allowance = new_allowance(model, search%drawn, search%now)
       search%mate = find_mates(model)
-      search%moved = maxval(norm2(displacement, dim=1))
-      search%least = same_place*maxval(maxval(x, dim=2) - minval(x, dim=2)) &
-                     + roundings*epsilon(1.0_wp)*(maxval(abs(x)) + maxval(abs(displacement)))
+      search%moved = maxval(norm2(displacement(:, own), dim=1))
+      search%least = same_place*maxval(maxval(x(:, own), dim=2) - minval(x(:, own), dim=2)) &
+                     + roundings*epsilon(1.0_wp)*(maxval(abs(x(:, own))) + maxval(abs(displacement(:, own))))
       allocate (search%line_length(outline%sides), source=0.0_wp)
       do k = 1, size(model%line)
         search%line_length(model%line(k)%side) = search%allowance%length(model%line(k)%side)

@@ -2,6 +2,7 @@
 !> coefficients), not from the sums that the solver makes of them.
 module epcont_certificate_tied
   use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: cancelled
   use epcont_element_kinematics, only: directions
   use epcont_model_arrays, only: linear_equation, turning_platen
   use epcont_model_model, only: model_type
@@ -16,22 +17,24 @@ contains
     type(model_type), intent(in) :: model         !! the scene
     real(wp), intent(in) :: displacement(:, :)    !! [length] [directions, nodes]
     real(wp), intent(inout) :: residual(:, :)     !! forces on the nodes are added [force] [directions, nodes]
-    real(wp), intent(inout) :: sizes(:)           !! their sizes are [force] [nodes]
+    real(wp), intent(inout) :: sizes(:)           !! their sizes are, except of rounding [force] [nodes]
     real(wp), intent(inout) :: stored             !! pull times stretch is [force*length]
-    real(wp) :: apart, pull
+    real(wp) :: apart, pull, u(2)
     integer :: i, k
 
     do k = 1, size(model%spring)
       associate (node => model%spring(k)%node, c => model%spring(k)%component)
-        apart = 0.0_wp
-        if (node(2) > 0) apart = displacement(c(2), node(2))
-        if (node(1) > 0) apart = apart - displacement(c(1), node(1))
+        u = 0.0_wp
+        do i = 1, 2
+          if (node(i) > 0) u(i) = displacement(c(i), node(i))
+        end do
+        apart = u(2) - u(1)
         pull = model%spring(k)%stiffness*apart
         stored = stored + pull*apart
         do i = 1, 2
           if (node(i) == 0) cycle
           residual(c(i), node(i)) = residual(c(i), node(i)) + merge(-pull, pull, i == 1)
-          sizes(node(i)) = sizes(node(i)) + abs(pull)
+          if (abs(apart) > cancelled*maxval(abs(u))) sizes(node(i)) = sizes(node(i)) + abs(pull)
         end do
       end associate
     end do

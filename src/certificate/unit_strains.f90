@@ -8,7 +8,7 @@ module epcont_certificate_unit_strains
   use epcont_model_model, only: model_type
   implicit none
   private
-  public :: find_slopes, largest_of, strain_by, unit_strains
+  public :: find_slopes, largest_face, largest_of, strain_by, unit_strains
 
   !> Half the step of the differences, which is one: exact for quadratics whatever its size.
   real(wp), parameter :: half_step = 0.5_wp
@@ -97,6 +97,19 @@ contains
       end do
     end do
   end subroutine average_dilatation
+
+  !> Largest diameter of an element, times its depth [length**2].
+  pure real(wp) function largest_face(model) result(face)
+    type(model_type), intent(in) :: model   !! the model
+    integer :: e
+
+    face = 0.0_wp
+    do e = 1, model%elements
+      associate (x => model%x(:, model%connectivity(:model%node_count(e), e)))
+        face = max(face, maxval(maxval(x, dim=2) - minval(x, dim=2))*model%depth(e, maxval(x(1, :))))
+      end associate
+    end do
+  end function largest_face
 
   !> The largest size of some numbers.
   pure real(wp) function largest_of(count, number) result(largest)

@@ -164,10 +164,15 @@ contains
 
     !> The pairs of a contact, looked for ever farther until there is one; and the warnings.
     subroutine find_pairs()
+      real(wp) :: extent   ! of the elements [length]
+
+      associate (x => model%x(:, model%around%members()))
+        extent = sum(maxval(x, dim=2) - minval(x, dim=2))
+      end associate
       do
         call add_pairs(model, contact, faces)
         if (contact%last >= contact%first) exit
-        if (contact%search > sum(maxval(model%x, dim=2) - minval(model%x, dim=2))) then
+        if (contact%search > extent) then
           call add_nothing_faced()
           return
         end if

@@ -42,7 +42,9 @@ contains
       integer :: c, e, edge(3), side
       real(wp) :: extent
 
-      extent = maxval(maxval(model%x, dim=2) - minval(model%x, dim=2))
+      associate (x => model%x(:, model%around%members()))
+        extent = maxval(maxval(x, dim=2) - minval(x, dim=2))
+      end associate
       do e = 1, model%elements
         do side = 1, model%corners(e)
           edge = model%edge(e, side)

@@ -109,16 +109,19 @@ contains
       parts%hinge = parts%hinge(:, :hinges)
     end subroutine find_hinges
 
-    !> Centre and extent of each body.
+    !> Measure centre and extent of the elements of each body. A body without elements does not rotate: it
+    !! gets the centre 0 and the extent 1.
     subroutine measure()
       real(wp), dimension(directions, model%bodies) :: low, high
+      integer, allocatable :: node(:)
 
       low = huge(1.0_wp)
       high = -huge(1.0_wp)
-      do i = 1, model%nodes
-        associate (b => model%body(i))
-          low(:, b) = min(low(:, b), model%x(:, i))
-          high(:, b) = max(high(:, b), model%x(:, i))
+      node = model%around%members()
+      do i = 1, size(node)
+        associate (b => model%body(node(i)))
+          low(:, b) = min(low(:, b), model%x(:, node(i)))
+          high(:, b) = max(high(:, b), model%x(:, node(i)))
         end associate
       end do
       parts%centre = 0.5_wp*low + 0.5_wp*high
@@ -137,13 +140,16 @@ contains
     rows = reshape([1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, self%turn(model, node)], shape(rows))
   end function rows
 
-  !> Displacement of a place of a body by the turn that moves the body's extent by one.
+  !> Displacement of a place of a body by the turn that moves the body's extent by one; zero if its part
+  !! cannot rotate, wherever it lies.
   pure function turn(self, model, node)
     class(rigid_parts), intent(in) :: self
     type(model_type), intent(in) :: model   !! the scene
     integer, intent(in) :: node   !! the place
     real(wp) :: turn(directions)
 
+    turn = 0.0_wp
+    if (self%cannot(part_motions, self%of_node(node))) return
     associate (b => model%body(node))
       turn = [-(model%x(2, node) - self%centre(2, b)), model%x(1, node) - self%centre(1, b)]/self%extent(b)
     end associate

@@ -56,7 +56,7 @@ contains
       integer :: i
 
       associate (model => run%model, answer => run%answer)
-        node = pack([(i, i=1, model%nodes)], model%around%start(2:) > model%around%start(:model%nodes))
+        node = model%around%members()
         allocate (point(model%nodes))
         point(node) = [(i, i=1, size(node))]
         last = model%node_count

@@ -11,6 +11,7 @@ KINDS = ("CTRIA3", "CTRIA6", "CQUAD4", "CTRAX3", "CTRAX6")
 
 
 class Rest(scene.Extremes):
+    MASTER, POINT = 9999, 99
 
     def deck(self, kind, young=1000.0, yields=False, bodies=1):
         """Blocks of 1 by 1, 0.1 above each other, on x from 0.3 on; the rows of ids of each."""
@@ -90,6 +91,94 @@ class Rest(scene.Extremes):
                 one, other = (answer.column("elements", "sy") for answer in answers)
                 self.assertGreater(max(map(abs, one)), 0.1)
                 self.near(other, one, 1e-7)
+
+    def master(self, deck, rows, components):
+        deck.grid(self.MASTER, 0.5, 1.5)
+        deck.hold(1, self.MASTER)
+        deck.card("RBE2", 9001, self.MASTER, components, rows[-1][0], rows[-1][-1])
+
+    def solved(self, deck, rows, motion, above=""):
+        result = self.valid(above + deck.text())
+        for n in sum(rows, []):
+            self.near([result.nodes[n]["ux"], result.nodes[n]["uy"]], list(motion(*deck.x[n])), 1e-9)
+        return result
+
+    def test_springs(self):
+        """A body hangs on two springs in series; the force acts at the platen, or a support pulls at the far end."""
+        for kind, young, yields, far in itertools.product(KINDS, (1000.0, 2.1e5), (False, True), (False, True)):
+            deck, (rows,) = self.deck(kind, young, yields)
+            self.master(deck, rows, 2 if kind.startswith("CTRAX") else 12)
+            deck.grid(self.POINT, 0.0, 1e6)
+            deck.hold(1, self.POINT)
+            deck.card("CELAS2", 9002, 100.0, self.MASTER, 2, self.POINT, 2)
+            if far:
+                deck.displace(self.POINT, 2, -0.03)
+            else:
+                deck.card("CELAS2", 9003, 50.0, self.POINT, 2)
+                deck.force(self.MASTER, 0.0, -1.0)
+            with self.subTest(kind=kind, young=young, yields=yields, far=far):
+                self.solved(deck, rows, lambda x, y: (0.0, -0.03), "" if far else "LOAD = 1\n")
+
+    def test_equations(self):
+        """All nodes of a body follow a platen, each by one MPC or in a chain; also if the body is warmer than drawn and if contact is off."""
+        for kind, young, chain, warm, size in itertools.product(KINDS, (1.0, 2.1e11), (False, True), (False, True), (1e-3, 1.0, 30.0)):
+            deck, (rows,) = self.deck(kind, young)
+            self.master(deck, rows, 2 if kind.startswith("CTRAX") else 12)
+            deck.cards = [card for card in deck.cards if card[0] not in ("RBE2", "MAT1")]
+            deck.card("MAT1", 1, young, None, 0.3, None, 1e-5)
+            deck.displace(self.MASTER, 2, -size)
+            nodes = rows[0] if warm else sum(rows, [])
+            for n, leader in zip(nodes, nodes[1:] + [self.MASTER] if chain else [self.MASTER] * len(nodes)):
+                deck.card("MPC", 5, n, 2, 1.0, leader, 2, -1.0)
+            if not kind.startswith("CTRAX"):
+                deck.hold(1, rows[0][0])
+            if warm:
+                deck.card("TEMPD", 3, 100.0)
+            with self.subTest(kind=kind, young=young, chain=chain, warm=warm, size=size):
+                result = self.valid("MPC = 5\nBCONTACT = NONE\n" + "TEMPERATURE(LOAD) = 3\n" * warm + deck.text())
+                for n in nodes:
+                    self.near(result.nodes[n]["uy"], -size)
+
+    def test_rotating_platen(self):
+        """A platen turns a body above another, which it does not reach; beside them two bodies press on each other, or none."""
+        for kind, young, pressed, yields in itertools.product(KINDS[:3], (1.0, 2.1e11), (False, True), (False, True)):
+            deck, (lower, rows, floor, block) = self.deck(kind, young, yields, bodies=4)
+            deck.x = {n: (x + (2.0 if n > 2000 else 0.0), y - (0.3 if n > 3000 else 0.0)) for n, (x, y) in deck.x.items()}
+            deck.cards = [("GRID", card[1], None, *deck.x[card[1]], 0.0) if card[0] == "GRID" else card for card in deck.cards]
+            deck.hold(12, *lower[0], *floor[0])
+            self.master(deck, rows, 126)
+            deck.displace(self.MASTER, 6, 0.01)
+            deck.displace(self.MASTER, 2, 0.01)
+            for k, (one, other) in enumerate(((lower, rows), (floor, block))):
+                for a, b in zip(one[-1], other[0]):
+                    deck.pair(8000 + 100 * k + a % 100, a, b, 0.1 if k == 0 else 0.0)
+            deck.hold(12 if not pressed else 1, *block[-1])
+            if pressed:
+                deck.card("RBE2", 9004, block[-1][0], 2, *block[-1][1:])
+                deck.support(2, block[-1][0])
+                deck.force(block[-1][0], 0.0, -1e-5 * young)
+            with self.subTest(kind=kind, young=young, pressed=pressed, yields=yields):
+                self.solved(deck, rows, lambda x, y: (0.01 * (1.5 - y), 0.01 + 0.01 * (x - 0.5)), "LOAD = 1\n" * pressed)
+
+    def test_point_far_away(self):
+        """Wherever a point without elements lies, which an MPC joins to a body that rotates, the answer is the same."""
+        answers = set()
+        for x, y in ((0.0, 0.0), (0.0, 5000.0), (0.0, -1e6), (1e9, 1.0), (1e9, 1e9)):
+            deck, (lower, rows) = self.deck("CQUAD4", bodies=2)
+            deck.hold(12, *lower[0])
+            self.master(deck, rows, 126)
+            deck.grid(self.POINT, x, y)
+            deck.hold(2, self.POINT)
+            deck.support(6, self.MASTER)
+            deck.force(self.MASTER, 0.0, -2.0)
+            deck.card("CELAS2", 9002, 10.0, self.POINT, 1)
+            deck.card("MPC", 5, self.POINT, 1, 1.0, self.MASTER, 2, -0.8)
+            for a, b in zip(lower[-1], rows[0]):
+                deck.pair(8000 + a, a, b, 0.0)
+            with self.subTest(x=x, y=y):
+                result = self.valid("MPC = 5\nLOAD = 1\n" + deck.text())
+                answers.add(tuple(sorted((n, row["ux"], row["uy"]) for n, row in result.nodes.items())))
+        self.assertEqual(len(answers), 1)
 
 
 class LargestStress(scene.Extremes):
