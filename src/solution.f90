@@ -6,11 +6,12 @@ module epcont_solution
   use epcont_base_tolerances, only: lost_digits
   use epcont_certificate_certificate, only: certificate_type, certify
   use epcont_certificate_scene, only: look_through
-  use epcont_contact_geometry_nearness, only: enter_nodes_that_came_near
+  use epcont_contact_geometry_nearness, only: find_nodes_that_came_near, pair_nodes_that_came_near
   use epcont_contact_problem, only: contact_solved
   use epcont_flexibility_flexibility, only: pair_forces
   use epcont_linear_linear_problem, only: linear_problem
   use epcont_model_controls, only: method_newton, precision_double
+  use epcont_model_model, only: line_contact
   use epcont_plan_forecast, only: check_memory
   use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_plan_planned_scene, only: planned_scene
@@ -61,9 +62,12 @@ module epcont_solution
     type(certificate_type) :: certificate
     type(accuracy_type) :: accuracy
     type(kept_factors) :: kept           !! from load case to load case
-    logical :: replanned = .false.       !! the last solve has changed pairs or plan
+    logical :: replanned = .false.       !! the last solve has changed the plan, also for other load cases
+    !> The scene before nodes that came near in this load case got pairs; not allocated if there were none
+    type(planned_scene), allocatable :: as_given
   contains
     procedure :: solve
+    procedure :: return_to_given
   end type solution_type
 
 contains
@@ -75,10 +79,12 @@ contains
     class(observer), intent(inout) :: watch               !! takes the time, and is told of each solve
     type(error_type), allocatable, intent(out) :: error   !! there is not enough memory
     type(error_type), allocatable :: in_double
+    type(line_contact), allocatable :: contacts(:)
     integer :: count
-    logical :: entered, failed
+    logical :: failed, near
 
     self%replanned = .false.
+    if (allocated(self%as_given)) deallocate (self%as_given)
     do count = 1, most_solves + 1   ! one more, should joined bodies have to be solved apart
       call check_memory(self%expected%bytes, limit, error)
       if (allocated(error)) return
@@ -90,18 +96,33 @@ contains
                    failed)
       if (failed) then
         self%apart = .true.
+        self%replanned = .not. allocated(self%as_given)
       else
         if (self%answer%failed_body > 0 .or. count >= most_solves) exit
-        call enter_nodes_that_came_near(self%model, self%answer%displacement, &
-            self%answer%contact%touching, entered)
-        if (.not. entered) exit
+        call find_nodes_that_came_near(self%model, self%answer%displacement, self%answer%contact%touching, &
+                                       contacts, near)
+        if (.not. near) exit
+        if (.not. allocated(self%as_given)) self%as_given = self%planned_scene
+        call pair_nodes_that_came_near(self%model, contacts, near)
+        if (.not. near) exit
       end if
-      self%replanned = .true.
       call self%kept%forget()
       call self%make_plan(watch)
     end do
     if (.not. self%kept%another) call self%kept%forget()
+    if (allocated(self%kept%virgin) .and. allocated(self%kept%linear)) deallocate (self%kept%linear)
   end subroutine solve
+
+  !> Return to the scene without the pairs of nodes that came near in this load case: other load cases are
+  !! solved as if they were alone.
+  subroutine return_to_given(self)
+    class(solution_type), intent(inout) :: self
+
+    if (.not. allocated(self%as_given)) return
+    self%planned_scene = self%as_given
+    deallocate (self%as_given)
+    call self%kept%forget()
+  end subroutine return_to_given
 
   !> Factors are made anew for the next solve, or are no longer wanted.
   subroutine forget(self)

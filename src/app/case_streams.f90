@@ -3,10 +3,12 @@
 !> streams begin follows from the deck alone, so that every number of threads writes the same bytes.
 module epcont_app_case_streams
   use epcont_app_case_words, only: case_words, words_of
+  use epcont_base_diagnostic, only: place_type
   use epcont_base_error, only: error_type
   use epcont_base_kinds, only: i8, wp
+  use epcont_base_text, only: plural
   use epcont_model_load_cases, only: put_case
-  use epcont_plan_forecast, only: check_memory, most_memory
+  use epcont_plan_forecast, only: check_memory, forecast_type, most_memory
   use epcont_plan_planned_scene, only: planned_scene
   use epcont_plasticity_observer, only: observer
   use epcont_report_outcome, only: judge
@@ -17,7 +19,7 @@ module epcont_app_case_streams
   use epcont_system_threads, only: granted_threads, use_one_thread_each
   implicit none
   private
-  public :: copies_of, run_names, solve_pattern
+  public :: peak_of, run_names, solve_pattern
 
   !> Least number of cases of a stream, in cases and in square roots of all cases: copying the factors at its
   !! begin costs half a case.
@@ -44,8 +46,8 @@ module epcont_app_case_streams
 
 contains
 
-  !> Solve the cases of a pattern and take their results; from the first again where another has changed the
-  !! pairs of the scene.
+  !> Solve the cases of a pattern and take their results; from the first again if another has changed the plan
+  !! of the scene.
   subroutine solve_pattern(run, pattern, names, results, words, watch, error)
     type(run_results), intent(inout) :: run          !! whose plan is that of the pattern
     integer, intent(in) :: pattern                   !! which
@@ -67,7 +69,7 @@ contains
         call solve_cases(run, 2, size(cases), watch, error)
         if (allocated(error) .or. .not. run%replanned) return
       else
-        call choose_threads(run%expected%bytes, size(stream), names%memory, threads, error)
+        call choose_threads(run%expected, size(stream), names%memory, threads, error)
         if (allocated(error)) error%message = names%path//': '//error%message
         if (.not. allocated(error)) call solve_streams()
         if (allocated(error) .or. .not. run%replanned) return
@@ -88,13 +90,18 @@ contains
       run%kept%another = k < size(cases)
       call run%solve(names%memory, watch, error)
       if (allocated(error)) error%message = names%path//': '//error%message
-      if (allocated(error) .or. run%replanned .and. k > 1) return
-      ! gfortran 12 keeps the length of each text that a function returns in one place for all threads.
-      !$omp critical (texts)
-      run%outcome = judge(run)
-      words(run%case) = words_of(run, names%path, names%name)
-      call results%add_case(run, error)
-      !$omp end critical (texts)
+      if (.not. (allocated(error) .or. run%replanned .and. k > 1)) then
+        ! gfortran 12 keeps the length of each text that a function returns in one place for all threads.
+        !$omp critical (texts)
+        run%outcome = judge(run)
+        if (size(cases) > 1 .and. allocated(run%as_given)) call run%outcome%found%add_note(place_type(), &
+          'nodes came near that had no pair: solved again, in this load case alone, with '// &
+          plural(run%model%pairs - run%as_given%model%pairs, 'more pair'))
+        words(run%case) = words_of(run, names%path, names%name)
+        call results%add_case(run, error)
+        !$omp end critical (texts)
+      end if
+      if (size(cases) > 1) call run%return_to_given()
       call watch%lap(stage_writing)
     end subroutine solve_case
 
@@ -153,16 +160,18 @@ contains
     end subroutine solve_stream
   end subroutine solve_pattern
 
-  !> How often one thread holds the scene at its peak: once more where a pattern has several streams.
-  pure integer function copies_of(run) result(copies)
+  !> Memory at the peak on one thread: if a pattern has several streams, that of a stream and what they all go
+  !! on from [bytes].
+  pure integer(i8) function peak_of(run) result(bytes)
     type(run_results), intent(in) :: run
     integer :: p
 
-    copies = 1
+    bytes = run%expected%bytes
     do p = 1, run%cases%patterns
-      if (size(streams_of(size(run%cases%of_pattern(p)), run%expected%bytes)) > 1) copies = 2
+      if (size(streams_of(size(run%cases%of_pattern(p)), run%expected%bytes)) > 1) &
+        bytes = run%expected%bytes + run%expected%kept_bytes
     end do
-  end function copies_of
+  end function peak_of
 
   !> Streams of all cases of a pattern but the first.
   pure function streams_of(cases, bytes) result(stream)
@@ -181,20 +190,22 @@ contains
     end do
   end function streams_of
 
-  !> Threads for streams, each of which takes as much memory as the scene.
-  subroutine choose_threads(bytes, streams, memory, threads, error)
-    integer(i8), intent(in) :: bytes    !! of the scene, as forecast
+  !> Threads for streams, each of which takes as much memory as the scene, beside what they go on from.
+  subroutine choose_threads(expected, streams, memory, threads, error)
+    type(forecast_type), intent(in) :: expected
     integer, intent(in) :: streams
     real(wp), intent(in) :: memory      !! that is allowed [GB]
     integer, intent(out) :: threads
     type(error_type), allocatable, intent(out) :: error   !! there is not enough memory for one
+    integer(i8) :: bytes
 
     threads = min(granted_threads(), streams)
     do
-      call check_memory((threads + 1)*bytes, memory, error)
+      bytes = expected%kept_bytes + threads*expected%bytes
+      call check_memory(bytes, memory, error)
       if (threads == 1) return
       if (.not. allocated(error)) then
-        if (has_memory(most_memory((threads + 1)*bytes) + (threads - 1)*memory_of_thread)) return
+        if (has_memory(most_memory(bytes) + (threads - 1)*memory_of_thread)) return
       end if
       threads = threads - 1
     end do

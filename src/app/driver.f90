@@ -1,7 +1,7 @@
 !> One deck from file to results.
 module epcont_app_driver
   use epcont_app_arguments, only: arguments_type, stem_of
-  use epcont_app_case_streams, only: copies_of, run_names, solve_pattern
+  use epcont_app_case_streams, only: peak_of, run_names, solve_pattern
   use epcont_app_case_words, only: case_words
   use epcont_app_forecast_text, only: forecast_text
   use epcont_app_process, only: print_error, print_text
@@ -79,6 +79,7 @@ contains
       if (arguments%asks('--check')) then
         call say(name//'  checked')
       else
+        run%plan_cases = size(run%cases%of_pattern(1))
         call run%make_plan(watch)
         if (arguments%asks('--plan')) call say_plans()
       end if
@@ -135,6 +136,7 @@ contains
 
       call build_model(run%deck, run%model, told, of_pattern=p)
       call run%find_motions(told)
+      run%plan_cases = size(run%cases%of_pattern(p))
       call run%make_plan(watch)
     end subroutine take_pattern
 
@@ -154,7 +156,7 @@ contains
     !> What the run would take on this machine: on standard error, since plans are compared.
     subroutine say_forecast()
       call print_error(name//': '//forecast_text( &
-        run%planned_scene, size(run%cases%case), run%cases%patterns, copies_of(run), &
+        run%planned_scene, size(run%cases%case), run%cases%patterns, peak_of(run), &
         run%rows_of_tables(arguments%asks('--tables')), sum(watch%spent(2, :)), measured_rate())//newline)
     end subroutine say_forecast
 

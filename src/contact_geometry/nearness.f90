@@ -15,7 +15,7 @@ module epcont_contact_geometry_nearness
   use epcont_model_model, only: line_contact, model_type
   implicit none
   private
-  public :: enter_nodes_that_came_near
+  public :: find_nodes_that_came_near, pair_nodes_that_came_near
 
   real(wp), parameter :: &
     !> A node between those of the other line that stand on its own may pass through by so many times what
@@ -32,44 +32,35 @@ module epcont_contact_geometry_nearness
 
 contains
 
-  !> Give pairs to the nodes that came near; `entered`: there are some, and the scene wants to be solved
-  !! again. Without displacements (what moves was held by nothing) all that may be faced, however far, has its
-  !! pair.
-  subroutine enter_nodes_that_came_near(model, displacement, touching, entered)
-    type(model_type), intent(inout) :: model   !! the scene
+  !> Find the nodes that came near: they need pairs. Without displacements (what moves was held by nothing)
+  !! all that may be faced, however far, needs its pair.
+  subroutine find_nodes_that_came_near(model, displacement, touching, contacts, found)
+    type(model_type), intent(in) :: model                     !! the scene
     real(wp), allocatable, intent(in) :: displacement(:, :)   !! [length] [2, nodes]
     logical, allocatable, intent(in) :: touching(:)           !! [pairs]
-    logical, intent(out) :: entered   !! are there nodes that got pairs?
-    real(wp) :: extent, travel             ! of the scene as drawn; the largest displacement [length]
+    type(line_contact), allocatable, intent(out) :: contacts(:)   !! those of the model, with these nodes
+    logical, intent(out) :: found                             !! are there some?
+    real(wp) :: extent, travel             ! of the elements: size, largest displacement [length]
+    integer, allocatable :: node(:)        ! of the elements
     logical :: holds(0:model%nodes)        ! nodes that stand on the other line; 0 is none
     type(line_contact) :: contact
-    type(faces_type) :: faces
-    integer :: before, c
+    integer :: c
 
-    entered = .false.
-    if (size(model%line_contact) == 0) return
-    extent = sum(maxval(model%x, dim=2) - minval(model%x, dim=2))
+    found = .false.
+    contacts = model%line_contact
+    if (size(contacts) == 0) return
+    node = model%around%members()
+    extent = sum(maxval(model%x(:, node), dim=2) - minval(model%x(:, node), dim=2))
     if (allocated(displacement)) then
-      travel = maxval(norm2(displacement, dim=1))
+      travel = maxval(norm2(displacement(:, node), dim=1))
       holds = .false.
       holds(pack(model%pair_node(2, :), touching)) = .true.
     end if
-    do c = 1, size(model%line_contact)
-      contact = model%line_contact(c)
+    do c = 1, size(contacts)
+      contact = contacts(c)
       call look_at_contact()
-      model%line_contact(c) = contact
+      contacts(c) = contact
     end do
-    if (.not. entered) return
-    before = model%pairs
-    model%pairs = model%single_pairs()
-    do c = 1, size(model%line_contact)
-      contact = model%line_contact(c)
-      call add_pairs(model, contact, faces)
-      model%line_contact(c) = contact
-    end do
-    call end_pairs(model)
-    call balance_pairs(model)
-    entered = model%pairs > before
 
   contains
 
@@ -85,7 +76,7 @@ contains
       end do
       if (contact%search > search) then
         contact%is_wider = .true.
-        entered = .true.
+        found = .true.
       else if (allocated(displacement)) then   ! what the slave's nodes will hold off is not the master's
         do i = 1, size(contact%master%element)
           do which = 1, 3
@@ -133,7 +124,7 @@ contains
         if (moved(1) >= -left_open(side, which, face(k), moved(2))) cycle
         contact%came_near = [contact%came_near, from%node]
         contact%search = max(contact%search, further*abs(face(k)%gap))
-        entered = .true.
+        found = .true.
         return
       end do
     end subroutine look_from_master
@@ -252,5 +243,26 @@ contains
         rotation = -dot_product(line%own_normal(side, 0.5_wp), moved)/line%chord_length(side)
       end associate
     end function rotation
-  end subroutine enter_nodes_that_came_near
+  end subroutine find_nodes_that_came_near
+
+  !> Give pairs to the nodes that came near.
+  subroutine pair_nodes_that_came_near(model, contacts, paired)
+    type(model_type), intent(inout) :: model      !! the scene
+    type(line_contact), intent(in) :: contacts(:) !! its contacts with these nodes
+    logical, intent(out) :: paired                !! are there more pairs now?
+    type(line_contact) :: contact
+    type(faces_type) :: faces
+    integer :: before, c
+
+    before = model%pairs
+    model%pairs = model%single_pairs()
+    do c = 1, size(contacts)
+      contact = contacts(c)
+      call add_pairs(model, contact, faces)
+      model%line_contact(c) = contact
+    end do
+    call end_pairs(model)
+    call balance_pairs(model)
+    paired = model%pairs > before
+  end subroutine pair_nodes_that_came_near
 end module epcont_contact_geometry_nearness

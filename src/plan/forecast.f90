@@ -20,6 +20,7 @@ module epcont_plan_forecast
   type :: forecast_type
     integer(i8) :: bytes = 0            !! that the process will hold at its peak, on one thread
     integer(i8) :: double_bytes = 0     !! the same with factors in double precision
+    integer(i8) :: kept_bytes = 0       !! of these, what is kept from load case to load case
     real(wp) :: operations = 0.0_wp     !! floating-point operations of factor, flexibility and simplex
     real(wp) :: operations_again = 0.0_wp   !! of these, what each solve but the first has, beyond yield
     real(wp) :: contact = 0.0_wp        !! of these, what the simplex has
@@ -29,6 +30,8 @@ module epcont_plan_forecast
     integer :: loops = 0                !! contacts between bodies beyond those that join them (`loops_of`)
     integer(i8) :: entries = 0          !! of the factors
     integer(i8) :: entries_again = 0    !! of these, what is factored for each solve
+  contains
+    procedure :: keep_unloaded
   end type forecast_type
 
   real(wp), parameter :: giga = 1.0e9_wp
@@ -95,6 +98,14 @@ contains
 
     most_memory = 2*bytes + memory_of_libraries
   end function most_memory
+
+  !> If several load cases yield, the factors of the unloaded state are held beside those of the last state.
+  pure subroutine keep_unloaded(self)
+    class(forecast_type), intent(inout) :: self
+
+    self%bytes = 2*self%bytes - of_process
+    self%double_bytes = 2*self%double_bytes - of_process
+  end subroutine keep_unloaded
 
   !> By blocks, level by level (`contact/level_factor.f90`), each of which has a part in the next. A full set
   !! of one or two bodies is factored twice, and the sets on the way to it are smaller, or little of them is

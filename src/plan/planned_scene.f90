@@ -19,6 +19,7 @@ module epcont_plan_planned_scene
     type(iteration_plan) :: iteration      !! how contact and yielding are found
     type(forecast_type) :: expected        !! memory and work
     logical :: apart = .false.             !! bodies are not joined, whatever the scene is like
+    integer :: plan_cases = 1              !! load cases that share the plan
   contains
     procedure :: find_motions
     procedure :: make_plan
@@ -43,6 +44,8 @@ contains
     self%numbering = number_equations(self%model, self%iteration%joined)
     call watch%lap(stage_numbering)
     self%expected = forecast(self%model, self%motions, self%numbering, self%iteration)
+    self%expected%kept_bytes = self%expected%bytes
+    if (self%plan_cases > 1 .and. self%iteration%yields) call self%expected%keep_unloaded()
     call watch%lap(stage_plan)
   end subroutine make_plan
 end module epcont_plan_planned_scene

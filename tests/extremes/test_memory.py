@@ -105,6 +105,26 @@ class Memory(unittest.TestCase):
     def test_a_fine_strip(self):
         self.compare(strip(300, 60, 5.0), "fine")
 
+    def test_load_cases(self):
+        """Cases that yield hold the factors of the unloaded state too; more of them are streams, beside what these go on from."""
+        for cases, yields in ((2, True), (25, True), (2, False), (25, False)):
+            text = strip(300, 60, 5.0).text()
+            if yields:
+                text = text.replace("MAT1,1,", "MATS1,1,,PLASTIC,0.1,1,1,0.2\nMAT1,1,")
+            factors = {100 + k: 0.5 + 0.4 * k / cases for k in range(1, cases + 1)}
+            control = "".join(f"SUBCASE {k}\nLOAD = {k}\n" for k in factors)
+            loads = "".join(f"LOAD,{k},1.0,{factor:.3f},1\n" for k, factor in factors.items())
+            path = pathlib.Path(self.directory)/"cases.dat"
+            path.write_text(control + text.replace("ENDDATA", loads + "ENDDATA"))
+            run = subprocess.run([PROGRAM, str(path), "--plan"], capture_output=True, text=True, timeout=100, check=True)
+            expected = float(re.search(r"([\d.]+) MB$", run.stderr)[1])
+            status, held = peak(path, self.directory)
+            self.assertEqual(status, 0)
+            own = held - self.libraries
+            with self.subTest(cases=cases, yields=yields, forecast=expected, held=held):
+                self.assertGreaterEqual(expected, 0.8*(own - WAVERS))
+                self.assertLessEqual(expected, 1.3*(own + WAVERS))
+
 
 if __name__ == "__main__":
     unittest.main()
