@@ -144,10 +144,10 @@ class Folders(Case):
         for name in ("a", "b", "c"):
             self.deck("old", name)
         self.deck("new", "a")
-        self.deck("new", "b", approach_7_2="-1.00002E-3")
+        self.deck("new", "b", approach_7_2="-1.00005E-3")
         self.deck("new", "c", max_pressure="2.00062")
         self.judged(1, "3 decks: 1 the same, 2 differ; worst: p_max of deck c, 3.1E-04")
-        self.assertIn("approach_7_2 of deck b, 2.0E-05\n", self.output)
+        self.assertIn("approach_7_2 of deck b, 5.0E-05\n", self.output)
 
     def test_figures_come_before_estimates(self):
         self.deck("old")
@@ -171,6 +171,10 @@ class Folders(Case):
         self.judged(0, "1 deck: the same")
         self.deck("new", approach_7_2=None)
         self.judged(1, "1 deck: 0 the same, 1 differs; worst: approach_7_2 of deck a, missing in the second folder")
+        for folder, pressure in (("old", "3.0"), ("new", "4.0")):
+            self.deck(folder, status="not converged", max_pressure=pressure)
+        self.judged(0, "1 deck: the same")
+        self.deck("old")
         self.deck("new", status="overlap", max_pressure="3.0")
         self.judged(1, "1 deck: 0 the same, 1 differs; worst: status of deck a, valid -> overlap")
         self.deck("new", max_pressure="")
