@@ -43,12 +43,12 @@ INSTEAD = [
     (r"tools/plot --all", "tools/plot --help", "minutes"),
     (r"tools/tradeoff .*", "build/venv/bin/python tools/tradeoffs.py --help", "minutes; installs GNU time"),
     (r"(python tests/independent/compare.py \S+) input/.*", r"\1 input/hertz/hertz44.dat tests/independent/cases/*_size8.dat", "minutes"),
-    (r"(python tests/independent/write_random.py .*)-n 60", r"\1-n 6", "half a minute"),
+    (r"(python tests/independent/compare.py \S+) --random 300(.*)", r"\1 --random 6\2", "minutes"),
 ]
 # Words of the text that stand for something of the reader's.
 STAND_FOR = {
     "<deck>": "hertz44", "DECK...": "hertz44.dat", "DECK": "hertz44.dat", "SCENE.toml": "scene.toml", "SCENE": "hertz",
-    "DIR": "out", "NAME.png": "name.png", "NAME": "GRID", "FILE": "file.dat", "REFERENCE": "old/deck.lst", "NEW": "new/deck.lst",
+    "DIR": "out", "NAME.png": "name.png", "NAME": "GRID", "FILE": "file.dat", "OLD": "old", "NEW": "new",
     "DECK.in": "spring.in", "TABLE.csv": "values.csv", "F": "1", "n": "4", "M": "1",
 }
 COMMAND = re.compile(r"(?:tools|tests|build)/[\w/]+(?= |$)|(?:epcont|cmake|ctest|python|sed|awk|sudo apt) |\. tools/venv")
