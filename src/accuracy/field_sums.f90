@@ -65,7 +65,7 @@ contains
     real(wp) :: cross, part(most_places)
     integer :: f
 
-    if (self%finds_energies) then
+    if (self%finds_energies .and. errors%fields > 0) then
       cross = cross_modulus(law%bulk, law%shear, law%sheet)
       part = errors%part
       call put(1, errors%places, errors%error, self%strain(1, 1, 1), self%stress(1, 1, 1))

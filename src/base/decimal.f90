@@ -24,7 +24,7 @@ contains
 
     call find_digits(value, 17, number, exponent, exact)
     if (exact) then
-      text = put_together(value < 0.0_wp, number, 17, exponent, 3)
+      call put_together(value < 0.0_wp, number, 17, exponent, 3, text)
     else
       write (text, '(es25.16e3)') value
       text = adjustl(text)
@@ -41,7 +41,7 @@ contains
 
     call find_digits(value, 6, number, exponent, exact)
     if (exact) then
-      text = put_together(value < 0.0_wp, number, 6, exponent, 2)
+      call put_together(value < 0.0_wp, number, 6, exponent, 2, text)
     else
       write (text, '(es13.5e2)') value
       text = adjustl(text)
@@ -81,13 +81,13 @@ contains
     end do
   end subroutine find_digits
 
-  !> Digits with a point behind the first, and the power of ten of that.
-  pure function put_together(negative, number, digits, power, places) result(text)
+  !> Write digits with a point after the first one, and the power of ten of the first one.
+  pure subroutine put_together(negative, number, digits, power, places, text)
     logical, intent(in) :: negative
     integer(i8), intent(in) :: number       !! the digits
     integer, intent(in) :: digits           !! how many
     integer, intent(in) :: power, places    !! of ten, and how many digits that has
-    character(len=25) :: text
+    character(len=*), intent(out) :: text
     integer :: first
 
     text = ''
@@ -99,7 +99,7 @@ contains
       behind(:2) = merge('E-', 'E+', power < 0)
       call put_digits(int(abs(power), i8), behind(3:))
     end associate
-  end function put_together
+  end subroutine put_together
 
   !> A whole number, with zeros before it.
   pure subroutine put_digits(number, text)

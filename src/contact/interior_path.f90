@@ -26,6 +26,8 @@ module epcont_contact_interior_path
   !> Products of force and gap, scaled, at the end: which of the two is none is clear then.
   !! After 1e-18 gaps were taken for forces below 1e-9, which bear bodies that are levers to each other.
   real(wp), parameter :: least_product = 1.0e-24_wp
+  !> If the mean product grows beyond this, the path diverges: there is no equilibrium.
+  real(wp), parameter :: most_product = 1.0e100_wp
   !> Part of the way to where the first force or gap is zero.
   real(wp), parameter :: to_the_wall = 0.99_wp
   !> Part of its largest kind that a force or gap has at first, at least.
@@ -58,7 +60,7 @@ contains
     call begin()
     do count = 1, step_limit
       mean = dot_product(at%force, at%gap)/size(closed)
-      if (.not. basis%sound .or. mean <= least_product) exit
+      if (.not. basis%sound .or. mean <= least_product .or. mean > most_product) exit
       barrier%own_flexibility = scaled%own_flexibility + at%gap/at%force
       call factor_all(basis, barrier)
       steps = steps + 1

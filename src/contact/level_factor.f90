@@ -52,9 +52,8 @@ contains
         definite = (info == 0 .or. info > n) .and. &
                    all(pivots(factor, n) >= least*scaled%softness(level(l)%pair))
       end associate
-      if (.not. definite) return
       ! Fewer pairs than motions do not hold these, whatever rounding makes of the last pivot.
-      sound = info == 0 .and. sum([(size(level(k)%pair) - size(level(k)%motion), k=1, l)]) >= 0
+      sound = definite .and. info == 0 .and. sum([(size(level(k)%pair) - size(level(k)%motion), k=1, l)]) >= 0
       if (.not. sound) return
     end do
 

@@ -5,10 +5,14 @@ module epcont_geometry_edge
   private
   public :: edge_point, edge_points
 
-  !> Gauss points along an edge: exact for a linear pressure on a straight one, and for a uniform one on any,
-  !! rings too.
-  integer, parameter, public :: edge_point_count = 3
-  real(wp), parameter :: place(3) = [-sqrt(0.6_wp), 0.0_wp, sqrt(0.6_wp)], weight(3) = [5, 8, 5]/9.0_wp
+  !> Gauss points along an edge: exact for a linear pressure on any edge, straight or curved. On a curved edge
+  !! of an axisymmetric element, the product of pressure, radius, shape function and tangent has the degree
+  !! 1 + 2 + 2 + 1 = 6.
+  integer, parameter, public :: edge_point_count = 4
+  real(wp), parameter :: inner = sqrt((3.0_wp - 2.0_wp*sqrt(1.2_wp))/7.0_wp), &
+                         outer = sqrt((3.0_wp + 2.0_wp*sqrt(1.2_wp))/7.0_wp), &
+                         place(4) = [-outer, -inner, inner, outer], &
+                         weight(4) = 0.5_wp + [-1, 1, 1, -1]*sqrt(30.0_wp)/36.0_wp
 
   type :: edge_point
     real(wp) :: values(3) = 0.0_wp   !! shape functions of its beginning, its end and its middle node

@@ -7,7 +7,6 @@ module epcont_linear_linear_problem
   use epcont_contact_flexibility_matrix, only: flexibility_matrix, new_flexibility
   use epcont_contact_problem, only: contact_problem, contact_solution, contact_solved, contact_stalled
   use epcont_contact_solver, only: solve_contact
-  use epcont_element_kinematics, only: directions
   use epcont_flexibility_flexibility, only: gap_opening, pair_forces, see_motions, terms_of_openings
   use epcont_linear_borne_loads, only: borne_loads
   use epcont_linear_joined_contact, only: joined_contact, new_joined
@@ -221,8 +220,8 @@ contains
       if (allocated(self%last) .and. size(scene%model%sum%first) == 0) then
         state = self%last
       else
-        allocate (state%deformation(directions, scene%model%nodes), state%contact%force(scene%model%pairs), &
-                  source=0.0_wp)
+        state%deformation = 0.0_wp*scene%model%load
+        state%contact%force = spread(0.0_wp, 1, scene%model%pairs)
       end if
       call prescribe(scene, load_factor, state%deformation)
       state%strain = self%operator%strains(scene%model, state%deformation, load_factor)

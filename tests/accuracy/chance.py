@@ -13,7 +13,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools"))
 from scenes import quads  # noqa: E402
 from scenes.deck import Deck  # noqa: E402
-from scenes.mesh import first_free  # noqa: E402
+from scenes.mesh import corners_of, first_free  # noqa: E402
 from scenes.patches import join, walk  # noqa: E402
 
 PLANE, RINGS = ("ctria3", "ctria6", "cquad4"), ("ctrax3", "ctrax6")
@@ -88,6 +88,25 @@ def draw(seed, rings, yielding):
         scene.radius = 1.0 / math.radians(scene.flat)
     scene.load = nominal_load(scene)
     return scene
+
+
+def draw_crowned(seed, rings):
+    """A crowned punch on a plate, by lines, and its coarse mesh: the slave line is finer than the master line."""
+    chance = random.Random(f"crowned {seed} {rings}")
+    ratio = math.exp(chance.uniform(0.0, math.log(5.0)))
+    scene = Scene("round", rings, (1000.0, 1000.0 * ratio) if chance.random() < 0.5 else (1000.0 * ratio, 1000.0), nu=chance.uniform(0.2, 0.4), lines=True)
+    scene.exchanged = chance.random() < 0.3
+    scene.whole = not rings and chance.random() < 0.7
+    scene.radius = 1.0 / math.exp(chance.uniform(math.log(0.02), math.log(0.2)))
+    punch = min(chance.uniform(2.0, 6.0), 0.8 * scene.radius)
+    scene.wide = punch, punch * chance.uniform(1.5, 3.0)
+    scene.deep = profile(scene, 0, punch) + chance.uniform(3.0, 10.0), chance.uniform(3.0, 10.0)
+    scene.load = nominal_load(scene)
+    finer = chance.uniform(1.2, 3.0)
+    mesh = Fineness(pairs=math.exp(chance.uniform(math.log(3.0), math.log(15.0))), growth=chance.uniform(1.1, 1.3),
+                    finer=finer if scene.exchanged else 1.0 / finer, shift=chance.choice((0.0, 0.5, chance.random())), stretch=chance.uniform(0.6, 1.3),
+                    jitter=0.0, seed=0)
+    return scene, mesh
 
 
 def compliance(scene):
@@ -215,12 +234,13 @@ def columns(scene, which, mesh):
 
 
 def make(scene, element, mesh):
-    """The deck of a scene."""
+    """The deck of a scene. `element`: of both bodies, or a pair of them, of the upper body and the lower."""
     if scene.family == "hole":
         return hole(scene, element, mesh)
     deck = Deck(scene.family.upper(), [f"{scene}", f"{mesh}"], rings=scene.rings, strain=not scene.sheet, from_geometry=not scene.lines)
+    elements = (element, element) if isinstance(element, str) else element
     xs = columns(scene, 0, mesh)
-    upper = body(scene, 0, mesh, xs, element)
+    upper = body(scene, 0, mesh, xs, elements[0])
     reach = scene.lasts * scene.width
     if not scene.lines and not scene.rigid:   # node faces node as far as they may touch
         near = [x for x in xs if abs(x) <= (1.0 if scene.family == "sharp punch" else reach) + 1e-9]
@@ -229,7 +249,7 @@ def make(scene, element, mesh):
             other = [-x for x in reversed(beyond(scene, mesh, [-x for x in reversed(near)]))] + other
     elif not scene.rigid:
         other = columns(scene, 1, mesh)
-    lower = None if scene.rigid else body(scene, 1, mesh, other, element)
+    lower = None if scene.rigid else body(scene, 1, mesh, other, elements[1])
     free = first_free(*(m for m in (upper, lower) if m))
     one, two = 1, free + 1
     deck.body(upper, 1, one)
@@ -270,7 +290,7 @@ def beyond(scene, mesh, near):
 def on_surface(scene, mesh, which, reach):
     """Nodes of a surface within reach, corners of elements at both ends."""
     up = 1 if which == 0 else -1
-    corners = {n for nodes in mesh.element for n in (nodes[:3] if len(nodes) == 6 else nodes)}
+    corners = {n for nodes in mesh.element for n in nodes[:corners_of(nodes)]}
     if scene.family in ("sharp punch", "stack"):
         reach = 1.0 if not scene.lines or which == 0 else 1.5
     near = [n for n, (x, y) in enumerate(mesh.point) if abs(x) <= reach + 1e-9 and abs(y * up - profile(scene, which, x)) < 1e-9]
