@@ -230,7 +230,7 @@ contains
         touching = kept%line%in_contact(answer%contact%touching)
         answer%pressure = pair_pressures(model, kept%line, touching, force)
         answer%zones = find_zones(kept%line, touching, force, answer%pressure)
-        answer%lines = compare_sides(model, answer%contact%touching, force, answer%pressure)
+        call compare_sides(model, answer%contact%touching, force, answer%pressure, answer%lines, answer%apart)
         answer%bodies = find_body_forces(model, force)
         call watch%lap(stage_stresses)
         call certify(model, answer, scene%iteration%off_curve, certificate)

@@ -60,6 +60,10 @@ module epcont_accuracy_weights
     !! mean over that, short of the pressure at the end: of a straight rise by half of it, of a steeper one by
     !! more (columns pressed at a corner: score_by_chance.py, "stack").
     beyond_mean = 0.625_wp, &
+    !> Largest pressure: of the largest difference between the pressures on the two lines near the peak. If
+    !! the slave line is finer than the master line, its pressure oscillates from master node to master node
+    !! (crowned punches on plates: score_crowned.py).
+    lines_differ = 0.5_wp, &
     !> What flattens waves of the gap, over E* r: waves 2 d long take a pressure of pi E* a/(2 d). Theory
     !! (Westergaard 1939); tests/accuracy/test_waves.
     waves_flattened = acos(-1.0_wp)/16.0_wp, &

@@ -1,15 +1,15 @@
 !> Errors of a zone's largest pressure and of its half-width.
 !>
-!> Of the pressure four things tell: how far the peak is off a parabola through the nearest pairs, off the
-!> normal stress that the smooth strains of both sides give there, how many pairs the zone has, and what part
-!> of the energy the mesh is off by; of the half-width the spacing at its ends, and the energy. What each
-!> counts is measured (tests/accuracy). Where the pressure has no limit, or the zone too few pairs, nothing is
-!> said of it.
+!> Of the pressure five things tell: how far the peak is off a parabola through the nearest pairs, off the
+!> normal stress that the smooth strains of both sides give there, how many pairs the zone has, what part of
+!> the energy the mesh is off by, and how far the pressures on the two lines differ; of the half-width the
+!> spacing at its ends, and the energy. What each counts is measured (tests/accuracy). Where the pressure has
+!> no limit, or the zone too few pairs, nothing is said of it.
 module epcont_accuracy_zone_error
   use epcont_accuracy_limits, only: edge_pairs, has_tip
   use epcont_accuracy_surface_line, only: elements_behind, find_waves, first_element, surface_line
-  use epcont_accuracy_weights, only: beyond_mean, estimate_weights, other_side, stretched, waves_alone, &
-      weights_of
+  use epcont_accuracy_weights, only: beyond_mean, estimate_weights, lines_differ, other_side, stretched, &
+      waves_alone, weights_of
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: dependent, least_difference, no_effect
   use epcont_geometry_plane, only: cross_product
@@ -226,17 +226,21 @@ contains
 
     !> Of the largest pressure [stress].
     pure real(wp) function pressure_error() result(off)
-      real(wp) :: coarse, from(2)
+      real(wp) :: apart, coarse, from(2)
 
+      associate (first => max(1, peak - around_peak/2), last => min(n, peak + around_peak/2))
+        apart = maxval(abs(answer%apart(zone%pairs(first:last))))
+      end associate
       coarse = 0.0_wp   ! of an even pressure any spacing tells
       if (error%resolution > 0.0_wp) &
         coarse = max(long/max(1, n - 1), depth_behind())/max(spacing, error%half_length)
       from = [off_parabola(), abs(largest - line%smooth_pressure(error%peak))]
       associate (weights => error%weights)
         off = weights%parabola*from(1) + weights%stress*from(2) + weights%smaller*minval(from) + flattening &
-              + sum(ends%short) + ((weights%spacing + weights%square*error%resolution)*error%resolution &
-                                   + weights%graded*max(0.0_wp, coarse - stretched*error%resolution) &
-                                   + weights%pressure_energy*energy)*largest
+              + lines_differ*apart + sum(ends%short) &
+              + ((weights%spacing + weights%square*error%resolution)*error%resolution &
+                 + weights%graded*max(0.0_wp, coarse - stretched*error%resolution) &
+                 + weights%pressure_energy*energy)*largest
       end associate
       if (off <= least_difference*largest) off = 0.0_wp
     end function pressure_error

@@ -335,7 +335,8 @@ contains
       if (line(1:1) /= ' ') then
         k = k + 1
         at = index(line, ':')
-        card(k) = card_entry(line(:at - 1), trim(line(at + 2:)), [field_entry ::])
+        card(k) = card_entry(line(:at - 1), field=[field_entry ::])
+        card(k)%meaning = trim(line(at + 2:))   ! gfortran 12 does not free a trimmed text in the constructor
       else if (line(:6) == '  like') then
         read (line(7:9), *) at
         card(k)%field = card(findloc(card%name == line(10:17), .true., dim=1))%field(:at)

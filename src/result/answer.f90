@@ -32,6 +32,8 @@ module epcont_result_answer
     logical, allocatable :: beyond(:)                !! beyond the end of the material's table [elements]
     !> At the pairs; negative: no boundary there [stress] [pairs]
     real(wp), allocatable :: pressure(:)
+    !> Pressure on the master line less that on the slave line (`compare_sides`) [stress] [pairs]
+    real(wp), allocatable :: apart(:)
     type(contact_zone), allocatable :: zones(:)      !! runs of touching pairs
     type(line_pressure), allocatable :: lines(:)     !! of each line contact
     type(body_force), allocatable :: bodies(:)       !! what contact exerts on each that has elements

@@ -22,23 +22,31 @@ module epcont_result_line_pressure
 
 contains
 
-  !> Each line contact from both sides.
-  pure function compare_sides(model, touching, force, pressure) result(found)
+  !> Compare both sides of each line contact.
+  pure subroutine compare_sides(model, touching, force, pressure, found, apart)
     type(model_type), intent(in) :: model           !! the scene
     logical, intent(in) :: touching(:)              !! [pairs]
     real(wp), intent(in) :: force(:), pressure(:)   !! [force], [stress] [pairs]
-    type(line_pressure), allocatable :: found(:)
+    type(line_pressure), allocatable, intent(out) :: found(:)
+    !> Pressure on the master line less that on the slave line; 0 at an open pair, and at one of no lines
+    !! [stress] [pairs]
+    real(wp), allocatable, intent(out) :: apart(:)
     integer :: c
 
-    found = [(compared(model%line_contact(c)), c=1, size(model%line_contact))]
+    apart = spread(0.0_wp, 1, model%pairs)
+    allocate (found(size(model%line_contact)))
+    do c = 1, size(found)
+      call compare(model%line_contact(c), found(c), apart)
+    end do
 
   contains
 
-    pure type(line_pressure) function compared(contact) result(found)
+    pure subroutine compare(contact, found, apart)
       type(line_contact), intent(in) :: contact
+      type(line_pressure), intent(out) :: found
+      real(wp), intent(inout) :: apart(:)   !! [pairs]
       !> By the nodes of the master, over their area in the end
       real(wp), allocatable :: area(:), received(:)
-      real(wp) :: there
       integer :: corner(2), first, i, k, last, middle
 
       associate (row => model%row_node(model%row_start(contact%first):model%row_start(contact%last + 1) - 1))
@@ -72,10 +80,11 @@ contains
         if (.not. touching(k)) cycle
         first = model%row_start(k) + 1
         last = model%row_start(k + 1) - 1
-        there = -dot_product(model%row_weight(first:last), received(model%row_node(first:last)))
-        found%difference = max(found%difference, abs(there - pressure(k))/found%on_slave)
+        apart(k) = -dot_product(model%row_weight(first:last), received(model%row_node(first:last))) &
+                   - pressure(k)
+        found%difference = max(found%difference, abs(apart(k))/found%on_slave)
       end do
-    end function compared
+    end subroutine compare
 
     !> The boundary along a line that belongs to each of its nodes: what a pressure of 1 gives to it, 0 where
     !! that is rounding or curvature [length**2] [nodes from the first to the last of some].
@@ -96,5 +105,5 @@ contains
         end associate
       end do
     end subroutine find_areas
-  end function compare_sides
+  end subroutine compare_sides
 end module epcont_result_line_pressure
