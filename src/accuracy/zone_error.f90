@@ -8,8 +8,8 @@
 module epcont_accuracy_zone_error
   use epcont_accuracy_limits, only: edge_pairs, has_tip
   use epcont_accuracy_surface_line, only: elements_behind, find_waves, first_element, surface_line
-  use epcont_accuracy_weights, only: beyond_mean, estimate_weights, lines_differ, other_side, stretched, &
-      waves_alone, weights_of
+  use epcont_accuracy_weights, only: beyond_mean, estimate_weights, lines_agree, lines_differ, other_side, &
+      stretched, waves_alone, weights_of
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: dependent, least_difference, no_effect
   use epcont_geometry_plane, only: cross_product
@@ -229,7 +229,7 @@ contains
       real(wp) :: apart, coarse, from(2)
 
       associate (first => max(1, peak - around_peak/2), last => min(n, peak + around_peak/2))
-        apart = maxval(abs(answer%apart(zone%pairs(first:last))))
+        apart = max(0.0_wp, maxval(abs(answer%apart(zone%pairs(first:last)))) - lines_agree*largest)
       end associate
       coarse = 0.0_wp   ! of an even pressure any spacing tells
       if (error%resolution > 0.0_wp) &
