@@ -63,7 +63,7 @@ module epcont_accuracy_weights
     !> Largest pressure: of the largest difference between the pressures on the two lines near the peak. If
     !! the slave line is finer than the master line, its pressure oscillates from master node to master node
     !! (crowned punches on plates: score_crowned.py).
-    lines_differ = 0.8_wp, &
+    lines_differ = 0.6_wp, &
     !> Part of the largest pressure by which they may differ: on six-node sides nodal forces swing by a per
     !! cent, though the force on each side is right (score.py, pins in lugs).
     lines_agree = 0.01_wp, &
