@@ -3,9 +3,9 @@
 Nodes have any names: rows of arrays, or ids.
 """
 from dataclasses import dataclass
-from math import cos, fmod, pi, radians, sin
+from math import cos, fmod, pi, radians, sin, sqrt
 
-from kinds import GAUSS, solved
+from kinds import solved
 
 #: Of a side from 0 to 1 with two or three nodes (end, end, middle): coefficients of the shape functions [node][power].
 WAYS = {n: list(zip(*solved([[t ** p for p in range(n)] for t in (0.0, 1.0, 0.5)[:n]],
@@ -34,12 +34,18 @@ def boundary(elements, x):
     return {ends: sides[0] for ends, sides in found.items() if len(sides) == 1}
 
 
+#: Five Gauss points from 0 to 1 and their weights: exact for a linear pressure on a curved edge of an axisymmetric element.
+NEAR, FAR = (sqrt(5 - sign * 2 * sqrt(10 / 7)) / 6 for sign in (1, -1))
+GAUSS = [(0.5 + at, weight / 1800) for at, weight in ((0.0, 512), (-NEAR, 322 + 13 * sqrt(70)), (NEAR, 322 + 13 * sqrt(70)),
+                                                      (-FAR, 322 - 13 * sqrt(70)), (FAR, 322 - 13 * sqrt(70)))]
+
+
 def side_points(x):
-    """Of each of three Gauss points on a side: shape values, place, tangent times its part, way along from 0 to 1.
+    """Of each of five Gauss points on a side: shape values, place, tangent times its part, way along from 0 to 1.
 
     x: its ends, and its middle where it has one."""
     shape = WAYS[len(x)]
-    for t, part in zip(*GAUSS):
+    for t, part in GAUSS:
         values = [sum(c * t ** p for p, c in enumerate(column)) for column in shape]
         slopes = [sum(p * c * t ** (p - 1) for p, c in enumerate(column) if p) for column in shape]
         place = [sum(v * point[c] for v, point in zip(values, x)) for c in (0, 1)]
