@@ -24,6 +24,8 @@ module epcont_accuracy_zone_error
   integer, parameter :: &
     !> Pairs that the parabola goes through.
     around_peak = 7, &
+    !> Pairs on either side of the peak at which the pressures on the two lines are compared.
+    beside_peak = 3, &
     !> Pairs, with those beyond a line of symmetry, that a zone must have for its pressure to be resolved.
     few = 3, &
     !> Pairs of a side with a middle node: a zone on one, mirrored or not, follows the pressure no better than
@@ -227,10 +229,12 @@ contains
     !> Of the largest pressure [stress].
     pure real(wp) function pressure_error() result(off)
       real(wp) :: apart, coarse, from(2)
+      integer :: near(2*beside_peak + 1), k   ! pairs of the zone, on both sides of its peak
 
-      associate (first => max(1, peak - around_peak/2), last => min(n, peak + around_peak/2))
-        apart = max(0.0_wp, maxval(abs(answer%apart(zone%pairs(first:last)))) - lines_agree*largest)
-      end associate
+      near = [(k, k=peak - beside_peak, peak + beside_peak)]
+      if (around > 0.0_wp) near = modulo(near - 1, n) + 1
+      near = min(max(near, 1), n)
+      apart = max(0.0_wp, maxval(abs(answer%apart(zone%pairs(near)))) - lines_agree*largest)
       coarse = 0.0_wp   ! of an even pressure any spacing tells
       if (error%resolution > 0.0_wp) &
         coarse = max(long/max(1, n - 1), depth_behind())/max(spacing, error%half_length)

@@ -154,7 +154,7 @@ class Scene:
                 self.add_long("SPC1", number, digit, *nodes)
         for (node, digit), value in held.items():
             if value:
-                self.add("SPC", number, node, digit, value)
+                self.add("SPC", number, node, digit, float(f"{value:.3e}"))   # pyNastran writes SPC in small fields only
 
     def cases(self, chance):
         """Several load cases in most models, in any order of their numbers: sets of loads times factors, one with displacements

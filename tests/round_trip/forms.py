@@ -42,10 +42,10 @@ def restore_lines(model, lines):
 
 
 def rewritten(path, form=None):
-    """The cards of a deck by a writer of our own, with commas; reals as they are, or cut to what a form leaves of them."""
-    deck = read_cards(path)
-    lines = [f"{key} = {value}" for key, value in deck.case.items()] + ["BEGIN BULK"]
-    for card in deck.cards:
+    """The cards of a deck by a writer of our own, with commas; reals as they are, or cut to what a form leaves of them. The lines above
+    them stay as they are."""
+    lines = path.read_text().partition("BEGIN BULK")[0].splitlines() + ["BEGIN BULK"]
+    for card in read_cards(path).cards:
         fields = [cut(field, form) for field in card[1:]]
         while fields and not fields[-1]:
             fields.pop()
