@@ -374,7 +374,7 @@ contains
       call self%solve_lower(inner, border)
       call self%solve_upper(inner, border, 1)
       if (begun) then   ! the inverse is symmetric: a row's sum is a column's
-        self%condition = max(1.0_wp, self%matrix%norm*max(self%inverse_norm, self%unit*maxval(abs(x))))
+        self%condition = max(1.0_wp, self%matrix%norm*maxval([self%inverse_norm, self%unit*abs(x)]))
         deallocate (self%signs)
       else
         call turn(x, self%unit)

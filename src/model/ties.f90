@@ -87,9 +87,10 @@ contains
                            ' anywhere else', 'a node at another place for GM of its RBE2')
     end do
     do k = 1, size(model%equation)
-      associate (given => model%equation(k))
+      associate (given => model%equation(k), first_one => model%equation(k)%coefficient(1))
+        ! A first coefficient of 0.0 has been reported; it must not divide.
         call add_row(given%component(1), given%node(1), given%component(2:), given%node(2:), &
-                     -given%coefficient(2:)/given%coefficient(1))
+                     -given%coefficient(2:)/merge(1.0_wp, first_one, first_one == 0.0_wp))
         equation(rows) = k
       end associate
     end do

@@ -121,7 +121,7 @@ CARDS = {
     "LOAD": ("plane", 0, [("SID", "99", error("LOAD = 10: the deck has no such set")), ("S", "2.", CHANGES), ("S1 ..", "3.", CHANGES), ("L1 ..", "2", CHANGES)]),
     "SPCD": ("plane", 0, [("SID", "2", error("there is no set 4")), ("G1", "3", error("direction 1 of GRID 3 is not fixed")), ("C1", "6", error("GRID 1 has no direction 6")),
                           ("D1", ".005", CHANGES), ("G2", "10", error("another displacement already")), ("C2", "2", CHANGES), ("D2", ".005", CHANGES)]),
-    "TEMP": ("plane", 0, [("SID", "4", CHANGES), ("G1", "3", CHANGES), ("T1", "31.", CHANGES), ("G2", "5", CHANGES), ("T2", "31.", CHANGES), ("G3", "5", CHANGES),
+    "TEMP": ("plane", 0, [("SID", "4", CHANGES), ("G1", "3", CHANGES), ("T1", "31.", CHANGES), ("G2", "3", CHANGES), ("T2", "31.", CHANGES), ("G3", "3", CHANGES),
                           ("T3", "31.", CHANGES)]),
     "TEMPD": ("plane", 0, [field for k, there in enumerate((3, 4, 5, 6), 1)
                            for field in ((f"SID{k}", "9", error(f"TEMPERATURE = {there}" if there > 3 else "has no temperature in set 3")), (f"T{k}", "21.", CHANGES))]),
