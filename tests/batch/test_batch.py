@@ -580,6 +580,14 @@ class StandIn(Case):
         self.submit(0, names, "--resume")
         self.assertEqual(2, len((self.place / "submitted").read_text().splitlines()))
 
+    def test_sbatch_that_reads_no_script(self):
+        """It may end before the script is written; the batch does not end of it."""
+        self.decks("a.dat")
+        (self.place / "bin" / "sbatch").write_text("#!/bin/sh\nexec <&-\necho no such partition >&2\nexit 1\n")
+        for _ in range(20):
+            run = self.run_it(3, "a.dat", "-o", "out", "--slurm", "--program", self.fake, env=self.environment)
+            self.assertEqual("tools/batch: sbatch: no such partition\n", run.stderr)
+
     def test_waiting_that_is_stopped(self):
         """By its own exit status; the job goes on."""
         self.decks("a.dat")

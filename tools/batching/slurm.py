@@ -8,6 +8,7 @@ import re
 import shlex
 import subprocess
 import sys
+import tempfile
 import time
 
 from wording import counted
@@ -43,7 +44,10 @@ def submit(book, plan, tasks, script):
     text = f"#!/bin/sh\nexec {shlex.quote(script)} --task {shlex.quote(os.path.abspath(book.directory))} " \
            f"\"$SLURM_ARRAY_TASK_ID\" {plan['id']}\n"
     try:
-        done = ask(*command, input=text)
+        with tempfile.TemporaryFile("w+") as job:   # not a pipe: an sbatch that ends without reading it would end the batch, too (SIGPIPE)
+            job.write(text)
+            job.seek(0)
+            done = ask(*command, stdin=job)
     except OSError as error:
         raise Refused(f"sbatch cannot be started: {error.strerror}; without Slurm leave --slurm out") from None
     if done.returncode:
