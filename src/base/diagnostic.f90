@@ -40,7 +40,9 @@ module epcont_base_diagnostic
     procedure, private :: add_error_at
     procedure, private :: add_error_of
     procedure :: add_warning
-    procedure :: add_note
+    generic :: add_note => add_note_at, add_note_of
+    procedure, private :: add_note_at
+    procedure, private :: add_note_of
     procedure :: add
     procedure :: has
     procedure :: in_deck_order
@@ -76,13 +78,22 @@ contains
   end subroutine add_warning
 
   !> A note: something accepted without effect, or else worth a line in the listing.
-  pure subroutine add_note(self, place, what)
+  pure subroutine add_note_at(self, place, what)
     class(diagnostics), intent(inout) :: self
     type(place_type), intent(in) :: place   !! where
     character(len=*), intent(in) :: what    !! is worth a line
 
     call self%add(diagnostic(severity_note, place, what=what, remedy=''))
-  end subroutine add_note
+  end subroutine add_note_at
+
+  !> The same of a card.
+  pure subroutine add_note_of(self, of, which, item, what)
+    class(diagnostics), intent(inout) :: self
+    integer, intent(in) :: of, which, item   !! what it is about
+    character(len=*), intent(in) :: what     !! is worth a line, behind its name
+
+    call self%add(diagnostic(severity_note, place_type(), of, which, item, what, remedy=''))
+  end subroutine add_note_of
 
   !> Behind the others; where there is no room, in a list of twice the length.
   pure subroutine add(self, fault)

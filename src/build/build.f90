@@ -1,6 +1,6 @@
 !> From the cards of a deck to the scene, and what is found of it to messages with their places in the deck.
 module epcont_build_build
-  use epcont_base_diagnostic, only: diagnostic, diagnostics, severity_note
+  use epcont_base_diagnostic, only: diagnostic, diagnostics
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: sorted_order
   use epcont_base_text, only: text_of
@@ -168,8 +168,8 @@ contains
       if (all(cases%case%contact /= contact_all)) &
         call note_unnamed(deck, card_bconp, 1, cases%case%contact, 'BCONTACT', faults)
       if (all(cases%case%contact == contact_none) .and. deck%card(card_cgap)%count > 0) &
-        call faults%add(diagnostic(severity_note, of=card_cgap, which=1, item=1, remedy='', what= &
-          ': BCONTACT is NONE in all load cases'//and_more(deck%card(card_cgap)%count, ' (', ' more CGAPs)')))
+        call faults%add_note(card_cgap, 1, 1, &
+          ': BCONTACT is NONE in all load cases'//and_more(deck%card(card_cgap)%count, ' (', ' more CGAPs)'))
     end subroutine note_without_effect
 
     !> The ids in a column of a table.

@@ -1,7 +1,6 @@
 !> Load cases from case control, and what the sets say that they have: FORCE, PLOADX1,
 !> GRAV, RFORCE, LOAD, SPC and SPCD.
 module epcont_build_cases
-  use epcont_base_diagnostic, only: diagnostic, severity_note
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: new_id_index
   use epcont_base_text, only: short_real, text_of
@@ -151,8 +150,8 @@ contains
                                'the direction of the force, such as 0.0 and -1.0')
       end do
       i = findloc(idle .and. .not. blank, .true., dim=1)
-      if (i > 0) call found%add(diagnostic(severity_note, of=card_force, which=i, item=n1, remedy='', &
-        what=': N1 and N2 are 0.0: no force'//and_more(count(idle .and. .not. blank), '; so with ', ' more')))
+      if (i > 0) call found%add_note(card_force, i, n1, &
+        ': N1 and N2 are 0.0: no force'//and_more(count(idle .and. .not. blank), '; so with ', ' more'))
     end subroutine report_idle
 
     !> PLOADX1; one warning for all that press inside a body.

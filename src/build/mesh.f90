@@ -1,6 +1,5 @@
 !> Nodes, materials, sections and elements from their cards.
 module epcont_build_mesh
-  use epcont_base_diagnostic, only: diagnostic, severity_note
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: short_real
   use epcont_build_reference, only: card_index, index_of, resolve
@@ -101,8 +100,8 @@ contains
         material(i)%reference_temperature = mat1%number('TREF', i)
         material(i)%density = mat1%number('RHO', i)
         if (mat1%has('TREF', i) .and. mat1%entry%field(mat1%column('TREF'))%used .and. &
-            material(i)%expansion == 0.0_wp) call note(card_mat1, i, mat1%column('TREF'), &
-                                                       ': field 8 (TREF) has no effect without A')
+            material(i)%expansion == 0.0_wp) call found%add_note(card_mat1, i, mat1%column('TREF'), &
+                                                                 ': field 8 (TREF) has no effect without A')
         if (count([mat1%has('E', i), mat1%has('G', i), mat1%has('NU', i)]) < 2) then
           call refuse(card_mat1, i, 'E', ': of E, G and NU two are needed', 'E and NU, say')
         else if (.not. mat1%has('NU', i)) then
@@ -173,14 +172,6 @@ contains
       end associate
     end subroutine read_table
 
-    !> A field has no effect.
-    subroutine note(card, i, column, what)
-      integer, intent(in) :: card, i, column
-      character(len=*), intent(in) :: what
-
-      call found%add(diagnostic(severity_note, of=card, which=i, item=column, what=what, remedy=''))
-    end subroutine note
-
     !> A field is at fault.
     subroutine refuse(card, i, name, what, remedy)
       integer, intent(in) :: card, i
@@ -207,7 +198,8 @@ contains
         end do
         if (deck%parameter_word('PLANE') == 'STRESS' .and. all(kinematics /= plane_stress) .and. &
             shell%count > 0) &
-          call note(card_param, deck%parameter_row('PLANE'), 2, ': no PSHELL leaves the choice to it')
+          call found%add_note(card_param, deck%parameter_row('PLANE'), 2, &
+                              ': no PSHELL leaves the choice to it')
         call set_sections(model%scene_type, section%young, section%poisson, kinematics)
         model%curve = section%curve
         model%expansion = section%expansion

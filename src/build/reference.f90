@@ -1,7 +1,6 @@
 !> Ids of cards: unique in their space, found where other cards name them; and which set of supports or loads
 !> is used.
 module epcont_build_reference
-  use epcont_base_diagnostic, only: diagnostic, severity_note
   use epcont_base_sorting, only: id_index, new_id_index, sorted_order
   use epcont_base_text, only: text_of
   use epcont_deck_card_kinds, only: card_blseg
@@ -174,8 +173,7 @@ contains
       do i = 1, table%count
         if (.not. table%given(column, i)) cycle
         if (named%find(nint(table%value(column, i))) > 0) cycle
-        call found%add(diagnostic(severity_note, of=card, which=i, item=column, remedy='', &
-          what=': no '//by//' names '//text_of(nint(table%value(column, i)))))
+        call found%add_note(card, i, column, ': no '//by//' names '//text_of(nint(table%value(column, i))))
       end do
     end associate
   end subroutine note_unnamed
@@ -192,8 +190,7 @@ contains
       associate (table => deck%card(cards(c)))
         do i = 1, table%count
           if (.not. table%given(1, i) .or. any(used == nint(table%value(1, i)))) cycle
-          call found%add(diagnostic(severity_note, of=cards(c), which=i, item=1, &
-                                    what=': set not used', remedy=''))
+          call found%add_note(cards(c), i, 1, ': set not used')
         end do
       end associate
     end do

@@ -1,6 +1,5 @@
 !> Supports, ties and reference freedoms from GRID PS, SPC, SPC1, RBE2, SUPORT, MPC and springs.
 module epcont_build_supports
-  use epcont_base_diagnostic, only: diagnostic, severity_note
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of
   use epcont_build_tie_cards, only: build_equations, build_springs, check_directions, names, turn
@@ -196,8 +195,8 @@ contains
         tied = names(deck%card(card_rbe2)%value(3, i), [1, 2])
         if (all(tied) .or. leader(i) == 0) cycle
         if (any(model%platen%leader == leader(i))) then
-          call found%add(diagnostic(severity_note, of=card_rbe2, which=i, item=3, remedy='', &
-            what=': '//model%name_of(of_node, leader(i))//' rotates, so GM follow in directions 1 and 2'))
+          call found%add_note(card_rbe2, i, 3, &
+            ': '//model%name_of(of_node, leader(i))//' rotates, so GM follow in directions 1 and 2')
         else if (.not. any(tied)) then
           call found%add_warning(card_rbe2, i, 3, ': field 4 (CM) ties neither direction 1 nor 2', &
                                  'the directions in which GM move as GN does, such as 12')

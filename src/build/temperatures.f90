@@ -1,6 +1,5 @@
 !> Temperatures of the nodes from TEMP and TEMPD, in the sets that load cases choose.
 module epcont_build_temperatures
-  use epcont_base_diagnostic, only: diagnostic, severity_note
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of
   use epcont_build_reference, only: card_index, resolve
@@ -131,8 +130,7 @@ contains
         ': has no temperature in set '//text_of(set)//and_more(count(unnamed), '; nor have ', ' more'), &
         'TEMP or TEMPD')
       if (default_by > 0 .and. .not. any(unnamed) .and. any(expands)) &
-        call found%add(diagnostic(severity_note, of=card_tempd, which=default_by, item=1, &
-                                  what=': all nodes have a TEMP in set '//text_of(set), remedy=''))
+        call found%add_note(card_tempd, default_by, 1, ': all nodes have a TEMP in set '//text_of(set))
       if (found%errors > 0) return   ! it may be what could not be read
       vain = named_by(1, :) > 0 .and. .not. expands
       k = findloc(vain, .true., dim=1)
@@ -178,8 +176,7 @@ contains
           do k = 1, merge(1, size(table%value, 1), card(c) == card_temp), 2
             if (.not. table%given(k, i) .or. any(heard == nint(table%value(k, i)))) cycle
             heard = [heard, nint(table%value(k, i))]
-            call found%add(diagnostic(severity_note, of=card(c), which=i, item=k, &
-                                      what=': set '//text_of(heard(size(heard)))//' not used', remedy=''))
+            call found%add_note(card(c), i, k, ': set '//text_of(heard(size(heard)))//' not used')
           end do
         end do
       end associate

@@ -103,6 +103,7 @@ contains
     real(wp) :: forces, largest_force, largest_stress, length
     real(wp), dimension(size(model%platen)) :: torque, turn   ! of those that turn
     real(wp) :: given_force   ! largest load or spring force [force]
+    real(wp) :: face          ! of the largest element [length**2]
     logical :: unstressed     ! stresses and forces are rounding errors of zero
 
     found%tolerance = max(valid_to, rounding_errors*answer%rounding_error)
@@ -112,8 +113,9 @@ contains
     stored = 0.0_wp
     call check_springs(model, answer%displacement, residual, element_force, stored)
     given_force = max(maxval(abs(load)), maxval(element_force))
-    largest_stress = maxval([abs(answer%point_stress), part_of_held*held_stress(model, answer%load_factor), &
-                             given_force/largest_face(model)])
+    face = largest_face(model)
+    largest_stress = max(largest_of(size(answer%point_stress), answer%point_stress), &
+                         part_of_held*held_stress(model, answer%load_factor), given_force/face)
     call add_elements()
     residual = residual - load - answer%reaction
     unstressed = given_force == 0.0_wp .and. found%stress_roundings <= most_roundings
@@ -137,7 +139,7 @@ contains
     largest_force = max(maxval(element_force), maxval(abs(load)), part_of_held*expansion%held_force)
     if (any(answer%contact%force > 0.0_wp)) largest_force = max(largest_force, found%force_scale)
     if (unstressed) then   ! forces and their work are compared with rounding errors, not with each other
-      largest_force = most_roundings*found%rounding_stress*largest_face(model)/found%tolerance
+      largest_force = most_roundings*found%rounding_stress*face/found%tolerance
       terms = terms + largest_force*maxval(abs(answer%displacement))
     end if
     call gather_ties(model, residual, torque)

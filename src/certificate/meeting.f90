@@ -9,7 +9,7 @@ module epcont_certificate_meeting
   use epcont_element_kinematics, only: directions
   use epcont_geometry_box_tree, only: box_query
   use epcont_geometry_outline_shape, only: near_place, new_outline_shape, outline_shape
-  use epcont_geometry_plane, only: span_along
+  use epcont_geometry_plane, only: extent_of, span_along
   use epcont_model_model, only: model_type
   implicit none
   private
@@ -75,7 +75,7 @@ contains
       search%allowance = new_allowance(model, search%drawn, search%now)
       search%mate = find_mates(model)
       search%moved = maxval(norm2(displacement(:, own), dim=1))
-      search%least = same_place*maxval(maxval(x(:, own), dim=2) - minval(x(:, own), dim=2)) &
+      search%least = same_place*maxval(extent_of(x(:, own))) &
                      + roundings*epsilon(1.0_wp)*(maxval(abs(x(:, own))) + maxval(abs(displacement(:, own))))
       allocate (search%line_length(outline%sides), source=0.0_wp)
       do k = 1, size(model%line)

@@ -5,6 +5,7 @@ module epcont_certificate_unit_strains
   use epcont_base_kinds, only: wp
   use epcont_element_element_kind, only: element_kind, most_nodes, most_points
   use epcont_element_kinematics, only: axisymmetric, components, directions, plane_stress
+  use epcont_geometry_plane, only: extent_of
   use epcont_model_model, only: model_type
   implicit none
   private
@@ -106,7 +107,7 @@ contains
     face = 0.0_wp
     do e = 1, model%elements
       associate (x => model%x(:, model%connectivity(:model%node_count(e), e)))
-        face = max(face, maxval(maxval(x, dim=2) - minval(x, dim=2))*model%depth(e, maxval(x(1, :))))
+        face = max(face, maxval(extent_of(x))*model%depth(e, maxval(x(1, :))))
       end associate
     end do
   end function largest_face

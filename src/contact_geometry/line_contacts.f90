@@ -11,6 +11,7 @@ module epcont_contact_geometry_line_contacts
   use epcont_contact_geometry_line_sides, only: find_line_sides
   use epcont_contact_geometry_line_warnings, only: warn_of_both_ways, warn_of_contact
   use epcont_geometry_boundary_line, only: boundary_line
+  use epcont_geometry_plane, only: extent_of
   use epcont_model_finding, only: findings, of_couple, of_line
   use epcont_model_freedoms, only: join_nodes
   use epcont_model_model, only: line_contact, model_type
@@ -166,9 +167,7 @@ contains
     subroutine find_pairs()
       real(wp) :: extent   ! of the elements [length]
 
-      associate (x => model%x(:, model%around%members()))
-        extent = sum(maxval(x, dim=2) - minval(x, dim=2))
-      end associate
+      extent = sum(extent_of(model%x(:, model%around%members())))
       do
         call add_pairs(model, contact, faces)
         if (contact%last >= contact%first) exit

@@ -11,7 +11,7 @@ module epcont_contact_geometry_nearness
   use epcont_contact_geometry_line_pairs, only: add_pairs, end_pairs
   use epcont_geometry_boundary_line, only: boundary_line, facing_type
   use epcont_geometry_facing, only: find_facing, looking_point, node_of
-  use epcont_geometry_plane, only: cross_product
+  use epcont_geometry_plane, only: cross_product, extent_of
   use epcont_model_model, only: line_contact, model_type
   implicit none
   private
@@ -50,7 +50,7 @@ contains
     contacts = model%line_contact
     if (size(contacts) == 0) return
     node = model%around%members()
-    extent = sum(maxval(model%x(:, node), dim=2) - minval(model%x(:, node), dim=2))
+    extent = sum(extent_of(model%x(:, node)))
     if (allocated(displacement)) then
       travel = maxval(norm2(displacement(:, node), dim=1))
       holds = .false.

@@ -3,9 +3,17 @@ module epcont_geometry_plane
   use epcont_base_kinds, only: wp
   implicit none
   private
-  public :: angle_between, cross_product, crossing, right_of, span_along, turned, unit
+  public :: angle_between, cross_product, crossing, extent_of, right_of, span_along, turned, unit
 
 contains
+
+  !> Width and height of the box around some points [length].
+  pure function extent_of(x) result(extent)
+    real(wp), intent(in) :: x(:, :)   !! [length] [2, points]
+    real(wp) :: extent(2)
+
+    extent = maxval(x, dim=2) - minval(x, dim=2)
+  end function extent_of
 
   !> The part of a x b across the plane: positive where b lies to the left of a.
   pure real(wp) function cross_product(a, b)

@@ -4,6 +4,7 @@ module epcont_model_body_checks
   use epcont_base_text, only: short_real
   use epcont_base_tolerances, only: same_place
   use epcont_deck_entry, only: farthest, least_cause
+  use epcont_geometry_plane, only: extent_of
   use epcont_model_arrays, only: body_load
   use epcont_model_body_forces, only: body_forces, weigh_nodes
   use epcont_model_finding, only: findings, of_body_load, of_node
@@ -42,9 +43,7 @@ contains
       integer :: c, e, edge(3), side
       real(wp) :: extent
 
-      associate (x => model%x(:, model%around%members()))
-        extent = maxval(maxval(x, dim=2) - minval(x, dim=2))
-      end associate
+      extent = maxval(extent_of(model%x(:, model%around%members())))
       do e = 1, model%elements
         do side = 1, model%corners(e)
           edge = model%edge(e, side)

@@ -6,13 +6,13 @@
 module epcont_plan_free_motion
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
-  use epcont_base_text, only: plural, short_real, text_of
-  use epcont_base_tolerances, only: dependent, no_effect
+  use epcont_base_tolerances, only: dependent
   use epcont_element_kinematics, only: directions
   use epcont_linalg_dense, only: lu_solve, null_space
   use epcont_model_arrays, only: angle, spring_type
   use epcont_model_finding, only: findings, of_body, of_node
   use epcont_model_model, only: model_type
+  use epcont_plan_loose_bodies, only: add_loose_body, add_surplus
   use epcont_plan_rigid_parts, only: find_rigid_parts, part_motions, rigid_parts
   use epcont_system_threads, only: threads_over
   implicit none
@@ -22,8 +22,6 @@ module epcont_plan_free_motion
   !> SUPORT freedoms that measure the motions with a condition above this are too close to each other: six
   !! digits of the displacements would be lost.
   real(wp), parameter :: largest_condition = 1.0e6_wp
-  !> Freedoms that move by this part of the largest motion may take its place.
-  real(wp), parameter :: nearly = 0.999_wp
 
   !> The free motions of all bodies.
   type :: free_motions
@@ -170,7 +168,6 @@ contains
     integer, intent(inout) :: columns               !! of the coefficients so far
     type(free_motions), intent(inout) :: motions
     type(findings), intent(inout) :: found
-    character(len=:), allocatable :: body
     real(wp), allocatable :: basis(:, :), factors(:, :), loose(:, :), measured(:, :), square(:, :), unit(:, :)
     integer, allocatable :: component(:), node(:)   ! of the SUPORT freedoms
     integer, allocatable :: platen(:)               ! whose angles are some of these, the last
@@ -191,12 +188,11 @@ contains
     m = size(basis, 2)
     square = matmul(measured, basis)
     loose = matmul(basis, null_space(square, dependent))
-    body = 'the body of '//model%name_of(of_node, nodes(1))
     if (size(loose, 2) > 0) then
-      call add_loose_body(reshape(loose, [part_motions, size(own), size(loose, 2)]))
+      call add_loose_body(model, motions%parts, motions%own_part, nodes, &
+                          reshape(loose, [part_motions, size(own), size(loose, 2)]), found)
     else if (size(node) > m) then
-      call found%add_error(of_body, nodes(1), 0, body//' has '//plural(m, 'free motion')//' and '// &
-                           plural(size(node), 'SUPORT freedom'), 'as many SUPORT freedoms as free motions')
+      call add_surplus(model, node, component, null_space(transpose(square), dependent), m, found)
     else if (m > 0) then
       allocate (unit(m, m), source=0.0_wp)
       do i = 1, m
@@ -205,8 +201,8 @@ contains
       factors = square
       call lu_solve(factors, unit, info)
       if (norm2(unit)*norm2(square) > largest_condition) then
-        call found%add_error(of_body, nodes(1), 0, body//': its SUPORT freedoms hardly tell its free'// &
-                             ' motions apart', 'SUPORT nodes farther from each other')
+        call found%add_error(of_body, nodes(1), 0, 'the body of '//model%name_of(of_node, nodes(1))// &
+          ': its SUPORT freedoms hardly tell its free motions apart', 'SUPORT nodes farther from each other')
         return
       end if
       ! By how much a turn moves the body's extent has told the motions apart; now it is an angle.
@@ -324,67 +320,5 @@ contains
       end do
       held = held(:rows, :)
     end function held_rows
-
-    !> Say how the body moves, and the freedoms that would hold it: those that move most, one after the other,
-    !! each motion taken out of the others at the freedom chosen for it.
-    subroutine add_loose_body(loose)
-      real(wp), intent(in) :: loose(:, :, :)     !! motions that nothing holds [part_motions, own parts, any]
-      real(wp) :: motion(directions*size(nodes), size(loose, 3))
-      character(len=:), allocatable :: card, text
-      integer :: at(2), i, j, k, moving
-      logical :: follows(size(motion, 1))        ! and cannot be a SUPORT freedom
-
-      moving = 0
-      do i = 1, size(nodes)
-        associate (of_part => loose(:, motions%own_part(motions%parts%of_node(nodes(i))), :))
-          motion(directions*(i - 1) + 1:directions*i, :) = &
-            matmul(motions%parts%rows(model, nodes(i)), of_part)
-          follows(directions*(i - 1) + 1:directions*i) = model%sum_of(:, nodes(i)) > 0
-          if (moving == 0 .and. any(abs(of_part) > no_effect*maxval(abs(loose)))) moving = nodes(i)
-        end associate
-      end do
-      if (moving /= nodes(1)) body = 'a part of '//body//', with '//model%name_of(of_node, moving)//','
-      text = ''
-      card = ''
-      do k = 1, size(motion, 2)
-        ! The first of those that move nearly as much as the largest, so that rounding does not choose.
-        associate (moved => merge(0.0_wp, abs(motion(:, k:)), spread(follows, 2, size(motion, 2) - k + 1)))
-          at = findloc(moved >= nearly*maxval(moved), .true.)
-        end associate
-        i = at(1)
-        j = k + at(2) - 1
-        motion(:, [k, j]) = motion(:, [j, k])
-        motion(:, k) = motion(:, k)/motion(i, k)
-        associate (node => (i + 1)/directions)
-          text = text//', '//words(motion(:, k), node)
-          card = card//','//text_of(model%node_id(nodes(node)))//','//text_of(2 - mod(i, directions))
-        end associate
-        do j = 1, size(motion, 2)
-          if (j /= k) motion(:, j) = motion(:, j) - motion(i, j)*motion(:, k)
-        end do
-      end do
-      if (size(nodes) == 1) body = model%name_of(of_node, moving)//', which no element has,'
-      call found%add_error(of_body, moving, 0, body//' is free to move: '//text(3:), &
-                           'hold it by SPC1, or solve for the motion by SUPORT'//card)
-    end subroutine add_loose_body
-
-    !> A motion, as one of the body's nodes has it. A part shifts whose nodes all move alike.
-    pure function words(motion, k) result(text)
-      real(wp), intent(in) :: motion(directions, size(nodes))
-      integer, intent(in) :: k   !! the node's place in the list
-      character(len=:), allocatable :: text
-      real(wp) :: unit(directions)
-      logical :: beside(directions, size(nodes))
-
-      associate (part => motions%parts%of_node(nodes))
-        beside = spread(part == part(k), 1, directions)
-      end associate
-      text = 'it shifts'
-      if (sum(maxval(motion, dim=2, mask=beside) - minval(motion, dim=2, mask=beside)) > no_effect) &
-        text = 'it turns, '//model%name_of(of_node, nodes(k))//' moving'
-      ! Without rounding.
-      unit = real(nint(motion(:, k)/norm2(motion(:, k))*1.0e4_wp), wp)*1.0e-4_wp
-      text = text//' along ('//short_real(unit(1))//', '//short_real(unit(2))//')'
-    end function words
   end subroutine examine_body
 end module epcont_plan_free_motion

@@ -1,0 +1,126 @@
+!> Messages about bodies that nothing holds, and about SUPORTs that measure no motion.
+module epcont_plan_loose_bodies
+  use epcont_base_kinds, only: wp
+  use epcont_base_text, only: plural, short_real, text_of
+  use epcont_base_tolerances, only: no_effect
+  use epcont_element_kinematics, only: directions
+  use epcont_model_arrays, only: angle
+  use epcont_model_finding, only: findings, of_body, of_node
+  use epcont_model_model, only: model_type
+  use epcont_plan_rigid_parts, only: part_motions, rigid_parts
+  implicit none
+  private
+  public :: add_loose_body, add_surplus
+
+  !> Of displacements this near to the largest, a message names the first, so that rounding does not choose.
+  real(wp), parameter :: nearly = 0.999_wp
+
+contains
+
+  !> A body has more SUPORT freedoms than rigid-body motions: name the last one that can go.
+  subroutine add_surplus(model, node, component, dependence, motions, found)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: node(:), component(:)   !! of the SUPORT freedoms of the body
+    real(wp), intent(in) :: dependence(:, :)       !! combinations that measure no motion [SUPORT, any]
+    integer, intent(in) :: motions                 !! how many the body has
+    type(findings), intent(inout) :: found         !! gets an error
+    character(len=:), allocatable :: direction, name, remedy
+    integer :: last
+
+    associate (part => norm2(dependence, dim=2))
+      last = findloc(part >= nearly*maxval(part), .true., dim=1, back=.true.)
+    end associate
+    name = model%name_of(of_node, node(last))
+    direction = text_of(component(last))
+    remedy = 'as many SUPORT freedoms as free motions'
+    if (component(last) == angle) then
+      direction = '6'
+      remedy = remedy//'; MOMENT 0.0 lets '//name//' rotate without SUPORT'
+    end if
+    call found%add_error(of_body, node(last), 0, 'the body of '//name//' has '// &
+      plural(motions, 'free motion')//' and '//plural(size(node), 'SUPORT freedom')//': '//name// &
+      ' direction '//direction//' is one too many', remedy)
+  end subroutine add_surplus
+
+  !> A body can move: say how, and which freedoms would hold it. The freedom that moves most is chosen, its
+  !! motion is taken out of the others, and so on.
+  subroutine add_loose_body(model, parts, own_part, nodes, loose, found)
+    type(model_type), intent(in) :: model
+    type(rigid_parts), intent(in) :: parts
+    integer, intent(in) :: own_part(:)       !! number of each part within its body
+    integer, intent(in) :: nodes(:)          !! of the body
+    real(wp), intent(in) :: loose(:, :, :)   !! its motions that nothing holds [part_motions, own parts, any]
+    type(findings), intent(inout) :: found   !! gets an error
+    real(wp) :: motion(directions, size(nodes), size(loose, 3))
+    character(len=:), allocatable :: body, cards, text
+    logical :: follows(directions, size(nodes))   ! and cannot be a SUPORT freedom
+    integer :: at(3), i, k, moving
+
+    moving = 0
+    do i = 1, size(nodes)
+      associate (of_part => loose(:, own_part(parts%of_node(nodes(i))), :))
+        motion(:, i, :) = matmul(parts%rows(model, nodes(i)), of_part)
+        if (moving == 0 .and. any(abs(of_part) > no_effect*maxval(abs(loose)))) moving = nodes(i)
+      end associate
+      follows(:, i) = model%sum_of(:, nodes(i)) > 0
+    end do
+    text = ''
+    cards = ''
+    do k = 1, size(motion, 3)
+      at = place_of_most(motion(:, :, k:), follows) + [0, 0, k - 1]
+      motion(:, :, [k, at(3)]) = motion(:, :, [at(3), k])
+      call take_out(motion, k, at(1), at(2))
+      associate (beside => parts%of_node(nodes) == parts%of_node(nodes(at(2))))
+        text = text//', '//words(model, motion(:, :, k), nodes, at(2), beside)
+      end associate
+      cards = cards//','//text_of(model%node_id(nodes(at(2))))//','//text_of(at(1))
+    end do
+    body = 'the body of '//model%name_of(of_node, nodes(1))
+    if (moving /= nodes(1)) body = 'a part of '//body//', with '//model%name_of(of_node, moving)//','
+    if (size(nodes) == 1) body = model%name_of(of_node, moving)//', which no element has,'
+    call found%add_error(of_body, moving, 0, body//' is free to move: '//text(3:), &
+                         'hold it by SPC1, or solve for the motion by SUPORT'//cards)
+  end subroutine add_loose_body
+
+  !> Direction, node and motion of the largest displacement that can be a SUPORT freedom.
+  pure function place_of_most(motion, follows) result(at)
+    real(wp), intent(in) :: motion(:, :, :)   !! [directions, nodes, motions]
+    logical, intent(in) :: follows(:, :)      !! no SUPORT freedom [directions, nodes]
+    integer :: at(3)
+
+    associate (moved => merge(0.0_wp, abs(motion), spread(follows, 3, size(motion, 3))))
+      at = findloc(moved >= nearly*maxval(moved), .true.)
+    end associate
+  end function place_of_most
+
+  !> Scale motion k to 1 at a freedom and take it out of the others, so that they do not move that.
+  pure subroutine take_out(motion, k, direction, node)
+    real(wp), intent(inout) :: motion(:, :, :)       !! [directions, nodes, motions]
+    integer, intent(in) :: k, direction, node
+    integer :: j
+
+    motion(:, :, k) = motion(:, :, k)/motion(direction, node, k)
+    do j = 1, size(motion, 3)
+      if (j /= k) motion(:, :, j) = motion(:, :, j) - motion(direction, node, j)*motion(:, :, k)
+    end do
+  end subroutine take_out
+
+  !> A motion, as one of the nodes has it. A part shifts if all its nodes move alike.
+  pure function words(model, motion, nodes, k, beside) result(text)
+    type(model_type), intent(in) :: model
+    real(wp), intent(in) :: motion(:, :)   !! [directions, nodes]
+    integer, intent(in) :: nodes(:)        !! of the body
+    integer, intent(in) :: k               !! the one among them
+    logical, intent(in) :: beside(:)       !! nodes of its part
+    character(len=:), allocatable :: text
+    real(wp) :: unit(directions)
+
+    text = 'it shifts'
+    associate (mask => spread(beside, 1, directions))
+      if (sum(maxval(motion, dim=2, mask=mask) - minval(motion, dim=2, mask=mask)) > no_effect) &
+        text = 'it turns, '//model%name_of(of_node, nodes(k))//' moving'
+    end associate
+    unit = real(nint(motion(:, k)/norm2(motion(:, k))*1.0e4_wp), wp)*1.0e-4_wp   ! without rounding
+    text = text//' along ('//short_real(unit(1))//', '//short_real(unit(2))//')'
+  end function words
+end module epcont_plan_loose_bodies
