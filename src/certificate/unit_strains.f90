@@ -5,7 +5,6 @@ module epcont_certificate_unit_strains
   use epcont_base_kinds, only: wp
   use epcont_element_element_kind, only: element_kind, most_nodes, most_points
   use epcont_element_kinematics, only: axisymmetric, components, directions, plane_stress
-  use epcont_geometry_plane, only: extent_of
   use epcont_model_model, only: model_type
   implicit none
   private
@@ -102,13 +101,18 @@ contains
   !> Largest diameter of an element, times its depth [length**2].
   pure real(wp) function largest_face(model) result(face)
     type(model_type), intent(in) :: model   !! the model
-    integer :: e
+    real(wp), dimension(directions) :: least, most
+    integer :: e, k
 
     face = 0.0_wp
     do e = 1, model%elements
-      associate (x => model%x(:, model%connectivity(:model%node_count(e), e)))
-        face = max(face, maxval(extent_of(x))*model%depth(e, maxval(x(1, :))))
-      end associate
+      least = model%x(:, model%connectivity(1, e))
+      most = least
+      do k = 2, model%node_count(e)
+        least = min(least, model%x(:, model%connectivity(k, e)))
+        most = max(most, model%x(:, model%connectivity(k, e)))
+      end do
+      face = max(face, maxval(most - least)*model%depth(e, most(1)))
     end do
   end function largest_face
 

@@ -342,15 +342,17 @@ contains
     subroutine number_panels(order, body)
       integer, intent(in) :: order(:)
       type(body_numbering), intent(inout) :: body
-      integer, allocatable :: coupled(:), profile(:)
-      integer :: e, i, number(most_freedoms)
+      integer, allocatable :: profile(:)
+      integer :: e, i, last, number(most_freedoms)
 
       call number_nodes(order, body)
       profile = [(i, i=1, body%equations)]
       do e = 1, size(body%element)
         number = numbering%of_element(model, body%element(e))
-        coupled = pack(number, number > 0)
-        profile(coupled) = max(profile(coupled), maxval(number))
+        last = maxval(number)
+        do i = 1, most_freedoms
+          if (number(i) > 0) profile(number(i)) = max(profile(number(i)), last)
+        end do
       end do
       body%half_bandwidth = maxval([profile - [(i, i=1, body%equations)], 0])
       body%panels = new_panel_layout(profile)
