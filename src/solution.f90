@@ -10,7 +10,7 @@ module epcont_solution
   use epcont_contact_problem, only: contact_solved
   use epcont_flexibility_flexibility, only: pair_forces
   use epcont_linear_linear_problem, only: linear_problem
-  use epcont_model_controls, only: method_newton, precision_double
+  use epcont_model_controls, only: method_newton
   use epcont_model_model, only: line_contact
   use epcont_plan_forecast, only: check_memory
   use epcont_plan_iteration_plan, only: iteration_plan
@@ -46,7 +46,6 @@ module epcont_solution
   !> What load cases hand on, where another follows (`follow_loads`).
   type :: kept_factors
     logical :: another = .false.         !! case follows
-    integer :: precision = precision_double   !! of the factors
     type(linear_problem), allocatable :: linear, virgin
     type(contact_line) :: line
     type(kept_estimates) :: estimates
@@ -78,7 +77,6 @@ contains
     real(wp), intent(in) :: limit                         !! of memory [GB]
     class(observer), intent(inout) :: watch               !! takes the time, and is told of each solve
     type(error_type), allocatable, intent(out) :: error   !! there is not enough memory
-    type(error_type), allocatable :: in_double
     type(line_contact), allocatable :: contacts(:)
     integer :: count
     logical :: failed, near
@@ -88,8 +86,6 @@ contains
     do count = 1, most_solves + 1   ! one more, should joined bodies have to be solved apart
       call check_memory(self%expected%bytes, limit, error)
       if (allocated(error)) return
-      call check_memory(self%expected%double_bytes, limit, in_double)
-      if (allocated(in_double)) self%iteration%against_double = in_double%message
       self%iteration%threads = plan_threads(self%numbering, self%expected%bytes, granted_threads())
       call watch%expect(self%iteration, self%model%controls%most_iterations, self%expected)
       call analyse(self%planned_scene, self%kept, self%answer, self%certificate, self%accuracy, watch, &
@@ -146,10 +142,10 @@ contains
     class(observer), intent(inout) :: watch
     logical, intent(out) :: failed      !! joined bodies are to be solved apart
 
-    call solve_as_planned()
+    call follow_or_step()
     failed = kept%linear%joined%failed .or. &
              scene%numbering%joined .and. answer%failed_body > 0 .and. .not. answer%lacks_memory
-    if (failed .or. is_without_displacements()) return
+    if (failed .or. answer%failed_body > 0 .or. answer%contact%state /= contact_solved) return
     if (scene%numbering%joined) &
       failed = .not. kept%linear%joined%are_unique(scene, kept%linear%factored_bodies)
     call watch%lap(stage_contact)
@@ -157,12 +153,6 @@ contains
     call evaluate_refined()
     failed = scene%numbering%joined .and. answer%converged .and. .not. certificate%valid
     if (failed) return
-    if (answer%precision /= precision_double .and. answer%converged .and. &
-        .not. (certificate%valid .and. certificate%scene%sound())) then
-      call solve_in_double()
-      if (is_without_displacements()) return
-      call evaluate_refined()
-    end if
     call use_tangent()
     call assess(scene, kept%linear, kept%line, kept%estimates, answer, accuracy)
     ! An open pair does not press.
@@ -170,12 +160,6 @@ contains
     call watch%lap(stage_accuracy)
 
   contains
-
-    !> Is there nothing to look at?
-    pure logical function is_without_displacements() result(without)
-      without = answer%failed_body > 0 .or. allocated(answer%against_double) .or. &
-                answer%contact%state /= contact_solved
-    end function is_without_displacements
 
     !> The stiffness that tells what errors do to an answer: its tangent, by whatever method and step it was
     !! found.
@@ -240,46 +224,20 @@ contains
       call watch%lap(stage_certificate)
     end subroutine evaluate
 
-    !> Solve by the plan; what factors in single precision give no answer for, or one worth nothing, is solved
-    !! by others in double. So is what the certificate refuses.
-    subroutine solve_as_planned()
-      associate (plan => scene%iteration)
-        call follow_or_step(plan%precision)
-        if (plan%precision /= precision_double .and. &
-            .not. (answer%converged .and. answer%rounding_error <= plan%rounding_error)) &
-          call solve_in_double()
-      end associate
-    end subroutine solve_as_planned
-
-    !> Solve anew by factors in double, unless there is no memory for them.
-    subroutine solve_in_double()
-      if (allocated(scene%iteration%against_double)) then
-        answer%against_double = scene%iteration%against_double
-      else
-        call follow_or_step(precision_double)
-      end if
-    end subroutine solve_in_double
-
     !> Follow the loads; where the method was chosen here and has found neither an answer nor a limit load, in
     !! more steps.
-    subroutine follow_or_step(precision)
-      integer, intent(in) :: precision   !! of the factors
+    subroutine follow_or_step()
       type(iteration_plan) :: plan
 
       plan = scene%iteration
-      plan%precision = precision
-      if (kept%precision /= precision) call kept%forget()
-      kept%precision = precision
       call follow_loads(scene, plan, kept%another, kept%linear, kept%virgin, answer%followed_loads, watch)
-      ! What the first solve does not find, steps do not; single precision is followed by double.
-      if (plan%chosen_here .and. plan%yields .and. precision == precision_double .and. &
-          size(answer%history) > 1 .and. &
+      ! What the first solve does not find, steps do not.
+      if (plan%chosen_here .and. plan%yields .and. size(answer%history) > 1 .and. &
           .not. (answer%converged .or. answer%runs_away .or. answer%lacks_memory)) then
         plan%load_steps = more_steps*plan%load_steps
         deallocate (kept%linear)
         call follow_loads(scene, plan, kept%another, kept%linear, kept%virgin, answer%followed_loads, watch)
       end if
-      answer%precision = precision
       answer%load_steps = plan%load_steps
     end subroutine follow_or_step
   end subroutine analyse

@@ -1,4 +1,4 @@
-"""Time, memory and accuracy of each choice: mesh x element x method x tolerance x precision x rule, on scenes with known answers.
+"""Time, memory and accuracy of each choice: mesh x element x method x tolerance x rule, on scenes with known answers.
 
     tools/tradeoff                  tools/tradeoff.md and tools/tradeoff.png
     tools/tradeoff --quick          coarse meshes and few choices: the same tables in a minute
@@ -29,9 +29,9 @@ from score import figures_of  # noqa: E402
 from wording import parser_of, run  # noqa: E402
 
 METHODS, TOLERANCES = ("NEWTON", "SECANT", "MODSEC", "INISTR"), ("1.E-2", "1.E-4", "1.E-8")
-PRECISIONS, RULES = ("DOUBLE", "MIXED", "SINGLE"), ("CONRY", "BLOCK")
+RULES = "CONRY", "BLOCK"
 #: What everything is compared with. Scenes leave out what they have no use for.
-BASE = {"METHOD": "NEWTON", "TOL": "1.E-8", "PRECIS": "DOUBLE", "RULE": "CONRY"}
+BASE = {"METHOD": "NEWTON", "TOL": "1.E-8", "RULE": "CONRY"}
 #: The way of the program of about 1980, whole.
 ORIGINAL = {"ORIGINAL": "YES"}
 #: A scene: its truth, what makes its deck, its meshes (element, parameter; the finest of each element last), whether it yields, touches.
@@ -58,12 +58,11 @@ def scenes():
 
 
 def choices(scene):
-    """All that a scene has a use for, the base first; of methods other than NEWTON those in double precision by CONRY; and ORIGINAL."""
-    of = {"METHOD": METHODS if scene.yields else (), "TOL": TOLERANCES[::-1] if scene.yields else (), "PRECIS": PRECISIONS,
-          "RULE": RULES if scene.touches else ()}
+    """All that a scene has a use for, the base first; of methods other than NEWTON those by CONRY; and ORIGINAL."""
+    of = {"METHOD": METHODS if scene.yields else (), "TOL": TOLERANCES[::-1] if scene.yields else (), "RULE": RULES if scene.touches else ()}
     names = [name for name in of if of[name]]
     every = [dict(zip(names, values)) for values in itertools.product(*(of[name] for name in names))]
-    return [choice for choice in every if choice.get("METHOD", "NEWTON") == "NEWTON" or not {"PRECIS", "RULE"} & set(apart(choice))] + [ORIGINAL]
+    return [choice for choice in every if choice.get("METHOD", "NEWTON") == "NEWTON" or "RULE" not in apart(choice)] + [ORIGINAL]
 
 
 def apart(choice):
@@ -164,12 +163,12 @@ def elements(runs, scene):
 
 
 def one_at_a_time(runs, failed, scene):
-    """What one choice changes, from the base, on the meshes of a scene; of methods and precisions at every tolerance."""
+    """What one choice changes, from the base, on the meshes of a scene; of methods at every tolerance."""
     key = lambda run: (run.element, run.size)  # noqa: E731
     base = {key(run): run for run in runs if not apart(run.choice)}
     rows = []
     for choice in choices(scene):
-        if not apart(choice) or (len(apart(choice)) > 1 and set(apart(choice)) not in ({"METHOD", "TOL"}, {"TOL", "PRECIS"})):
+        if not apart(choice) or (len(apart(choice)) > 1 and set(apart(choice)) != {"METHOD", "TOL"}):
             continue
         of = [run for run in runs if run.choice == choice and key(run) in base]
         lost = sum(c == choice for _, _, c, _ in failed)
@@ -214,18 +213,19 @@ def draw(found, path):
     figure.savefig(path, dpi=110, metadata={"Software": None})
 
 
-#: The decision that PARAM PRECIS stays, by what it does on larger meshes than these.
-PRECISION = (
-    "Why PRECIS stays: it must be worth 1.3 times in time or memory at some size that people run. The scenes below are too "
-    "small to show it. Two cylinders of 42 032 nodes (`tools/decks hertz 42000`, medians of three, 2026-11-23): beyond yield "
-    "DOUBLE 1.30 s and 336 MB, MIXED 1.84 s and 227 MB (1.48 times less), SINGLE 1.05 s and 224 MB; elastic DOUBLE .51 s and "
-    "154 MB, MIXED .60 s and 121 MB (1.28), SINGLE .37 s (1.4 times faster) and 117 MB.")
+#: Mechanisms that are no longer there: old and new program in turns, medians of five, one thread.
+REMOVED = [
+    ["PARAM PRECIS: factors in single precision, refined (MIXED) or not (SINGLE)",
+     "`tools/decks hertz 42000` with PRECIS DOUBLE, MIXED, SINGLE: elastic 0.33, 0.39, 0.32 s and 141, 114, 112 MB; yielding (`--plastic`) 0.82, "
+     "1.39, 0.65 s and 214, 166, 165 MB",
+     "1 000 lines of templates included twice, a second solve where single precision fails, every test in three precisions: for 3 to 20 % of "
+     "the time of large models and a fifth of their memory. Rows of MIXED and SINGLE in the other tables of this page are of the program before"]]
 
 
 def page(found, quick, spent, picture):
     count = sum(len(runs) + len(failed) for _, runs, failed in found)
     text = ["# Time, memory and accuracy of each choice",
-            f"`tools/tradeoff{' --quick' if quick else ''}`, {platform.machine()}: {count} choices of mesh, element, method, tolerance, precision and rule in "
+            f"`tools/tradeoff{' --quick' if quick else ''}`, {platform.machine()}: {count} choices of mesh, element, method, tolerance and rule in "
             f"{spent / 60:.0f} minutes. Time: processor, whole process, one thread, the least of three runs. Memory: its peak. Errors: true ones, the worst "
             "largest pressure and the worst approach (tube: mean u(a)) in per cent; beside them what the program itself says. mesh: elements across the contact (cylinders), round "
             "the pin, through the wall (tube), size at the contact (joint). The pin has no approach: its load is a point load."]
@@ -237,7 +237,8 @@ def page(found, quick, spent, picture):
              "approach moves at most, true error (median); runs that gave no answer (not converged in 100 iterations, or none that the certificate takes).",
              table(["scene", "choice", "time", "largest", "memory", "moves by", "error", "no answer"],
                    [row for scene, runs, failed in found for row in one_at_a_time(runs, failed, scene)])]
-    text += [PRECISION]
+    text += ["## Removed", "Mechanisms that are no longer there, and what they gained: old and new program in turns, processor time and peak memory, medians of five.",
+             table(["mechanism", "what it gained", "why it went"], REMOVED)]
     text += ["## Pareto fronts", "Runs that err less, by a tenth at least, than all that cost less; of choices within a tenth of each other on one mesh the one nearest to "
              f"{words(BASE)}."]
     for scene, runs, _ in found:

@@ -54,14 +54,12 @@ module epcont_assembly_bodies
 contains
 
   !> Bodies with room for their factors, without a law.
-  function new_bodies(scene, single) result(bodies)
+  function new_bodies(scene) result(bodies)
     type(planned_scene), intent(in) :: scene   !! with the numbers of its equations
-    logical, intent(in) :: single              !! factored in single precision
     type(factored_bodies) :: bodies
 
     bodies%operator = new_strain_operator(scene%model)
     allocate (bodies%body(size(scene%numbering%body)))
-    bodies%body%single = single
     allocate (bodies%settlement(directions, scene%model%nodes), source=0.0_wp)
   end function new_bodies
 

@@ -10,9 +10,8 @@ module epcont_assembly_stiffness
   use epcont_element_kinematics, only: directions
   use epcont_linalg_assembled, only: assembled_matrix, sparse_rows
   use epcont_linalg_dense, only: cholesky_factor, cholesky_solve
-  use epcont_linalg_factors, only: front_matrix, panel_matrix
-  use epcont_linalg_single_factors, only: single_front_matrix => front_matrix, &
-    single_panel_matrix => panel_matrix
+  use epcont_linalg_fronts, only: front_matrix
+  use epcont_linalg_panels, only: panel_matrix
   use epcont_material_linear_law, only: linear_law
   use epcont_model_controls, only: solver_frontal
   use epcont_plan_numbering, only: most_freedoms
@@ -33,10 +32,7 @@ module epcont_assembly_stiffness
     class(assembled_matrix), allocatable :: matrix   !! K_bb, then its factor
     real(wp), allocatable :: coupling(:, :)   !! K_br, then W [equations, border]
     real(wp), allocatable :: schur(:, :)      !! K_rr, then the factor of S [border, border]
-    logical :: single = .false.               !! K_bb is factored in single precision
     logical :: lacks_memory = .false.         !! there was not enough for K_bb
-    !> K is over this, in the range of single precision; a power of four [force/length]
-    real(wp) :: unit = 1.0_wp
     real(wp) :: smallest_ratio = 1.0_wp       !! smallest pivot over its diagonal entry
     !> Estimate of the condition of K_bb in the 1-norm; 0: none has been made of this factor
     real(wp) :: condition = 0.0_wp
@@ -154,7 +150,6 @@ contains
       if (.not. any(stale(number(:n)))) return
       call operator%element_stiffness(scene%model, element, law, n, k)
       call scene%numbering%axes%turn_stiffness(scene%model%connectivity(:, element), n, k)
-      if (self%single) k(:n**2) = k(:n**2)/self%unit
       call self%matrix%add(n, number, k)
       if (size(self%schur) > 0) call add_to_border(n, number, k, scene%numbering%body(b)%tied, self)
     end subroutine add_element
@@ -191,8 +186,7 @@ contains
               end do
             end associate
           end do
-          self%schur = self%schur + &
-                       own%stiffness/self%unit*spread(row, 1, size(row))*spread(row, 2, size(row))
+          self%schur = self%schur + own%stiffness*spread(row, 1, size(row))*spread(row, 2, size(row))
         end associate
       end do
     end subroutine add_springs
@@ -200,26 +194,15 @@ contains
     !> A matrix of zeros, of the kind that the plan has chosen.
     subroutine begin()
       type(front_matrix), allocatable :: fronts
-      type(single_front_matrix), allocatable :: single_fronts
       type(panel_matrix), allocatable :: panels
-      type(single_panel_matrix), allocatable :: single_panels
 
       associate (body => scene%numbering%body(b))
         associate (once => .not. (body%can_yield .or. scene%numbering%joined), &
                    trailing => merge(body%contact_equations, 0, body%contact_last))
-          if (self%single) self%unit = unit_of(body%element)
-          if (body%solver == solver_frontal .and. self%single) then
-            allocate (single_fronts)
-            call single_fronts%begin(body%fronts, once, trailing)
-            call move_alloc(single_fronts, self%matrix)
-          else if (body%solver == solver_frontal) then
+          if (body%solver == solver_frontal) then
             allocate (fronts)
             call fronts%begin(body%fronts, once, trailing)
             call move_alloc(fronts, self%matrix)
-          else if (self%single) then
-            allocate (single_panels)
-            call single_panels%begin(body%panels, once, trailing)
-            call move_alloc(single_panels, self%matrix)
           else
             allocate (panels)
             call panels%begin(body%panels, once, trailing)
@@ -250,23 +233,6 @@ contains
         end do
       end associate
     end subroutine find_stale
-
-    !> A power of four near the largest stiffness of some elements [force/length].
-    pure real(wp) function unit_of(element)
-      integer, intent(in) :: element(:)
-      real(wp) :: largest
-      integer :: columns, e, p
-
-      largest = 0.0_wp
-      do e = 1, size(element)
-        columns = directions*scene%model%node_count(element(e))
-        do p = scene%model%first_point(element(e)), scene%model%first_point(element(e) + 1) - 1
-          largest = max(largest, operator%volume(p)*maxval(abs(law%matrix(:, :, law%matrix_of(p)))) &
-                        *maxval(abs(operator%b(:, operator%column(p) + 1:operator%column(p) + columns)))**2)
-        end do
-      end do
-      unit_of = scale(1.0_wp, exponent(largest)/2*2)
-    end function unit_of
   end subroutine assemble
 
   !> Add an element matrix to the coupling and the border, by what its freedoms are there.
@@ -317,7 +283,7 @@ contains
   pure logical function is_sound(self)
     class(body_stiffness), intent(in) :: self
 
-    is_sound = self%smallest_ratio > self%matrix%rounding
+    is_sound = self%smallest_ratio > epsilon(1.0_wp)
   end function is_sound
 
   !> The first half of a solve for one right-hand side, in place: what has it behind it may still be added to.
@@ -326,8 +292,7 @@ contains
     real(wp), contiguous, intent(inout) :: inner(:, :)    !! [order of the matrix, 1]
     real(wp), contiguous, intent(inout) :: border(:, :)   !! [border, 1]
 
-    if (self%unit /= 1.0_wp) inner = inner/self%unit
-    border = border/self%unit - matmul(transpose(self%coupling), inner)
+    border = border - matmul(transpose(self%coupling), inner)
     call self%matrix%solve_lower(inner)
   end subroutine solve_lower
 
@@ -368,26 +333,26 @@ contains
     associate (x => inner(:, fields + 1:))
       begun = .false.
       if (.not. allocated(self%signs)) call self%matrix%begin_estimate(x, begun)
-      if (begun) call turn(x, 1.0_wp)
+      if (begun) call turn(x)
       begun = allocated(self%signs)
       if (begun) x = self%signs
       call self%solve_lower(inner, border)
       call self%solve_upper(inner, border, 1)
       if (begun) then   ! the inverse is symmetric: a row's sum is a column's
-        self%condition = max(1.0_wp, self%matrix%norm*maxval([self%inverse_norm, self%unit*abs(x)]))
+        self%condition = max(1.0_wp, self%matrix%norm*maxval([self%inverse_norm, abs(x)]))
         deallocate (self%signs)
       else
-        call turn(x, self%unit)
+        call turn(x)
       end if
     end associate
 
   contains
 
     !> What the first solve tells, and the columns of the second.
-    subroutine turn(x, unit)
-      real(wp), intent(in) :: x(:, :), unit
+    subroutine turn(x)
+      real(wp), intent(in) :: x(:, :)
 
-      self%inverse_norm = unit*maxval(sum(abs(x), dim=1))
+      self%inverse_norm = maxval(sum(abs(x), dim=1))
       self%signs = sign(1.0_wp, x)
     end subroutine turn
   end subroutine solve_and_estimate

@@ -3,8 +3,8 @@ module epcont_build_choices
   use epcont_base_kinds, only: wp
   use epcont_deck_card_kinds, only: card_param
   use epcont_deck_deck, only: deck_type
-  use epcont_model_controls, only: controls_type, method_name, original_controls, precision_name, &
-      precision_open, rule_name, solver_name
+  use epcont_model_controls, only: controls_type, method_name, original_controls, rule_name, &
+      solver_name
   use epcont_model_finding, only: findings
   implicit none
   private
@@ -12,7 +12,7 @@ module epcont_build_choices
 
   !> What PARAM ORIGINAL YES leaves no choice of (`original_controls`).
   character(len=8), parameter :: chosen(*) = [character(len=8) :: &
-    'SOLVER', 'FLEXIB', 'RULE', 'METHOD', 'TOL', 'MUP', 'PRECIS', 'ACCURACY', 'NLOAD']
+    'SOLVER', 'FLEXIB', 'RULE', 'METHOD', 'TOL', 'MUP', 'ACCURACY', 'NLOAD']
 
 contains
 
@@ -28,7 +28,6 @@ contains
     controls%method = choice('METHOD', method_name, controls%method)
     controls%rule = choice('RULE', rule_name, controls%rule)
     controls%solver = choice('SOLVER', solver_name, controls%solver)
-    controls%precision = 1 + choice('PRECIS', precision_name, precision_open - 1)
     controls%accuracy = deck%parameter_value('ACCURACY', controls%accuracy)
     controls%tolerance = deck%parameter_value('TOL', controls%tolerance)
     controls%load_steps = nint(deck%parameter_value('NLOAD', real(controls%load_steps, wp)))

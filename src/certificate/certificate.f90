@@ -22,9 +22,6 @@ module epcont_certificate_certificate
   public :: certificate_type, certify
 
   real(wp), parameter :: &
-    !> The same where factors of single precision have left an error, as a part of that.
-    rounding_errors = 10.0_wp, &
-
     !> Roundings that a gap is the sum of.
     roundings = 8.0_wp, &
     !> Stresses are off by as many times `lost_stress`: an element has several nodes.
@@ -55,7 +52,6 @@ module epcont_certificate_certificate
     real(wp) :: force_scale = 1.0_wp      !! largest contact force [force]
     real(wp) :: length_scale = 1.0_wp     !! work over forces: how far the bodies give way [length]
     real(wp) :: gap_rounding = 0.0_wp     !! rounding of the gaps of pressed pairs, from their travel [length]
-    real(wp) :: tolerance = valid_to  !! largest value of each relative figure but `off_curve`
     real(wp) :: curve_tolerance = valid_to  !! largest `off_curve` that the iteration was asked for
     real(wp) :: off_curve_limit = valid_to  !! of a valid answer: rounding may add as much again
     logical :: balanced = .false.         !! all figures but `off_curve` are within the tolerance
@@ -88,8 +84,7 @@ module epcont_certificate_certificate
 contains
 
   !> Of an answer the certificate takes the displacements, with rigid motions and without, the reactions, the
-  !! stresses at the points, the contact forces, the part of the loads, and what single precision may have
-  !! left.
+  !! stresses at the points, the contact forces and the part of the loads.
   subroutine certify(model, answer, curve_tolerance, found)
     type(model_type), intent(in) :: model   !! the scene
     type(answer_type), intent(in) :: answer   !! what is to be checked
@@ -106,7 +101,6 @@ contains
     real(wp) :: face          ! of the largest element [length**2]
     logical :: unstressed     ! stresses and forces are rounding errors of zero
 
-    found%tolerance = max(valid_to, rounding_errors*answer%rounding_error)
     load = answer%load_factor*given_load(model)
     residual = 0.0_wp
     element_force = 0.0_wp
@@ -139,7 +133,7 @@ contains
     largest_force = max(maxval(element_force), maxval(abs(load)), part_of_held*expansion%held_force)
     if (any(answer%contact%force > 0.0_wp)) largest_force = max(largest_force, found%force_scale)
     if (unstressed) then   ! forces and their work are compared with rounding errors, not with each other
-      largest_force = most_roundings*found%rounding_stress*face/found%tolerance
+      largest_force = most_roundings*found%rounding_stress*face/valid_to
       terms = terms + largest_force*maxval(abs(answer%displacement))
     end if
     call gather_ties(model, residual, torque)
@@ -151,7 +145,7 @@ contains
     found%equilibrium = max(found%equilibrium, ratio(maxval(abs(residual)), largest_force))
     ! On its curve no stress does less than no work; as far off it as the iteration may leave it, it can.
     found%energy = ratio(max(abs(work - stored), expansion%work - stored), terms)
-    found%curve_tolerance = max(found%tolerance, curve_tolerance)
+    found%curve_tolerance = max(valid_to, curve_tolerance)
     found%off_curve_limit = found%curve_tolerance + min(several*found%lost_stress, found%curve_tolerance)
     found%valid = all(within_limits(found))
     found%balanced = all(within_limits(found) .or. figure_name == off_the_curve)
@@ -358,12 +352,12 @@ contains
     real(wp), intent(out) :: figure(:), largest(:)   !! [size(figure_name)]
     real(wp) :: exact
 
-    exact = self%tolerance*self%length_scale + self%gap_rounding
+    exact = valid_to*self%length_scale + self%gap_rounding
     figure = [self%equilibrium, self%off_curve, self%energy, ratio(-self%smallest_force, self%force_scale), &
               self%overlap, ratio(self%force_gap, self%force_scale), self%gap_rounding/self%length_scale, &
               self%motion_strain, self%ties]
-    largest = [self%tolerance, self%off_curve_limit, self%tolerance, self%tolerance, exact, exact, &
-               largest_rounding, most_roundings, self%tolerance]
+    largest = [valid_to, self%off_curve_limit, valid_to, valid_to, exact, exact, &
+               largest_rounding, most_roundings, valid_to]
   end subroutine figures
 
   !> Is a figure beyond its limit that was not before?

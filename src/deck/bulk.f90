@@ -9,8 +9,9 @@ module epcont_deck_bulk
   use epcont_deck_card_reader, only: read_card
   use epcont_deck_case_control, only: keyword
   use epcont_deck_catalogue, only: catalogue, parameters
-  use epcont_deck_entry, only: card_entry, field_entry, kind_word, listed
+  use epcont_deck_entry, only: card_entry, field_entry, kind_any, kind_word, listed
   use epcont_deck_field, only: scan_sound, scan_word
+  use epcont_deck_former, only: report_former
   use epcont_deck_refused, only: refused_card
   use epcont_deck_source, only: source
   use epcont_deck_spelling, only: suggestion
@@ -206,11 +207,15 @@ contains
       type(field_entry), intent(out) :: value_entry
       character(len=8) :: word
       integer :: outcome, i
+      logical :: is_former
 
       value_entry = field_entry('VALUE', kind_word, required=.true.)
       if (.not. card%filled(1)) return
       call scan_word(card%text(card%slot(1)%first:card%slot(1)%last), word, outcome)
       if (outcome /= scan_sound) return
+      call report_former(card, trim(word), faults, is_former)
+      if (is_former) value_entry = field_entry('VALUE', kind_any)
+      if (is_former) return
       i = findloc(parameter_entry%name == word, .true., dim=1)
       if (i > 0) then
         value_entry = parameter_entry(i)

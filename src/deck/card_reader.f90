@@ -143,8 +143,6 @@ contains
       case default
         what = 'is out of range'
         if (entry%kind == kind_word) what = 'is not a word known here'
-        if (entry%withdrawn /= '' .and. value%word == entry%withdrawn) &
-          what = 'is '//trim(entry%withdrawn)//', which is no longer there'
         if (entry%instead /= '' .and. value%number == entry%highest) then
           what = 'is '//text//', '//trim(entry%reason)
           remedy = 'less, such as '//trim(entry%instead)

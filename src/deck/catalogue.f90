@@ -298,7 +298,7 @@ module epcont_deck_catalogue
     'MUP; for=MATS1 word EXACT PAPER; Poisson''s ratio in the equivalent strain: exact, or formula'// &
     ' (2-4); default EXACT', &
     'ORIGINAL; word NO YES; all as in about 1980: SOLVER BAND, FLEXIB INVERT, RULE CONRY, METHOD'// &
-    ' SECANT, TOL 0.01, NLOAD 1, MUP PAPER, PRECIS DOUBLE, no ACCURACY; default NO', &
+    ' SECANT, TOL 0.01, NLOAD 1, MUP PAPER, no ACCURACY; default NO', &
     'NLOAD; whole from=1 to=10000 for=MATS1; load steps; default 1', &
     'SEARCH; real positive for=BCONP; how far BCONP looks for a segment; default twice the longest'// &
     ' segment of the two lines [length]', &
@@ -306,10 +306,8 @@ module epcont_deck_catalogue
     ' default AUTO', &
     'FLEXIB; for=CGAP/BCONP word AUTO INVERT; flexibility of the contact by inversion always, or by'// &
     ' substitution where that is cheaper; default AUTO', &
-    'PRECIS; word DOUBLE MIXED SINGLE; factors in double or single precision, these refined to'// &
-    ' double (MIXED) or not; default DOUBLE', &
-    'ACCURACY; real positive below=1; wanted relative error of contact pressures: sets TOL, METHOD'// &
-    ' and PRECIS where they are left out', &
+    'ACCURACY; real positive below=1; wanted relative error of contact pressures: sets TOL and METHOD'// &
+    ' if they are left out', &
     'CORNER; real positive to=180 for=BCONP; sides of a boundary line that turn by more than this meet at'// &
     ' a corner; default: decided from the turns beside it [degree]', &
     'WTMASS; real positive for=GRAV/RFORCE; factor of all mass: of RHO and NSM; default 1.0', &
@@ -373,6 +371,5 @@ contains
       field(size(choices) + i) = new_field(unheard(i)//'; any noted; no effect')
     end do
     field%required = .true.
-    where (field%name == 'SOLVER') field%withdrawn = 'SPARSE'
   end function parameters
 end module epcont_deck_catalogue

@@ -39,7 +39,6 @@ module epcont_deck_entry
     real(wp) :: least = 0.0_wp           !! least size, zero apart, of a number that has an effect
     logical :: point_optional = .false.  !! in large field a real without a decimal point serves too
     character(len=40) :: choices = ''    !! the words allowed, with blanks between; blank: any
-    character(len=8) :: withdrawn = ''   !! a word that was allowed once
     character(len=60) :: reason = ''     !! why the upper limit is out of range, or why nothing but zero is in
     integer :: times = 1                 !! so many fields like it follow each other
     character(len=8) :: instead = ''     !! a value near the upper limit that would do

@@ -35,7 +35,6 @@ contains
 
     call find_rows(part%pair, rows)
     if (size(part%pair) == 0) return
-    rows%weight = rows%weight/sqrt(stiffness%unit)
     call stiffness%matrix%find_compliance(rows, part%matrix)
     if (numbering%body(b)%border > 0) part%matrix = part%matrix + border_part()
 

@@ -26,7 +26,6 @@ module epcont_linalg_assembled
     integer :: order = 0
     integer :: trailing = 0   !! last equations, the only ones that `find_compliance` is asked for; 0: any
     real(wp) :: norm = 0.0_wp           !! 1-norm of the matrix when it was factored, or a bound of it
-    real(wp) :: rounding = epsilon(1.0_wp)   !! relative, of its entries and of what is done with them
     logical :: lacks_memory = .false.   !! there was not enough to begin it
     real(wp), allocatable :: pivot_ratio(:)   !! pivot**2 over the diagonal entry [order]
   contains

@@ -3,21 +3,62 @@
 !> Arguments are those of the LAPACK Users' Guide. `info` < 0 is a fault of the caller, `info` > 0 a
 !> property of the matrix.
 module epcont_linalg_lapack
-  use epcont_base_kinds, only: rp => wp, wp
+  use epcont_base_kinds, only: wp
   implicit none
   private
   public :: dgemm, dgemv, dsyrk, dtrsm
   public :: dpotrf, dpotrs, dpotri, dpbtrf, dpbcon, dpstrf, dgesv, dgesvd
 
-  include 'lapack_forms.inc'
-  procedure(gemm) :: dgemm
-  procedure(gemv) :: dgemv
-  procedure(syrk) :: dsyrk
-  procedure(trsm) :: dtrsm
-  procedure(potrf) :: dpotrf
+  ! Products, and solution with a triangle
+  interface
+    !> C = alpha op(A) op(B) + beta C
+    pure subroutine dgemm(transa, transb, m, n, k, alpha, a, lda, b, ldb, beta, c, ldc)
+      import :: wp
+      character, intent(in) :: transa, transb
+      integer, intent(in) :: m, n, k, lda, ldb, ldc
+      real(wp), intent(in) :: alpha, beta, a(lda, *), b(ldb, *)
+      real(wp), intent(inout) :: c(ldc, *)
+    end subroutine dgemm
+
+    !> y = alpha op(A) x + beta y
+    pure subroutine dgemv(trans, m, n, alpha, a, lda, x, incx, beta, y, incy)
+      import :: wp
+      character, intent(in) :: trans
+      integer, intent(in) :: m, n, lda, incx, incy
+      real(wp), intent(in) :: alpha, beta, a(lda, *), x(*)
+      real(wp), intent(inout) :: y(*)
+    end subroutine dgemv
+
+    !> C = alpha A A' + beta C (or A'A), one triangle of C
+    pure subroutine dsyrk(uplo, trans, n, k, alpha, a, lda, beta, c, ldc)
+      import :: wp
+      character, intent(in) :: uplo, trans
+      integer, intent(in) :: n, k, lda, ldc
+      real(wp), intent(in) :: alpha, beta, a(lda, *)
+      real(wp), intent(inout) :: c(ldc, *)
+    end subroutine dsyrk
+
+    !> op(A) X = alpha B or X op(A) = alpha B, A triangular; X replaces B
+    pure subroutine dtrsm(side, uplo, transa, diag, m, n, alpha, a, lda, b, ldb)
+      import :: wp
+      character, intent(in) :: side, uplo, transa, diag
+      integer, intent(in) :: m, n, lda, ldb
+      real(wp), intent(in) :: alpha, a(lda, *)
+      real(wp), intent(inout) :: b(ldb, *)
+    end subroutine dtrsm
+  end interface
 
   ! Symmetric positive definite matrices
   interface
+    !> Cholesky factor
+    pure subroutine dpotrf(uplo, n, a, lda, info)
+      import :: wp
+      character, intent(in) :: uplo
+      integer, intent(in) :: n, lda
+      real(wp), intent(inout) :: a(lda, *)
+      integer, intent(out) :: info
+    end subroutine dpotrf
+
     !> Solution with the factor of dpotrf
     pure subroutine dpotrs(uplo, n, nrhs, a, lda, b, ldb, info)
       import :: wp

@@ -1,11 +1,11 @@
 !> The bodies of a scene with a linear law, their contact solved exactly: one step of every iteration.
 module epcont_linear_linear_problem
-  use epcont_assembly_bodies, only: factored_bodies, half_solved_body, new_bodies, prescribe
+  use epcont_assembly_bodies, only: factored_bodies, half_solved_body, new_bodies
   use epcont_base_kinds, only: wp
-  use epcont_base_tolerances, only: cancelled, negligible, solved_to
+  use epcont_base_tolerances, only: cancelled, negligible
   use epcont_contact_basis, only: contact_basis
   use epcont_contact_flexibility_matrix, only: flexibility_matrix, new_flexibility
-  use epcont_contact_problem, only: contact_problem, contact_solution, contact_solved, contact_stalled
+  use epcont_contact_problem, only: contact_problem, contact_solved
   use epcont_contact_solver, only: solve_contact
   use epcont_flexibility_flexibility, only: gap_opening, pair_forces, see_motions, terms_of_openings
   use epcont_linear_borne_loads, only: borne_loads
@@ -13,7 +13,7 @@ module epcont_linear_linear_problem
   use epcont_linear_scene_state, only: force_change, relative_change, scene_state
   use epcont_linear_whole_flexibility, only: add_flexibilities
   use epcont_material_scene_materials, only: find_materials, scene_materials
-  use epcont_model_controls, only: precision_double, precision_mixed, solver_frontal
+  use epcont_model_controls, only: solver_frontal
   use epcont_model_springs, only: spring_forces
   use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_plan_planned_scene, only: planned_scene
@@ -25,16 +25,11 @@ module epcont_linear_linear_problem
   private
   public :: linear_problem, new_linear_problem
 
-  !> Where two steps of refinement change the strains by more than this part of what the two before did,
-  !! rounding is reached, or single precision leaves too little to begin with.
-  real(wp), parameter :: slowest_rate = 0.5_wp
-
   type, extends(factored_bodies) :: linear_problem
     type(iteration_plan), private :: plan
     type(scene_materials) :: materials
     type(contact_problem) :: problem
     type(flexibility_matrix), private :: lasting_flexibility   !! of bodies that cannot yield, if others can
-    type(scene_state), allocatable, private :: last  !! found by refinement, from which the next begins
     type(contact_basis) :: basis   !! of the last contact with this flexibility
     logical, allocatable :: touching(:)      !! pairs in contact then: the next begins with them [pairs]
     type(borne_loads) :: borne               !! in a load case before
@@ -46,7 +41,6 @@ module epcont_linear_linear_problem
     procedure :: set_stiffness
     procedure :: solve
     procedure :: sharpen
-    procedure :: rounding_error
   end type linear_problem
 
 contains
@@ -59,7 +53,7 @@ contains
 
     linear%plan = plan
     call find_materials(scene%model, linear%materials)
-    linear%factored_bodies = new_bodies(scene, plan%precision /= precision_double)
+    linear%factored_bodies = new_bodies(scene)
     linear%problem%initial_gap = scene%model%initial_gap
     linear%problem%travel = scene%motions%travels(scene%model)
     linear%problem%body = scene%motions%body
@@ -81,7 +75,6 @@ contains
     type(planned_scene), intent(in) :: scene    !! that it was made for, with that case
 
     call see_case(self, scene)
-    if (allocated(self%last)) deallocate (self%last)
     if (scene%numbering%joined) then
       call self%joined%take_case(scene, self%resultant, self%factored_bodies)
     else
@@ -174,8 +167,6 @@ contains
     if (scene%numbering%joined) then
       call self%joined%solve(scene, self%factored_bodies, self%problem%initial_gap + &
                              load_factor*self%travel_gap, load_factor, state, watch)
-    else if (self%plan%precision == precision_mixed) then
-      call refine()
     else
       call solve_once()
     end if
@@ -210,43 +201,6 @@ contains
       state%deformation = self%finish(scene, half, load_factor, .false.)
       state%strain = self%operator%strains(scene%model, state%deformation, load_factor)
     end subroutine solve_once
-
-    !> The same to double precision with factors in single: step by step the forces out of balance, in double,
-    !! are solved for, and the contact with them. `contact_stalled` where that does not converge.
-    subroutine refine()
-      real(wp) :: change, before(2)   ! of this step, of the two before
-      integer :: step
-
-      if (allocated(self%last) .and. size(scene%model%sum%first) == 0) then
-        state = self%last
-      else
-        state%deformation = 0.0_wp*scene%model%load
-        state%contact%force = spread(0.0_wp, 1, scene%model%pairs)
-      end if
-      call prescribe(scene, load_factor, state%deformation)
-      state%strain = self%operator%strains(scene%model, state%deformation, load_factor)
-      if (allocated(state%contact%touching)) deallocate (state%contact%touching)
-      if (allocated(start)) state%contact%touching = start
-      before = 0.0_wp
-      step = 0
-      do
-        step = step + 1
-        call correct(self, scene, load_factor, state, change)
-        call watch%lap(stage_displacements)
-        if (step > 1 .and. change <= negligible) exit
-        ! In pairs: what one has refined moves the contact forces, which the first brings in, for the next.
-        if (step > 4 .and. .not. change <= slowest_rate*before(1)) then
-          if (change <= solved_to) exit
-          state%contact%state = contact_stalled
-          return
-        end if
-        before = [before(2), change]
-        call correct_contact(self, scene, load_factor, state)
-        call watch%lap(stage_contact)
-        if (state%contact%state /= contact_solved) return
-      end do
-      self%last = state
-    end subroutine refine
   end subroutine solve
 
   !> One step of refinement of what `solve` has found: where a body is long and its elements fine, rounding
@@ -280,27 +234,6 @@ contains
     state = refined
     call watch%lap(stage_displacements)
   end subroutine sharpen
-
-  !> What single precision has left: the change of displacements, strains and contact forces, of the largest
-  !! of each, by two steps of refinement; 1 where the second does not change less: then nothing tells.
-  subroutine rounding_error(self, scene, load_factor, state, error)
-    class(linear_problem), intent(inout) :: self
-    type(planned_scene), intent(in) :: scene    !! that it was made for
-    real(wp), intent(in) :: load_factor         !! of the loads
-    type(scene_state), intent(in) :: state      !! what `solve` has found
-    real(wp), intent(out) :: error              !! relative
-    type(scene_state) :: refined
-    real(wp) :: second
-
-    refined = state
-    call correct(self, scene, load_factor, refined, error)
-    call correct(self, scene, load_factor, refined, second)
-    call correct_contact(self, scene, load_factor, refined)
-    if (second > max(slowest_rate*error, solved_to)) error = 1.0_wp
-    if (refined%contact%state /= contact_solved) error = 1.0_wp
-    error = max(error, relative_change(state%deformation, refined%deformation, of=state%deformation), &
-                force_change(state%contact, refined%contact, of=state%contact))
-  end subroutine rounding_error
 
   !> One step of refinement: the deformation under the forces that are out of balance is added.
   subroutine correct(self, scene, load_factor, state, change)

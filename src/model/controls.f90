@@ -21,17 +21,10 @@ module epcont_model_controls
   !> Their names in a deck, from solver_auto on.
   character(len=*), parameter, public :: solver_name(0:2) = ['AUTO   ', 'BAND   ', 'FRONTAL']
 
-  !> PARAM PRECIS: of the factors and the flexibility.
-  integer, parameter, public :: precision_open = 0, precision_double = 1, precision_mixed = 2, &
-    precision_single = 3
-  !> Their names in a deck; it may leave the choice open.
-  character(len=*), parameter, public :: precision_name(1:3) = ['DOUBLE', 'MIXED ', 'SINGLE']
-
   type :: controls_type
     integer :: rule = rule_auto        !! one of its kind above
     integer :: method = method_auto    !! one of its kind above
     integer :: solver = solver_auto    !! one of its kind above
-    integer :: precision = precision_open  !! one of its kind above
     real(wp) :: accuracy = 0.0_wp      !! PARAM ACCURACY, relative, of contact pressures; 0: none asked for
     real(wp) :: tolerance = 0.0_wp     !! PARAM TOL; 0: that of the method
     integer :: most_iterations = 100   !! of a load step
@@ -47,8 +40,8 @@ module epcont_model_controls
 
   !> What PARAM ORIGINAL YES chooses. Each contact problem is solved from the start, by pivots, too.
   type(controls_type), parameter, public :: original_controls = controls_type( &
-    rule=rule_conry, method=method_secant, solver=solver_band, precision=precision_double, &
-    tolerance=0.01_wp, by_inversion=.true., paper_ratio=.true., original=.true.)
+    rule=rule_conry, method=method_secant, solver=solver_band, tolerance=0.01_wp, &
+    by_inversion=.true., paper_ratio=.true., original=.true.)
 
   !> Uniaxial curve of a material that yields: total strain and stress, from (0, 0) over the yield point on.
   !! Beyond the last point its last slope goes on. Not allocated: the material does not yield.

@@ -8,7 +8,7 @@ module epcont_model_given
   use epcont_element_element_kinds, only: element_kinds
   use epcont_element_kinematics, only: axisymmetric, directions
   use epcont_model_arrays, only: count_from_one, element_block, scene_type
-  use epcont_model_controls, only: method_name, precision_name, rule_name, solver_name
+  use epcont_model_controls, only: method_name, rule_name, solver_name
   use epcont_model_finding, only: findings, of_scene
   use epcont_model_model, only: model_type
   use epcont_model_yield_curve, only: curve_fault, straighten
@@ -232,17 +232,17 @@ contains
 
     !> The choices of `controls` are some of those that there are, its figures what they can be.
     subroutine check_choices()
-      character(len=*), parameter :: name(2, 10) = reshape([character(len=22) :: &
+      character(len=*), parameter :: name(2, 9) = reshape([character(len=22) :: &
         'method', 'method_auto, say', 'rule', 'rule_auto, say', 'solver', 'solver_auto, say', &
-        'precision', 'precision_open, say', 'most_iterations', '1 to 100000', 'load_steps', '1 to 10000', &
+        'most_iterations', '1 to 100000', 'load_steps', '1 to 10000', &
         'tolerance', '0.0 to less than 1.0', 'accuracy', '0.0 to less than 1.0', &
-        'search', '0.0, or a length', 'corner', '0.0 to 180.0 degrees'], [2, 10])
-      logical :: fits(10)
+        'search', '0.0, or a length', 'corner', '0.0 to 180.0 degrees'], [2, 9])
+      logical :: fits(9)
       integer :: k
 
       associate (is => scene%controls)
-        fits = [within([is%method, is%rule, is%solver, is%precision] + 1, &
-                       [size(method_name), size(rule_name), size(solver_name), size(precision_name) + 1]), &
+        fits = [within([is%method, is%rule, is%solver] + 1, &
+                       [size(method_name), size(rule_name), size(solver_name)]), &
                 within([is%most_iterations, is%load_steps], [100000, 10000]), &
                 [is%tolerance, is%accuracy, is%search, is%corner] >= 0.0_wp .and. &
                 [is%tolerance < 1.0_wp, is%accuracy < 1.0_wp, is%search <= farthest, is%corner <= 180.0_wp]]

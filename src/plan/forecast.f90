@@ -7,7 +7,7 @@ module epcont_plan_forecast
   use epcont_base_sorting, only: sorted_order
   use epcont_base_text, only: short_real
   use epcont_linalg_levels, only: levels_of_pairs
-  use epcont_model_controls, only: method_inistr, precision_double, solver_frontal
+  use epcont_model_controls, only: method_inistr, solver_frontal
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
   use epcont_plan_iteration_plan, only: iteration_plan
@@ -19,7 +19,6 @@ module epcont_plan_forecast
 
   type :: forecast_type
     integer(i8) :: bytes = 0            !! that the process will hold at its peak, on one thread
-    integer(i8) :: double_bytes = 0     !! the same with factors in double precision
     integer(i8) :: kept_bytes = 0       !! of these, what is kept from load case to load case
     real(wp) :: operations = 0.0_wp     !! floating-point operations of factor, flexibility and simplex
     real(wp) :: operations_again = 0.0_wp   !! of these, what each solve but the first has, beyond yield
@@ -104,7 +103,6 @@ contains
     class(forecast_type), intent(inout) :: self
 
     self%bytes = 2*self%bytes - of_process
-    self%double_bytes = 2*self%double_bytes - of_process
   end subroutine keep_unloaded
 
   !> By blocks, level by level (`contact/level_factor.f90`), each of which has a part in the next. A full set
@@ -132,7 +130,7 @@ contains
     type(incidence) :: of_bodies              ! pairs that have nodes in each
     integer(i8), allocatable :: own_pairs(:)
     integer, allocatable :: level(:)          ! pairs of each
-    integer(i8) :: coupled, done_with, entries, factor, flexibility, last, pairs, passing, saved, unit_loads
+    integer(i8) :: coupled, done_with, entries, factor, flexibility, last, pairs, passing, unit_loads
     real(wp) :: operations
     integer :: b
 
@@ -149,7 +147,6 @@ contains
     of_bodies = new_incidence(model%bodies_of_pairs(), model%bodies)
     own_pairs = of_bodies%start(2:) - of_bodies%start(:model%bodies)
     entries = 0       ! of the factors
-    saved = 0         ! bytes, by factors in single precision
     flexibility = 0   ! entries that are wanted for that of one body
     unit_loads = 0    ! bytes of those that one body feels
     passing = 0       ! and entries that its fronts leave to each other, free when it has been factored
@@ -165,7 +162,6 @@ contains
         if (body%can_yield) done_with = 0
         passing = max(passing, done_with)
         entries = entries + factor - done_with + int(body%equations, i8)*body%border
-        if (plan%precision /= precision_double) saved = saved + (factor - done_with)*real_bytes/2
         ! Its part, and the window that right-hand sides go through; or those on the trailing block and this,
         ! then that part; where each pair has one equation of its own, the part alone.
         last = body%contact_equations
@@ -192,8 +188,7 @@ contains
     entries = entries + max(int(pair_matrices*coupled, i8), flexibility + coupled, passing) + &
               max(int(motions%count, i8)**2, &
                   pairs*min(motion_matrices*motions%count, level_matrices*maxval(level)))
-    expected%double_bytes = real_bytes*entries + beside_matrices() + unit_loads
-    expected%bytes = expected%double_bytes - saved
+    expected%bytes = real_bytes*entries + beside_matrices() + unit_loads
     expected%contact = contact_operations(level, plan%by_blocks)
     expected%operations = expected%operations + expected%contact
     expected%operations_again = expected%operations_again + expected%contact
@@ -208,7 +203,6 @@ contains
         expected%entries_again = expected%entries
         expected%bytes = real_bytes*expected%entries + beside_matrices() + &
                          load_of_node*model%nodes*loads
-        expected%double_bytes = expected%bytes
         expected%apart_bytes = expected%bytes + int(pair_matrices*coupled, i8)*real_bytes
         expected%contact = of_sets*fronts%operations() + of_solves*expected%entries
         expected%operations = fronts%operations() + expected%contact

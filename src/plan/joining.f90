@@ -3,7 +3,7 @@
 module epcont_plan_joining
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
-  use epcont_model_controls, only: precision_double, precision_open, rule_auto, rule_joined
+  use epcont_model_controls, only: rule_auto, rule_joined
   use epcont_model_model, only: model_type
   implicit none
   private
@@ -27,8 +27,7 @@ contains
     integer, intent(in) :: motions          !! that are free
 
     joins = model%controls%rule == rule_joined
-    if (model%controls%rule == rule_auto .and. motions <= most_motions .and. &
-        any(model%controls%precision == [precision_open, precision_double])) &
+    if (model%controls%rule == rule_auto .and. motions <= most_motions) &
       joins = operations_of_flexibility(model) > many_of(model)*model%nodes
     if (joins) joins = can_join(model)
   end function joins

@@ -8,8 +8,7 @@ module epcont_plasticity_iteration
   use epcont_linear_linear_problem, only: linear_problem, new_linear_problem
   use epcont_linear_scene_state, only: scene_state
   use epcont_material_linear_law, only: elastic_law
-  use epcont_model_controls, only: method_inistr, method_modsec, method_newton, method_secant, &
-    precision_single
+  use epcont_model_controls, only: method_inistr, method_modsec, method_newton, method_secant
   use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_plan_planned_scene, only: planned_scene
   use epcont_plasticity_initial_stress, only: initial_stress_method
@@ -18,7 +17,7 @@ module epcont_plasticity_iteration
   use epcont_plasticity_observer, only: iteration_record, observer
   use epcont_plasticity_secant, only: secant_method
   use epcont_plasticity_unloading, only: find_unloaded
-  use epcont_system_stopwatch, only: stage_accuracy, stage_stiffness, stage_yielding
+  use epcont_system_stopwatch, only: stage_stiffness, stage_yielding
   implicit none
   private
   public :: followed_loads, follow_loads
@@ -36,8 +35,6 @@ module epcont_plasticity_iteration
   real(wp), parameter :: too_stiff = 1.0e-3_wp
   !> Changes that fall no more are rounding up to this part of the largest displacement; beyond, all is lost.
   real(wp), parameter :: stagnant = 1.0e-3_wp
-  !> So many solves without a change less than those before.
-  integer, parameter :: long = 5
 
   !> What came of the loads, and how: a state, the answer or what came nearest to one.
   type, extends(scene_state) :: followed_loads
@@ -50,8 +47,6 @@ module epcont_plasticity_iteration
     integer :: factorizations = 0          !! of bodies
     real(wp) :: condition = 1.0_wp         !! of the stiffness, estimated in the 1-norm
     type(weak_pivot) :: weakest            !! of the stiffness
-    !> Of displacements, strains and forces, relative: what single precision left
-    real(wp) :: rounding_error = 0.0_wp
     type(iteration_record), allocatable :: history(:)   !! every solve
     type(pivot_record), allocatable :: pivot(:)         !! those that are kept of each, one after the other
     integer :: unloaded = 0                !! elements whose strain fell, after yielding, as the load grew
@@ -106,8 +101,6 @@ contains
       failed_body = 0
       if (.not. converged .and. answer%carried) call return_to_carried(failed_body)
       if (failed_body > 0) answer%condition = huge(1.0_wp)
-      if (failed_body == 0 .and. plan%precision == precision_single .and. &
-          (step == plan%load_steps .or. .not. converged)) call estimate_rounding()
       if (.not. converged) exit
       answer%carried = .true.
       if (plan%load_steps > 1) call find_unloaded(scene%model, answer%point, plan%tolerance, strained, &
@@ -187,9 +180,6 @@ contains
         ! A state far away is none to show: its numbers may be at the end of their range.
         answer%runs_away = .not. converged .and. scene%model%has_flat_curve() .and. travel > farthest
         if (answer%runs_away) return
-        ! In single precision changes that fall no more are rounding.
-        if (plan%precision == precision_single .and. .not. converged .and. iteration - minloc( &
-            answer%history(size(answer%history) - iteration + 1:)%change, dim=1) >= long) return
         if (.not. plan%from_first_pivot) touching = found%contact%touching
         force = found%contact%force
         yielded = now%yielded
@@ -371,12 +361,6 @@ contains
       call set_law(method, failed_body)
       load_factor = answer%load_factor
     end subroutine return_to_carried
-
-    !> What single precision may have done to the answer.
-    subroutine estimate_rounding()
-      call linear%rounding_error(scene, load_factor, answer%scene_state, answer%rounding_error)
-      call watch%lap(stage_accuracy)
-    end subroutine estimate_rounding
   end subroutine follow_loads
 
   !> a/b, 0 where both are 0; finite.

@@ -2,10 +2,10 @@
 module epcont_report_listing
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: newline, plural, short_real, text_of
+  use epcont_base_tolerances, only: valid_to
   use epcont_base_version, only: program_name, program_version
   use epcont_certificate_scene, only: little, overlap_place
   use epcont_deck_render, only: printable
-  use epcont_model_controls, only: precision_single
   use epcont_report_columns, only: estimate_number, listed_number, number, part, percent, right, &
       rounding_number, table_type
   use epcont_report_echo, only: list_cards
@@ -191,7 +191,7 @@ contains
         'pairs_in_contact', 'approach_', 'angle_', 'moment_', 'spring_', 'plastic_elements', &
         'max_equivalent_stress', 'max_displacement', 'lowest_temperature', 'highest_temperature', 'status'])
       call listing%heading('CERTIFICATE  (recomputed from displacements and forces alone; tolerance '// &
-                           short_real(run%certificate%tolerance)//')')
+                           short_real(valid_to)//')')
       call list_figures([character(len=25) :: 'equilibrium_residual', 'smallest_', &
         'largest_force_gap_product', 'stress_off_curve|', 'curve_tolerance', 'stress_off_curve_limit', &
         'energy_balance'])
@@ -227,21 +227,11 @@ contains
 
     !> What stopping and rounding leave.
     subroutine list_rounding()
-      logical :: in_single
-
-      in_single = run%answer%precision == precision_single
       call list_figures(['iteration_error_', 'condition       '])
-      if (in_single) call list_figure('error that single precision leaves', &
-          short_real(run%answer%rounding_error), '')
-      if (run%answer%precision /= run%iteration%precision) call say_it( &
-        '  (factors in double: in single precision '// &
-        when(run%iteration%precision == precision_single, 'they left an error of more than '// &
-             short_real(run%iteration%rounding_error)//', or no answer)', &
-             'there was no answer that refinement could reach)'))
-      if (.not. in_single) call list_figure('digits that rounding leaves, at least', &
-          text_of(max(0, floor(-log10(run%answer%rounding())))), '')
+      call list_figure('digits that rounding leaves, at least', &
+                       text_of(max(0, floor(-log10(run%answer%rounding())))), '')
       call list_figure('linear residual', rounding_number(run%certificate%equilibrium), '')
-      if (run%accuracy%sensitivity%known .and. .not. in_single) &
+      if (run%accuracy%sensitivity%known) &
         call list_figure('rounding in the contact forces, at most', &
                          rounding_number(run%accuracy%sensitivity%rounding), '   of the largest')
     end subroutine list_rounding
@@ -300,7 +290,7 @@ contains
       else
         left = run%accuracy%max_pressure/maxval(run%answer%pressure)
         call say_it(when(left > run%model%controls%accuracy, &
-                      '  not reached: the mesh, not the dial, is the limit: its error is estimated at '// &
+                      '  not reached: the error of the mesh is estimated at '// &
                       estimate_number(left)//'; refine the elements named above', &
                       '  reached: the error of the mesh is estimated at '//estimate_number(left)))
       end if

@@ -7,13 +7,12 @@ module epcont_report_outcome
   use epcont_base_error, only: status_no_answer, status_numerical, status_usage, status_valid
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: newline, plural, short_real, text_of
-  use epcont_base_tolerances, only: lost_digits, no_effect
+  use epcont_base_tolerances, only: lost_digits, no_effect, valid_to
   use epcont_certificate_certificate, only: figure_name
   use epcont_contact_problem, only: contact_no_equilibrium, contact_overlap, contact_solved
   use epcont_element_kinematics, only: directions
   use epcont_element_kinematics, only: directions
   use epcont_model_arrays, only: angle
-  use epcont_model_controls, only: precision_name
   use epcont_model_finding, only: findings, of_node, of_scene
   use epcont_report_columns, only: percent
   use epcont_report_names, only: centre_name, first_grid, joined, motion_name, when
@@ -53,14 +52,9 @@ contains
   function judge(run) result(outcome)
     class(solution_type), intent(in) :: run   !! a scene with its answer
     type(outcome_type) :: outcome
-    character(len=*), parameter :: memory = 'out of memory'
 
-    if (allocated(run%answer%against_double)) then
-      call conclude(status_usage, memory, 'factors in single precision ('// &
-                    trim(precision_name(run%iteration%precision))// &
-                    ') give no answer to be trusted, and in double '//run%answer%against_double)
-    else if (run%answer%lacks_memory) then
-      call conclude(status_usage, memory, &
+    if (run%answer%lacks_memory) then
+      call conclude(status_usage, 'out of memory', &
                     'there is not enough memory to factor '//body_name(run%answer%failed_body))
     else if (run%answer%failed_body > 0) then
       call conclude(status_numerical, 'singular stiffness', 'the stiffness of '// &
@@ -235,7 +229,7 @@ contains
       text = ''
       if (figure(worst) > largest(worst)) text = trim(figure_name(worst))//' '//short_real(figure(worst))// &
           ' (at most '//short_real(largest(worst))//')'
-      much = 0.1_wp*run%certificate%tolerance
+      much = 0.1_wp*valid_to
       taken = epsilon(1.0_wp)/run%answer%weakest%ratio   ! of a pivot: the cause, even if mended
       if (.not. all(figure <= huge(figure))) then
         text = 'the work of the loads is too far from 1.0 for a number: other units'

@@ -3,8 +3,7 @@ module epcont_report_plan_text
   use epcont_base_kinds, only: i8, wp
   use epcont_base_text, only: plural, short_real, text_of
   use epcont_geometry_boundary_line, only: boundary_line
-  use epcont_model_controls, only: method_inistr, method_name, method_newton, rule_joined, precision_double, &
-      precision_name, precision_open, precision_single, solver_auto, &
+  use epcont_model_controls, only: method_inistr, method_name, method_newton, rule_joined, solver_auto, &
       solver_band, solver_frontal, solver_name
   use epcont_model_model, only: line_contact, model_type
   use epcont_plan_iteration_plan, only: iteration_plan, many_pairs
@@ -40,13 +39,11 @@ contains
     type(planned_scene), intent(in) :: scene   !! what is to be solved, and how
     character(len=*), intent(in), optional :: of   !! these load cases
     character(len=:), allocatable :: text
-    logical :: in_double
     type(iteration_plan) :: iteration
     type(table_type) :: plan
     integer :: k
 
     iteration = scene%iteration
-    in_double = iteration%precision == precision_double
     plan%text = ''
     if (present(of)) call plan%heading('PLAN  ('//of//')')
     if (.not. present(of)) call plan%heading('PLAN')
@@ -69,7 +66,6 @@ contains
     call say_bodies()
     call plan%line('')
     call say('memory '//megabytes(scene%expected%bytes)// &
-             when(.not. in_double, ' (in double '//megabytes(scene%expected%double_bytes)//')')// &
              when(iteration%joined, ' (up to '//megabytes(scene%expected%apart_bytes)// &
                   ' should bodies have to be solved apart)')// &
              ', operations '//short_real(scene%expected%operations)//when(iteration%yields, ' a solve'))
@@ -172,7 +168,7 @@ contains
           joined(scene%model%node_id(node), ', ', most_corners))
     end subroutine say_corners
 
-    !> How bodies are factored, where it is not in panels of their bands alone, and in double precision.
+    !> How bodies are factored, where it is not in panels of their bands alone.
     subroutine say_factors()
       integer :: fronts
 
@@ -184,10 +180,6 @@ contains
                    short_real(many_operations)//' operations, the flexibility by it '// &
                    short_real(many_of_flexibility))
       end if
-      if (.not. in_double) call say('factors in single precision, '// &
-        when(iteration%precision == precision_single, 'not refined', 'refined to double')// &
-        ' ('//trim(precision_name(iteration%precision))// &
-        '); where that fails, all is solved anew in double')
     end subroutine say_factors
 
     !> What PARAM ACCURACY has chosen.
@@ -197,10 +189,8 @@ contains
       chosen = when(iteration%yields .and. scene%model%controls%tolerance == 0.0_wp, &
                     ', TOL '//short_real(iteration%tolerance))// &
                when(iteration%yields .and. iteration%chosen_here, &
-                    ', METHOD '//trim(method_name(iteration%method)))// &
-               when(scene%model%controls%precision == precision_open, &
-                    ', PRECIS '//trim(precision_name(iteration%precision)))
-      if (len(chosen) == 0) chosen = ', nothing: the deck sets all itself'
+                    ', METHOD '//trim(method_name(iteration%method)))
+      if (len(chosen) == 0) chosen = ', nothing: no iteration, or the deck sets TOL and METHOD'
       call say('ACCURACY '//short_real(scene%model%controls%accuracy)//' chooses '//chosen(3:))
     end subroutine say_choices
 

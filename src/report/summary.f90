@@ -4,6 +4,7 @@
 module epcont_report_summary
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: newline, text_of
+  use epcont_base_tolerances, only: valid_to
   use epcont_certificate_scene, only: little, overlap_place
   use epcont_element_kinematics, only: directions
   use epcont_report_columns, only: estimate, factor, force, full_number, known, length, listed_number, &
@@ -152,7 +153,7 @@ contains
                  listed=listed_number(rounding, c%force_gap/c%force_scale/c%length_scale, 0.0_wp))
         call put('stress_off_curve', none, rounding, c%off_curve, 'stress off the curve')
         call put('curve_tolerance', none, size_of, c%curve_tolerance, &
-                 when(c%curve_tolerance > c%tolerance, 'of which the iteration may leave'))
+                 when(c%curve_tolerance > valid_to, 'of which the iteration may leave'))
         call put('stress_off_curve_limit', none, size_of, c%off_curve_limit, &
                  when(c%off_curve > c%curve_tolerance .and. c%off_curve <= c%off_curve_limit, &
                       'and with the rounding of displacements'))
@@ -220,8 +221,7 @@ contains
       if (.not. run%accuracy%sensitivity%known) return
       call put('contact_amplification', none, factor, run%accuracy%sensitivity%amplification, &
                'contact forces amplify stiffness errors', '   times at most')
-      call put('rounding_error_force', none, known, &
-               max(run%accuracy%sensitivity%rounding, run%answer%rounding_error))
+      call put('rounding_error_force', none, known, run%accuracy%sensitivity%rounding)
       call put_word('weak_pairs', text_of(count(run%accuracy%weak)), '')
     end subroutine put_sensitivity
 

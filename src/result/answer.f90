@@ -1,7 +1,6 @@
 !> The answer to a scene: displacements, contact and stresses, and how they were found.
 module epcont_result_answer
   use epcont_base_kinds, only: wp
-  use epcont_model_controls, only: precision_double
   use epcont_plasticity_iteration, only: followed_loads
   use epcont_result_body_force, only: body_force
   use epcont_result_displacement_gradient, only: gradient_type
@@ -40,11 +39,8 @@ module epcont_result_answer
     real(wp) :: shortfall = 0.0_wp                   !! of stresses from the curve by (2-4), at most, relative
     type(locking_type) :: locking                    !! of three-node elements
     type(gradient_type) :: gradient                  !! of displacements that are not small
-    integer :: precision = precision_double          !! of the factors, where that of the plan did not do
     !> Of displacements and forces by refinement's last step, relative
     real(wp) :: last_correction = huge(1.0_wp)
-    !> Single precision has failed, and this stands against double
-    character(len=:), allocatable :: against_double
     integer :: load_steps = 1                        !! taken, where those of the plan led to no answer
   contains
     procedure :: largest_pressure

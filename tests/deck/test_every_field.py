@@ -145,7 +145,7 @@ PARAMETERS = {
     "PLANE": ("ctria3", "STRAIN", CHANGES), "RULE": ("plane", "BLOCK", LISTED), "GAPGEOM": ("plane", "YES", CHANGES), "UNITS": ("plane", "MM", LISTED),
     "METHOD": ("yield", "SECANT", LISTED), "TOL": ("yield", ".1", LISTED), "MAXIT": ("yield", "7", LISTED), "MUP": ("yield", "PAPER", LISTED),
     "ORIGINAL": ("plane", "YES", LISTED), "NLOAD": ("yield", "2", LISTED), "SEARCH": ("feet", ".1", CHANGES), "SOLVER": ("plane", "FRONTAL", LISTED),
-    "FLEXIB": ("strip", "INVERT", LISTED), "PRECIS": ("plane", "SINGLE", LISTED), "ACCURACY": ("plane", ".1", LISTED), "CORNER": ("lines", "170.", LISTED),
+    "FLEXIB": ("strip", "INVERT", LISTED), "ACCURACY": ("plane", ".1", LISTED), "CORNER": ("lines", "170.", LISTED),
     "WTMASS": ("plane", "2.", CHANGES), "LGDISP": ("plane", "-1", NOTED), "INREL": ("plane", "0", NOTED)}
 WITHOUT = {"PLANE": "ctrax3", "RULE": "yield", "GAPGEOM": "lines", "METHOD": "plane", "TOL": "plane", "MAXIT": "plane", "MUP": "plane", "NLOAD": "plane",
            "SEARCH": "plane", "FLEXIB": "yield", "CORNER": "plane", "WTMASS": "yield"}

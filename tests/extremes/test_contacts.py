@@ -132,18 +132,13 @@ class Many(Extremes):
             self.near(result.force, [1.0/2999*(0.5 if k in (0, 2999) else 1.0) for k in range(3000)], 1e-6)
 
     def test_long_fine_strip(self):
-        """Rounding leaves forces 2.7e-9 out of balance, with factors in double too: a step of refinement takes it down to 1e-13."""
-        approach = {}
-        for precision in ("DOUBLE", "MIXED"):
-            deck = Deck(1.0, 0.3)
-            deck.parameter("PRECIS", precision)
-            nodes = deck.block(1, [9.0*k/6000 for k in range(6001)], [0.0, 0.5, 1.0])
-            deck.stand([nodes[0][::40], nodes[2]], 1.0, first=5_000_001)
-            result = self.valid(deck)
-            self.assertLess(result.summary["equilibrium_residual"], 1e-12)
-            self.near([sum(result.force)], [1.0])
-            approach[precision] = result.approach
-        self.near(approach["DOUBLE"], approach["MIXED"], 1e-8)
+        """Rounding leaves forces 2.7e-9 out of balance, a step of refinement takes it down to 1e-13."""
+        deck = Deck(1.0, 0.3)
+        nodes = deck.block(1, [9.0*k/6000 for k in range(6001)], [0.0, 0.5, 1.0])
+        deck.stand([nodes[0][::40], nodes[2]], 1.0, first=5_000_001)
+        result = self.valid(deck)
+        self.assertLess(result.summary["equilibrium_residual"], 1e-12)
+        self.near([sum(result.force)], [1.0])
 
     def test_every_pair_twice(self):
         """F is singular: forces of the twins are one choice of many, said so, and their sums are right."""

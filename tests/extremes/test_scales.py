@@ -55,19 +55,6 @@ class Scales(Extremes):
         for young in (1e-30, 1e-12, 1.0, 1e12, 1e30):
             self.column_is_right(young=young)
 
-    def test_single_precision_in_any_unit(self):
-        """Stiffnesses far beyond the numbers that it has."""
-        for exponent in (-25, -12, 0, 12, 25):
-            scale = {"young": 10.0**exponent, "thickness": 10.0**exponent}
-            with self.subTest(**scale):
-                deck = column(**scale)
-                deck.parameter("PRECIS", "SINGLE")
-                result = self.valid(deck)
-                self.assertNotIn("factors in double", result.listing)
-                forces, approach = column_answer(**scale)
-                self.near(result.force, forces, 1e-4)
-                self.near(result.approach, [approach]*2, 1e-4)
-
     def test_any_unit(self):
         """Powers of two, of ten, and old ones."""
         base = self.valid(punch())

@@ -62,15 +62,13 @@ class Ties(scene.Extremes):
         self.near(run.summary["max_displacement"], 0.0, 1e-12, 1e-3)
 
     def test_lever(self):
-        """A lever about a held leader, an approach in radians, rests on one point: forces by its arms, in every precision."""
+        """A lever about a held leader, an approach in radians, rests on one point: forces by its arms."""
         cards = ("GRID,900,,-1.0,0.0,0.0|SPC1,1,12,900,990|RBE2,901,900,12,1,2,3,4,5|SUPORT,900,6|GRID,990,,10.0,-0.6,0.0|PGAP,5,0.001|"
                  "CGAP,970,5,990,51|FORCE,1,30,,0.02,0.0,-1.0,0.0")
-        runs = [self.valid(beam(f"{cards}|PARAM,PRECIS,{word}", nu=0.3, hold=False)) for word in ("DOUBLE", "MIXED")]
-        for run in runs:
-            self.near(run.force[0], 0.02 * 6 / 11, 1e-9)
-            self.near(run.summary["approach_900_6"], run.summary["angle_900"], 1e-9)
-            self.near(run.summary["approach_900_6"], runs[0].summary["approach_900_6"], 1e-8)
-        self.assertLess(runs[0].summary["angle_900"], -0.001 / 11)
+        run = self.valid(beam(cards, nu=0.3, hold=False))
+        self.near(run.force[0], 0.02 * 6 / 11, 1e-9)
+        self.near(run.summary["approach_900_6"], run.summary["angle_900"], 1e-9)
+        self.assertLess(run.summary["angle_900"], -0.001 / 11)
 
     def test_moment_in_two_cases(self):
         """Each case has its own moment."""

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """check_same.py PROGRAM DECK OUTPUT PARAM ONE OTHER: a deck must have the same answer by two values of a PARAM: SOLVER BAND and
-FRONTAL, PRECIS DOUBLE and MIXED, FLEXIB AUTO and INVERT, RULE CONRY and JOINED; or by two kernels of OpenBLAS, as OPENBLAS_CORETYPE names them.
+FRONTAL, FLEXIB AUTO and INVERT, RULE CONRY and JOINED; or by two kernels of OpenBLAS, as OPENBLAS_CORETYPE names them.
 
 Exit status, words and whole numbers are to be the same; reals to 1e-9 of the largest of their kind in their table, for two
 factors of one matrix leave different rounding. What measures rounding, and states that are no answers, are not compared.
@@ -15,9 +15,6 @@ import sys
 TOLERANCE = 1e-9
 #: An estimate, which depends on the order of the equations: seldom off by more than a third, and then low.
 ESTIMATES = {"condition": 0.1, "rounding_error_force": 0.1}
-#: Estimates that are solved for with the factors as they are: those of MIXED in single precision, not refined. Its rounding times
-#: the condition is what it leaves them (2 % of a condition of 3e6, with the reference BLAS).
-UNREFINED, SINGLE = re.compile("contact_amplification|mesh_error_approach_.*|mesh_error_total_contact_force|mesh_error_[xy]"), 2.0**-24
 #: By RULE JOINED estimates come of few solves, of all unit loads (else of some, which make up for others but for 1E-2), and what tells
 #: of the matrix, or of a body alone, is of another one.
 MESH_ERROR, FEW_SOLVES, OF_THE_MATRIX = re.compile("mesh_error_.*"), 1e-3, {"condition", "rounding_error_force", "contact_amplification", "factorizations",
@@ -66,7 +63,6 @@ def faults(name, one, other, words):
         return
     scales, joined = {}, words[1] == "JOINED"
     key_column = one[0].index("key") if name == "summary" else 0   # load cases stand before it
-    single = max([0.01] + [SINGLE * real(row[key_column + 1]) for row in one if row[key_column] == "condition"])
     for mine, its in zip(one[1:], other[1:]):
         for column, (a, b) in enumerate(zip(mine, its)):
             figure = mine[key_column] if name == "summary" else one[0][column]
@@ -79,8 +75,7 @@ def faults(name, one, other, words):
             key = column if name != "summary" else (*mine[:key_column + 1], column)
             if key not in scales:
                 scales[key] = scale(name, column, mine, one)
-            unrefined = words[1] == "MIXED" and UNREFINED.fullmatch(figure)
-            allowed = single if unrefined else FEW_SOLVES if joined and MESH_ERROR.fullmatch(figure) else ESTIMATES.get(figure, TOLERANCE)
+            allowed = FEW_SOLVES if joined and MESH_ERROR.fullmatch(figure) else ESTIMATES.get(figure, TOLERANCE)
             if not abs(real(a) - real(b)) <= allowed * scales[key]:
                 yield f"{name}: {one[0][column]}: {a} by {words[0]}, {b} by {words[1]} in {','.join(mine)}"
 

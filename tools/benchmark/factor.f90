@@ -5,7 +5,7 @@
 program bench_factor
   use epcont_base_kinds, only: wp
   use epcont_linalg_lapack, only: dgemm
-  use epcont_linalg_factors, only: panel_matrix
+  use epcont_linalg_panels, only: panel_matrix
   use epcont_linalg_panel_layout, only: new_panel_layout
   use statistics, only: median
   implicit none

@@ -103,7 +103,7 @@ contains
     spent(ordering) = lap()
     scene%model = model
     scene%numbering = numbering
-    bodies = new_bodies(scene, single=.false.)
+    bodies = new_bodies(scene)
     bodies%law = law
     call solve_once(spent)
     spent(all_stages) = sum(spent(ordering:displacing))

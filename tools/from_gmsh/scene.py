@@ -13,7 +13,7 @@ KINDS = {"plane strain": "STRAIN", "plane stress": "STRESS", "ring": None}
 TABLES = ["material", "body", "support", "load", "platen", "free", "contact", "case", "PARAM"]
 DIRECTIONS = {"x": "1", "y": "2", "xy": "12"}
 #: What `epcont --cards PARAM` lists, but for what the scene says otherwise (PLANE, UNITS) or has no use for (GAPGEOM).
-PARAMETERS = {"RULE": str, "METHOD": str, "MUP": str, "SOLVER": str, "PRECIS": str, "TOL": float, "SEARCH": float, "CORNER": float, "ACCURACY": float,
+PARAMETERS = {"RULE": str, "METHOD": str, "MUP": str, "SOLVER": str, "TOL": float, "SEARCH": float, "CORNER": float, "ACCURACY": float,
               "MAXIT": int, "NLOAD": int, "FLEXIB": str, "ORIGINAL": str, "WTMASS": float}
 #: N/mm2 of one unit of stress, for those whose moduli can be told to be wrong.
 STRESS_UNITS = {"N-MM": 1.0, "MPA": 1.0, "N-M": 1e-6, "SI": 1e-6, "KN-M": 1e-3, "KN-MM": 1e3, "KGF-MM": 9.80665}

@@ -12,7 +12,7 @@ from verification.scene import node_of
 from verification.ties import tied_cells
 from verification.zones import zones
 
-#: Of a sum that is taken in another order, over its largest term: in double precision, and of the tolerance of another one.
+#: Of a sum that is taken in another order, over its largest term, and as a part of another tolerance.
 ROUNDING, OF_TOLERANCE = 1e-13, 1e-4
 #: A residual is that of the program, but for the order of its sums, up to a factor.
 LIKE = 8.0
@@ -250,8 +250,7 @@ def check_summary(report, scene, tables, found, tolerance):
         report.line("history iteration", len(tables.history), str(max(tables.history)), max(tables.history) == len(tables.history))
     asked = max(tolerance, scene.off_curve)
     told = summary.get("curve_tolerance", "nan")
-    single = scene.may_be_single and float(told) <= 1.001 * tolerance   # the listing has four digits of it
-    report.line("curve_tolerance", asked, told, abs(float(told) - asked) <= 1e-14 * asked or single)
+    report.line("curve_tolerance", asked, told, abs(float(told) - asked) <= 1e-14 * asked)
     limit = summary.get("stress_off_curve_limit", "nan")
     report.line("stress_off_curve_limit", float(told), limit, float(told) * (1 - 1e-14) <= float(limit) <= 2 * float(told))
     residual, ours = float(summary.get("equilibrium_residual", "nan")), found.figures["equilibrium"]

@@ -99,13 +99,6 @@ class Tables:
                 raise TableFault(f"{self.path(name)}: no such file")
 
 
-def told_tolerance(listing, least, case=None):
-    """That of the certificate in a listing, of a load case: single precision has a larger one."""
-    text = listing.read_text(encoding="latin-1")
-    found = re.search((rf"(?ms)^SUBCASE {case}\b.*?" if case is not None else "(?m)") + r"^CERTIFICATE [^\n]*; tolerance +(\S+)\)", text)
-    return max(least, float(found[1])) if found else least
-
-
 def same_normal(one, other):
     return math.hypot(float(one["nx"]) - float(other["nx"]), float(one["ny"]) - float(other["ny"])) < SAME_NORMAL
 

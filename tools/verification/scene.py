@@ -34,10 +34,8 @@ class Scene:
         self.parameter = parameter = {c[1]: c[2] for c in deck.of("PARAM")}
         self.paper = parameter.get("MUP") == "PAPER" or parameter.get("ORIGINAL") == "YES"
         newton = parameter.get("METHOD", "AUTO") in ("NEWTON", "AUTO") and not self.paper
-        single = parameter.get("PRECIS") == "SINGLE"
-        self.may_be_single = single or "ACCURACY" in parameter
         wanted = real(parameter.get("ACCURACY", ""), 0.0) * (0.1 if newton else 0.002)
-        self.off_curve = real(parameter.get("TOL", ""), wanted or (0.01 if not newton else 1e-3 if single else 1e-8)) * (1 if newton else 10)
+        self.off_curve = real(parameter.get("TOL", ""), wanted or (1e-8 if newton else 0.01)) * (1 if newton else 10)
         self.off_curve *= bool(deck.of("MATS1"))
         self.sections()
         self.element = {}

@@ -1,17 +1,41 @@
-! Symmetric positive definite matrices in panels of columns, each with its own height: blocked variable-band
-! Cholesky.
-!
-! The lower triangle is stored panel by panel: panel p has the columns first(p) to first(p+1)-1, and for all
-! of them the rows from first(p) to last(p), column by column from entries(start(p)) on. The last rows never
-! go back where panels overlap, so the factor fills what is stored and nothing else:
-!
-!     x .        x: stored, .: stored but above the diagonal, never read
-!     x x
-!     x x x .    Of a plain band all panels have the height of the highest; here that of their own:
-!         x x    about half the operations on graded meshes.
-!         x x
-!
-! Included by the modules of both kinds of reals after `blocks_kernel.inc`.
+!> Symmetric positive definite matrices in panels of columns, each with its own height: blocked variable-band
+!> Cholesky.
+!>
+!> The lower triangle is stored panel by panel: panel p has the columns first(p) to first(p+1)-1, and for all
+!> of them the rows from first(p) to last(p), column by column from entries(start(p)) on. The last rows never
+!> go back where panels overlap, so the factor fills what is stored and nothing else:
+!>
+!>     x .        x: stored, .: stored but above the diagonal, never read
+!>     x x
+!>     x x x .    Of a plain band all panels have the height of the highest; here that of their own:
+!>         x x    about half the operations on graded meshes.
+!>         x x
+module epcont_linalg_panels
+  use epcont_base_kinds, only: i8, wp
+  use epcont_base_sorting, only: sorted_order
+  use epcont_linalg_assembled, only: find_compliance, order_rows, probes, sparse_rows
+  use epcont_linalg_blocked, only: backward, begin_blocks, blocked_matrix, diagonal, forward
+  use epcont_linalg_lapack, only: dgemm, dpotrf, dsyrk, dtrsm
+  use epcont_linalg_panel_layout, only: panel_layout
+  implicit none
+  private
+  public :: panel_matrix
+
+  type, extends(blocked_matrix) :: panel_matrix
+    integer :: width = 1     !! columns of a panel; the last may have fewer
+    integer :: kept = 0   !! panels at the front whose factor stands: the others are filled and factored anew
+    real(wp), allocatable :: row_sum(:)   !! of magnitudes, element by element [order]
+  contains
+    procedure :: begin => begin_panels
+    procedure :: clear => clear_panels
+    procedure :: add => add_to_panels
+    procedure :: eliminate => eliminate_panels
+    procedure :: solve_lower
+    procedure :: solve_upper
+    procedure :: find_compliance => find_panel_compliance
+  end type panel_matrix
+
+contains
 
   !> Begin a matrix of zeros.
   subroutine begin_panels(self, layout, once, trailing)
@@ -33,10 +57,10 @@
 
     self%kept = (findloc([stale, .true.], .true., dim=1) - 1)/self%width
     stale(self%first(self%kept + 1):) = .true.
-    self%entries(self%start(self%kept + 1):) = 0.0_rp
+    self%entries(self%start(self%kept + 1):) = 0.0_wp
     self%row_sum(self%first(self%kept + 1):) = 0.0_wp
     if (allocated(self%carried)) deallocate (self%carried)
-    if (self%once .and. self%kept == 0) self%carried = real(probes(self%order), rp)
+    if (self%once .and. self%kept == 0) self%carried = probes(self%order)
   end subroutine clear_panels
 
   !> Entries go to the panel of their column; those of panels that are kept are left out.
@@ -56,7 +80,7 @@
       above = self%start(p) + int(number(j) - self%first(p), i8)*self%height(p) - self%first(p)
       do i = 1, n
         if (number(i) >= number(j)) then
-          self%entries(above + number(i)) = self%entries(above + number(i)) + real(k(i, j), rp)
+          self%entries(above + number(i)) = self%entries(above + number(i)) + k(i, j)
         end if
       end do
       self%row_sum(number(j)) = self%row_sum(number(j)) + sum(abs(k(:, j)), mask=number > 0)
@@ -95,12 +119,12 @@
     integer, intent(out) :: failed      !! equation that has no pivot; 0: none
 
     associate (h => self%height(p), w => self%columns(p), s => self%start(p), f => self%first(p))
-      call potrf('L', w, self%entries(s), h, failed)
+      call dpotrf('L', w, self%entries(s), h, failed)
       if (failed > 0) then
         failed = f - 1 + failed
         return
       end if
-      if (h > w) call trsm('R', 'L', 'T', 'N', h - w, w, 1.0_rp, self%entries(s), h, self%entries(s + w), h)
+      if (h > w) call dtrsm('R', 'L', 'T', 'N', h - w, w, 1.0_wp, self%entries(s), h, self%entries(s + w), h)
       self%pivot_ratio(f:f + w - 1) = diagonal(h, w, self%entries(s))**2/given
       if (allocated(self%carried)) call forward(h, w, self%entries(s), 2, self%order, self%carried(f, 1))
     end associate
@@ -118,52 +142,52 @@
       from = self%start(factored) + before
       rows = h - before
       w = min(self%columns(p), rows)
-      call syrk('L', 'N', w, k, -1.0_rp, self%entries(from), h, 1.0_rp, self%entries(self%start(p)), &
+      call dsyrk('L', 'N', w, k, -1.0_wp, self%entries(from), h, 1.0_wp, self%entries(self%start(p)), &
                 self%height(p))
       if (rows == w) return
-      call gemm('N', 'T', rows - w, w, k, -1.0_rp, self%entries(from + w), h, self%entries(from), h, &
-                1.0_rp, self%entries(self%start(p) + w), self%height(p))
+      call dgemm('N', 'T', rows - w, w, k, -1.0_wp, self%entries(from + w), h, self%entries(from), h, &
+                1.0_wp, self%entries(self%start(p) + w), self%height(p))
     end associate
   end subroutine take_off
 
   !> Each panel is taken from memory once, for all right-hand sides.
-  subroutine go_forwards_through_panels(self, y)
+  subroutine solve_lower(self, x)
     class(panel_matrix), intent(in) :: self
-    real(rp), contiguous, intent(inout) :: y(:, :)
+    real(wp), contiguous, intent(inout) :: x(:, :)
     integer :: p
 
     do p = 1, size(self%height)
-      if (any(y(self%first(p):self%first(p + 1) - 1, :) /= 0.0_rp)) &
-        call take_panel(self, p, .true., size(y, 2), y)
+      if (any(x(self%first(p):self%first(p + 1) - 1, :) /= 0.0_wp)) &
+        call take_panel(self, p, .true., size(x, 2), x)
     end do
-  end subroutine go_forwards_through_panels
+  end subroutine solve_lower
 
   !> The same the other way.
-  subroutine go_back_through_panels(self, y, first)
+  subroutine solve_upper(self, x, first)
     class(panel_matrix), intent(in) :: self
-    real(rp), contiguous, intent(inout) :: y(:, :)
+    real(wp), contiguous, intent(inout) :: x(:, :)
     integer, intent(in) :: first
     integer :: p
 
     do p = size(self%height), 1, -1
       if (self%first(p + 1) <= first) exit
-      call take_panel(self, p, .false., size(y, 2), y)
+      call take_panel(self, p, .false., size(x, 2), x)
     end do
-  end subroutine go_back_through_panels
+  end subroutine solve_upper
 
   !> All rows of a panel follow on one another in the right-hand sides, too.
-  pure subroutine take_panel(self, p, forwards, sides, y)
+  pure subroutine take_panel(self, p, forwards, sides, x)
     class(panel_matrix), intent(in) :: self
     integer, intent(in) :: p   !! the panel
     logical, intent(in) :: forwards   !! with L; else with its transpose
     integer, intent(in) :: sides   !! right-hand sides
-    real(rp), intent(inout) :: y(self%order, sides)   !! these, then what comes of them [order, sides]
+    real(wp), intent(inout) :: x(self%order, sides)   !! these, then what comes of them [order, sides]
 
     associate (h => self%height(p), w => self%columns(p), s => self%start(p), f => self%first(p))
       if (forwards) then
-        call forward(h, w, self%entries(s), sides, self%order, y(f, 1))
+        call forward(h, w, self%entries(s), sides, self%order, x(f, 1))
       else
-        call backward(h, w, self%entries(s), sides, self%order, y(f, 1))
+        call backward(h, w, self%entries(s), sides, self%order, x(f, 1))
       end if
     end associate
   end subroutine take_panel
@@ -175,7 +199,7 @@
     class(panel_matrix), intent(in) :: self
     type(sparse_rows), intent(in) :: rows   !! N
     real(wp), allocatable, intent(out) :: compliance(:, :)   !! lower triangle [rows, rows]
-    real(rp), allocatable :: product(:, :), window(:, :)
+    real(wp), allocatable :: product(:, :), window(:, :)
     integer, dimension(size(rows%start) - 1) :: begins, order
     integer :: column(size(rows%equation)), active, e, k, l, n, p
     integer, allocatable :: entry(:)
@@ -187,7 +211,7 @@
     n = size(order)
     call order_rows(rows, self%order, order, column, begins)
     entry = sorted_order(rows%equation)
-    allocate (window(maxval(self%height), n), product(n, n), source=0.0_rp)
+    allocate (window(maxval(self%height), n), product(n, n), source=0.0_wp)
     active = 0
     e = 1
     do p = 1, size(self%height)
@@ -197,7 +221,7 @@
           if (i > 0) then
             k = column(entry(e))
             active = max(active, k)
-            window(i, k) = window(i, k) + real(rows%weight(entry(e)), rp)
+            window(i, k) = window(i, k) + rows%weight(entry(e))
           end if
         end associate
         e = e + 1
@@ -217,17 +241,18 @@
   pure subroutine pass_window(self, p, active, high, n, window, product)
     class(panel_matrix), intent(in) :: self
     integer, intent(in) :: p, active, high, n
-    real(rp), intent(inout) :: window(high, n), product(n, n)
+    real(wp), intent(inout) :: window(high, n), product(n, n)
     integer :: k
 
     associate (h => self%height(p), w => self%columns(p), s => self%start(p))
-      call trsm('L', 'L', 'N', 'N', w, active, 1.0_rp, self%entries(s), h, window, high)
-      call syrk('L', 'T', active, w, 1.0_rp, window, high, 1.0_rp, product, n)
-      if (h > w) call gemm('N', 'N', h - w, active, w, -1.0_rp, self%entries(s + w), h, window, high, &
-                           1.0_rp, window(w + 1, 1), high)
+      call dtrsm('L', 'L', 'N', 'N', w, active, 1.0_wp, self%entries(s), h, window, high)
+      call dsyrk('L', 'T', active, w, 1.0_wp, window, high, 1.0_wp, product, n)
+      if (h > w) call dgemm('N', 'N', h - w, active, w, -1.0_wp, self%entries(s + w), h, window, high, &
+                           1.0_wp, window(w + 1, 1), high)
       do k = 1, active
         window(:h - w, k) = window(w + 1:h, k)
-        window(h - w + 1:h, k) = 0.0_rp
+        window(h - w + 1:h, k) = 0.0_wp
       end do
     end associate
   end subroutine pass_window
+end module epcont_linalg_panels

@@ -1,4 +1,30 @@
-! What panels and fronts do alike.
+!> Cholesky factors in blocks of columns, panels or fronts: what both do alike.
+module epcont_linalg_blocked
+  use epcont_base_kinds, only: i8, wp
+  use epcont_linalg_assembled, only: assembled_matrix, probes
+  use epcont_linalg_lapack, only: dgemm, dgemv
+  use epcont_system_large_pages, only: use_large_pages
+  implicit none
+  private
+  public :: blocked_matrix, begin_blocks, diagonal, forward, backward
+
+  !> Block p has the columns first(p) to first(p+1)-1, which are stored full, from entries(start(p)) on: the
+  !! rows of these equations, and below them those that they are coupled with.
+  type, abstract, extends(assembled_matrix) :: blocked_matrix
+    integer, allocatable :: first(:)       !! column of each block [blocks + 1]
+    integer, allocatable :: columns(:)     !! of each block [blocks]
+    integer, allocatable :: height(:)      !! rows of each block [blocks]
+    integer(i8), allocatable :: start(:)   !! of each block in `entries` [blocks + 1]
+    real(wp), allocatable :: entries(:)
+    logical :: once = .false.              !! it will be factored once, and takes the probes along
+    !> `probes`, taken through L^-1 while the blocks are at hand [order, 2]
+    real(wp), allocatable :: carried(:, :)
+  contains
+    procedure :: begin_estimate
+    procedure :: get_trailing_factor
+  end type blocked_matrix
+
+contains
 
   !> A matrix of zeros in these blocks, or word that there is no memory for it. (A function would hand back a
   !! copy of the whole matrix.)
@@ -14,7 +40,6 @@
     self%once = once
     self%trailing = trailing
     self%order = size(stale)
-    self%rounding = epsilon(1.0_rp)
     self%first = first
     self%height = height
     self%columns = first(2:) - first(:size(height))
@@ -39,7 +64,7 @@
 
     solved = allocated(self%carried)
     if (solved) then
-      x = real(self%carried, wp)
+      x = self%carried
       call self%solve_upper(x, 1)
     else
       x = probes(self%order)
@@ -68,21 +93,21 @@
   !> Diagonal of columns that are stored full.
   pure function diagonal(height, columns, k)
     integer, intent(in) :: height, columns
-    real(rp), intent(in) :: k(height, columns)
+    real(wp), intent(in) :: k(height, columns)
     real(wp) :: diagonal(columns)
     integer :: j
 
-    diagonal = [(real(k(j, j), wp), j=1, columns)]
+    diagonal = [(k(j, j), j=1, columns)]
   end function diagonal
 
   !> Solve with columns of a factor that are stored full, and take them off the rows below. Only a few are
   !! solved for at a time, by loops, which take less than the calls that `trsm` makes for each column.
   pure subroutine forward(height, columns, l, sides, leading, y)
     integer, intent(in) :: height, columns
-    real(rp), intent(in) :: l(height, columns)
+    real(wp), intent(in) :: l(height, columns)
     integer, intent(in) :: sides                      !! right-hand sides
     integer, intent(in) :: leading                    !! dimension of y
-    real(rp), intent(inout) :: y(leading, sides)      !! [height, sides]
+    real(wp), intent(inout) :: y(leading, sides)      !! [height, sides]
     integer, parameter :: few = 16
     integer :: first, i, k, last
 
@@ -96,11 +121,11 @@
       end do
       if (last == height) return
       if (sides == 1) then
-        call gemv('N', height - last, last - first + 1, -1.0_rp, l(last + 1, first), height, y(first, 1), &
-                  1, 1.0_rp, y(last + 1, 1), 1)
+        call dgemv('N', height - last, last - first + 1, -1.0_wp, l(last + 1, first), height, y(first, 1), &
+                  1, 1.0_wp, y(last + 1, 1), 1)
       else
-        call gemm('N', 'N', height - last, sides, last - first + 1, -1.0_rp, l(last + 1, first), height, &
-                  y(first, 1), leading, 1.0_rp, y(last + 1, 1), leading)
+        call dgemm('N', 'N', height - last, sides, last - first + 1, -1.0_wp, l(last + 1, first), height, &
+                  y(first, 1), leading, 1.0_wp, y(last + 1, 1), leading)
       end if
     end do
   end subroutine forward
@@ -108,19 +133,19 @@
   !> The same with its transpose.
   pure subroutine backward(height, columns, l, sides, leading, y)
     integer, intent(in) :: height, columns, sides, leading
-    real(rp), intent(in) :: l(height, columns)
-    real(rp), intent(inout) :: y(leading, sides)
+    real(wp), intent(in) :: l(height, columns)
+    real(wp), intent(inout) :: y(leading, sides)
     integer, parameter :: few = 16
     integer :: first, i, k, last
 
     do first = 1 + (columns - 1)/few*few, 1, -few
       last = min(first + few - 1, columns)
       if (last < height .and. sides == 1) then
-        call gemv('T', height - last, last - first + 1, -1.0_rp, l(last + 1, first), height, &
-                  y(last + 1, 1), 1, 1.0_rp, y(first, 1), 1)
+        call dgemv('T', height - last, last - first + 1, -1.0_wp, l(last + 1, first), height, &
+                  y(last + 1, 1), 1, 1.0_wp, y(first, 1), 1)
       else if (last < height) then
-        call gemm('T', 'N', last - first + 1, sides, height - last, -1.0_rp, l(last + 1, first), height, &
-                  y(last + 1, 1), leading, 1.0_rp, y(first, 1), leading)
+        call dgemm('T', 'N', last - first + 1, sides, height - last, -1.0_wp, l(last + 1, first), height, &
+                  y(last + 1, 1), leading, 1.0_wp, y(first, 1), leading)
       end if
       ! Row by row: each step of a dot product would wait for the one before.
       do i = last, first, -1
@@ -131,3 +156,4 @@
       end do
     end do
   end subroutine backward
+end module epcont_linalg_blocked

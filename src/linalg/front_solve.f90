@@ -1,14 +1,36 @@
-! Solves with the Cholesky factor of a matrix in fronts, unit by unit, by the threads that have factored it.
-!
-! Included by the modules of both kinds of reals after `front_kernel.inc`.
+!> Solves with the Cholesky factor of a matrix in fronts, unit by unit, by the threads that have factored it.
+module epcont_linalg_front_solve
+  use epcont_base_incidence, only: incidence, new_incidence
+  use epcont_base_kinds, only: i8, wp
+  use epcont_linalg_blocked, only: backward, blocked_matrix, forward
+  use epcont_linalg_front_layout, only: front_layout
+  use epcont_system_threads, only: use_one_thread_each
+  implicit none
+  private
+  public :: front_factor
+
+  type, abstract, extends(blocked_matrix) :: front_factor
+    type(front_layout) :: layout
+    integer :: threads = 1   !! that it is filled and solved by
+  contains
+    procedure :: solve_lower
+    procedure :: solve_upper
+  end type front_factor
+
+  !> What a unit takes off the equations that it reaches [reached equations * right-hand sides].
+  type :: left_part
+    real(wp), allocatable :: entries(:)
+  end type left_part
+
+contains
 
   !> The first half, each unit after those below it. What a unit takes off equations beyond it is kept apart
   !! until the one above adds it, in the order of the units: so roundings are the same on any number of
   !! threads. Fronts that nothing acts on are left out.
-  subroutine go_forwards_through_fronts(self, y)
-    class(front_matrix), intent(in) :: self
-    real(rp), contiguous, intent(inout) :: y(:, :)
-    type(update_matrix) :: beyond(size(self%height))   ! what a unit leaves to each equation that it reaches
+  subroutine solve_lower(self, x)
+    class(front_factor), intent(in) :: self
+    real(wp), contiguous, intent(inout) :: x(:, :)
+    type(left_part) :: beyond(size(self%height))   ! what a unit leaves to each equation that it reaches
     type(incidence) :: fronts                          ! of each unit
     integer, allocatable :: unit(:)   ! nothing but its addresses, of units and of none, counts
     integer :: above, p
@@ -33,10 +55,10 @@
     !> The fronts of a unit, with what units below leave to each.
     subroutine take_unit(u, front)
       integer, intent(in) :: u, front(:)
-      real(rp) :: own(maxval(self%height(front))*size(y, 2))   ! of each: threads would wait for the heap
+      real(wp) :: own(maxval(self%height(front))*size(x, 2))   ! of each: threads would wait for the heap
       integer :: i, k
 
-      allocate (beyond(u)%entries(self%layout%reached(u)*size(y, 2)), source=0.0_rp)
+      allocate (beyond(u)%entries(self%layout%reached(u)*size(x, 2)), source=0.0_wp)
       associate (below => self%layout%below, first => self%first)
         do i = 1, size(front)
           do k = below%start(front(i)), below%start(front(i) + 1) - 1
@@ -46,7 +68,7 @@
               deallocate (beyond(q)%entries)
             end associate
           end do
-          if (any(y(first(front(i)):first(front(i) + 1) - 1, :) /= 0.0_rp)) &
+          if (any(x(first(front(i)):first(front(i) + 1) - 1, :) /= 0.0_wp)) &
             call take_front(u, front(i), self%height(front(i)), own)
         end do
       end associate
@@ -55,13 +77,13 @@
     !> A front, through a matrix of its own rows.
     subroutine take_front(u, p, h, own)
       integer, intent(in) :: u, p, h
-      real(rp), intent(inout) :: own(h, size(y, 2))
+      real(wp), intent(inout) :: own(h, size(x, 2))
 
       associate (f => self%first(p), l => self%first(p + 1) - 1, n => self%columns(p))
-        own(:n, :) = y(f:l, :)
-        own(n + 1:, :) = 0.0_rp
-        call forward(h, n, self%entries(self%start(p)), size(y, 2), h, own)
-        y(f:l, :) = own(:n, :)
+        own(:n, :) = x(f:l, :)
+        own(n + 1:, :) = 0.0_wp
+        call forward(h, n, self%entries(self%start(p)), size(x, 2), h, own)
+        x(f:l, :) = own(:n, :)
         call add(u, p, h, n, own, beyond(u)%entries)
       end associate
     end subroutine take_front
@@ -70,8 +92,8 @@
     subroutine add(u, p, rows, before, part, apart)
       integer, intent(in) :: u, p
       integer, intent(in) :: rows, before   !! of part, and those of them that are none of these equations
-      real(rp), intent(in) :: part(rows, size(y, 2))
-      real(rp), intent(inout) :: apart(self%layout%reached(u), size(y, 2))
+      real(wp), intent(in) :: part(rows, size(x, 2))
+      real(wp), intent(inout) :: apart(self%layout%reached(u), size(x, 2))
       integer :: at, i
 
       associate (start => self%layout%rows%start, row => self%layout%rows%group)
@@ -79,7 +101,7 @@
         do i = before + 1, rows
           associate (equation => row(start(p) + i - before - 1))
             if (equation < self%first(u + 1)) then
-              y(equation, :) = y(equation, :) + part(i, :)
+              x(equation, :) = x(equation, :) + part(i, :)
             else
               do while (row(at) < equation)
                 at = at + 1
@@ -90,12 +112,12 @@
         end do
       end associate
     end subroutine add
-  end subroutine go_forwards_through_fronts
+  end subroutine solve_lower
 
   !> The second half, each unit after those above it.
-  subroutine go_back_through_fronts(self, y, first)
-    class(front_matrix), intent(in) :: self
-    real(rp), contiguous, intent(inout) :: y(:, :)
+  subroutine solve_upper(self, x, first)
+    class(front_factor), intent(in) :: self
+    real(wp), contiguous, intent(inout) :: x(:, :)
     integer, intent(in) :: first
     type(incidence) :: fronts         ! of each unit
     integer, allocatable :: unit(:)   ! nothing but its addresses, of units and of none, counts
@@ -121,7 +143,7 @@
     !> The fronts of a unit, the highest first.
     subroutine take_unit(front)
       integer, intent(in) :: front(:)
-      real(rp) :: own(maxval(self%height(front))*size(y, 2))   ! of each
+      real(wp) :: own(maxval(self%height(front))*size(x, 2))   ! of each
       integer :: i
 
       do i = size(front), 1, -1
@@ -132,27 +154,28 @@
     !> A front, through a matrix of its own rows.
     subroutine take_front(p, h, own)
       integer, intent(in) :: p, h
-      real(rp), intent(inout) :: own(h, size(y, 2))
+      real(wp), intent(inout) :: own(h, size(x, 2))
       integer :: i, k
 
       associate (f => self%first(p), l => self%first(p + 1) - 1, n => self%columns(p), &
                  row => self%layout%rows%group, before => self%layout%rows%start(p) - 1)
-        own(:n, :) = y(f:l, :)
-        do k = 1, size(y, 2)
+        own(:n, :) = x(f:l, :)
+        do k = 1, size(x, 2)
           do i = n + 1, h
-            own(i, k) = y(row(before + i - n), k)
+            own(i, k) = x(row(before + i - n), k)
           end do
         end do
-        call backward(h, n, self%entries(self%start(p)), size(y, 2), h, own)
-        y(f:l, :) = own(:n, :)
+        call backward(h, n, self%entries(self%start(p)), size(x, 2), h, own)
+        x(f:l, :) = own(:n, :)
       end associate
     end subroutine take_front
-  end subroutine go_back_through_fronts
+  end subroutine solve_upper
 
   !> One where others would begin after most of it is done.
   pure integer function solve_threads(self) result(threads)
-    class(front_matrix), intent(in) :: self
+    class(front_factor), intent(in) :: self
     integer, parameter :: many = 2000000   ! entries: 2 ms
 
     threads = merge(self%threads, 1, size(self%entries, kind=i8) >= many)
   end function solve_threads
+end module epcont_linalg_front_solve

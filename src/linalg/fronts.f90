@@ -1,19 +1,48 @@
-! Symmetric positive definite matrices in fronts, by the multifrontal method: what `panel_matrix` does, for
-! large systems.
-!
-! The columns of front p are stored with the rows of its own equations and those that it reaches, one below
-! the other:
-!
-!     x .        own equations: x: stored, .: stored but above the diagonal, never read
-!     x x
-!     x x        the later equations that it reaches, close together however far apart they are in the matrix
-!     x x
-!
-! When they have been eliminated, what is left to the reached equations is a full matrix, stored from the
-! diagonal down in blocks of columns, which is passed on to the parent. Where nested dissection has found the
-! fronts, few operations are done, and all of them on full matrices.
-!
-! Included by the modules of both kinds of reals after `blocks_kernel.inc`.
+!> Symmetric positive definite matrices in fronts, by the multifrontal method: what `panel_matrix` does, for
+!> large systems.
+!>
+!> The columns of front p are stored with the rows of its own equations and those that it reaches, one below
+!> the other:
+!>
+!>     x .        own equations: x: stored, .: stored but above the diagonal, never read
+!>     x x
+!>     x x        the later equations that it reaches, close together however far apart they are in the matrix
+!>     x x
+!>
+!> When they have been eliminated, what is left to the reached equations is a full matrix, stored from the
+!> diagonal down in blocks of columns, which is passed on to the parent. Where nested dissection has found the
+!> fronts, few operations are done, and all of them on full matrices.
+module epcont_linalg_fronts
+  use epcont_base_kinds, only: i8, wp
+  use epcont_linalg_assembled, only: probes
+  use epcont_linalg_blocked, only: begin_blocks, diagonal, forward
+  use epcont_linalg_full_columns, only: factor_columns
+  use epcont_linalg_front_layout, only: columns_along, front_layout
+  use epcont_linalg_front_solve, only: front_factor
+  use epcont_linalg_update_matrix, only: lay_out, take_update_off, update_matrix
+  use epcont_system_large_pages, only: use_small_pages
+  !$ use omp_lib, only: omp_get_num_threads
+  implicit none
+  private
+  public :: front_matrix
+
+  type, extends(front_factor) :: front_matrix
+    type(update_matrix), allocatable :: update(:)   !! [fronts]
+    logical, allocatable :: stale(:)           !! fronts to be filled and factored anew, by whole units
+    !> Equation that could not be eliminated in each front or below it; 0: none
+    integer, allocatable :: failed(:)
+    !> Of the sums of magnitudes of its own rows the largest [fronts]
+    real(wp), allocatable :: largest_sum(:)
+  contains
+    procedure :: begin => begin_fronts
+    procedure :: clear => clear_fronts
+    procedure :: open => open_front
+    procedure :: add => add_to_fronts
+    procedure :: close => close_front
+    procedure :: eliminate => eliminate_fronts
+  end type front_matrix
+
+contains
 
   !> Begin a matrix of zeros.
   subroutine begin_fronts(self, layout, once, trailing)
@@ -50,7 +79,7 @@
         stale(self%first(p):self%first(p + 1) - 1) = self%stale(p)
       end do
     end associate
-    if (self%once) self%carried = real(probes(self%order), rp)
+    if (self%once) self%carried = probes(self%order)
   end subroutine clear_fronts
 
   !> The places of later equations, ascending, among the rows of a front that has them all.
@@ -92,7 +121,7 @@
                update => self%update(p))
       call clear_entries(self%entries(self%start(p):), int(h, i8)*n)
       if (.not. allocated(update%entries)) call lay_out(n, m, update)
-      update%entries = 0.0_rp
+      update%entries = 0.0_wp
       if (allocated(self%carried)) call put_probes(h, n, self%carried(f:f + n - 1, :), &
                                                    update%entries(update%along + 1))
     end associate
@@ -102,27 +131,10 @@
     end do
   end subroutine open_front
 
-  !> Room for an update matrix and what goes along.
-  pure subroutine lay_out(own, reached, update)
-    integer, intent(in) :: own, reached   !! rows of the front
-    type(update_matrix), intent(out) :: update
-    integer :: first, j
-
-    allocate (update%entries(update_size(own, reached)), update%row_zero(reached))
-    associate (w => block_width(reached))
-      do first = 1, reached, w
-        do j = first, min(first + w - 1, reached)
-          update%row_zero(j) = update%along - (first - 1)
-          update%along = update%along + reached - (first - 1)
-        end do
-      end do
-    end associate
-  end subroutine lay_out
-
   !> Zeros for the columns of a front; what stands above the diagonal, too: small products compute with it,
   !! though nothing comes of that. Where the pages for them came slowly, those that follow are to be small.
   subroutine clear_entries(entries, own)
-    real(rp), contiguous, intent(inout) :: entries(:)   !! of this front and those behind it
+    real(wp), contiguous, intent(inout) :: entries(:)   !! of this front and those behind it
     integer(i8), intent(in) :: own          !! of this one
     integer(i8), parameter :: bits = storage_size(entries)
     real(wp), parameter :: long = 1.0e-3_wp, slow = 1.0e9_wp   ! ten times the usual [s], [bits/s]
@@ -130,7 +142,7 @@
     integer(i8) :: begun, ended, rate
 
     call system_clock(begun, rate)
-    entries(:own) = 0.0_rp
+    entries(:own) = 0.0_wp
     call system_clock(ended)
     if (real(ended - begun, wp)/rate < long + own*bits/slow) return
     call use_small_pages(entries(own + 1:min(own + ahead, size(entries, kind=i8))), int(bits))
@@ -139,8 +151,8 @@
   !> The probes' own rows among what goes along.
   pure subroutine put_probes(h, n, own, along)
     integer, intent(in) :: h, n
-    real(rp), intent(in) :: own(n, 2)
-    real(rp), intent(inout) :: along(h, columns_along)
+    real(wp), intent(in) :: own(n, 2)
+    real(wp), intent(inout) :: along(h, columns_along)
 
     along(:n, 3:4) = own
   end subroutine put_probes
@@ -188,8 +200,8 @@
     integer, intent(in) :: first, rows, place(rows)
     integer, intent(in) :: last(rows)      !! of the run that a row is in
     integer, intent(in) :: less            !! rows of the front that its column has not
-    real(rp), intent(in) :: column(first:rows)
-    real(rp), intent(inout) :: above(*)
+    real(wp), intent(in) :: column(first:rows)
+    real(wp), intent(inout) :: above(*)
     integer :: i, k
 
     i = first
@@ -293,11 +305,11 @@
     integer, intent(in) :: from   !! the first row of the front that is wanted
     integer, intent(in) :: less   !! rows of the front that its column has not
     real(wp), intent(in) :: k(n)
-    real(rp), intent(inout) :: column(*)
+    real(wp), intent(inout) :: column(*)
     integer :: i
 
     do i = 1, n
-      if (at(i) >= from) column(at(i) - less) = column(at(i) - less) + real(k(i), rp)
+      if (at(i) >= from) column(at(i) - less) = column(at(i) - less) + k(i)
     end do
   end subroutine add_column
 
@@ -307,7 +319,7 @@
   pure subroutine add_along(n, at, k, h, along)
     integer, intent(in) :: n, at(n), h
     real(wp), intent(in) :: k(n, n)
-    real(rp), intent(inout) :: along(h, 2)
+    real(wp), intent(inout) :: along(h, 2)
     real(wp) :: total
     integer :: i, j
 
@@ -316,9 +328,9 @@
       total = 0.0_wp
       do i = 1, n
         if (at(i) > 0) total = total + abs(k(i, j))
-        if (at(i) == at(j)) along(at(j), 1) = along(at(j), 1) + real(k(i, j), rp)
+        if (at(i) == at(j)) along(at(j), 1) = along(at(j), 1) + k(i, j)
       end do
-      along(at(j), 2) = along(at(j), 2) + real(total, rp)
+      along(at(j), 2) = along(at(j), 2) + total
     end do
   end subroutine add_along
 
@@ -344,27 +356,10 @@
     end associate
   end subroutine close_front
 
-  !> Take off an update matrix what the front's own columns eliminate, block by block, which threads share.
-  subroutine take_update_off(rows, factored, leading, l, update)
-    integer, intent(in) :: rows, factored, leading        !! dimension of l
-    real(rp), intent(in) :: l(leading, factored)          !! [rows, factored]
-    type(update_matrix), intent(inout) :: update
-    integer :: j
-
-    associate (w => block_width(rows))
-      !$omp taskloop default(shared) grainsize(1) if(rows > w)
-      do j = 1, rows, w
-        call take_block_off(rows - j + 1, min(w, rows - j + 1), factored, leading, l(j, 1), rows - j + 1, &
-                            update%entries(update%row_zero(j) + j))
-      end do
-      !$omp end taskloop
-    end associate
-  end subroutine take_update_off
-
   !> What goes along tells the ratios of the pivots and the largest sum of the own rows.
   pure subroutine close_along(h, n, own, along, ratio, largest_sum)
     integer, intent(in) :: h, n
-    real(rp), intent(in) :: own(h, n), along(h, 2)
+    real(wp), intent(in) :: own(h, n), along(h, 2)
     real(wp), intent(out) :: ratio(n), largest_sum
 
     ratio = diagonal(h, n, own)**2/along(:n, 1)
@@ -374,9 +369,9 @@
   !> Take the probes along.
   pure subroutine carry(h, n, own, probe, carried)
     integer, intent(in) :: h, n
-    real(rp), intent(in) :: own(h, n)
-    real(rp), intent(inout) :: probe(h, 2)
-    real(rp), intent(out) :: carried(n, 2)
+    real(wp), intent(in) :: own(h, n)
+    real(wp), intent(inout) :: probe(h, 2)
+    real(wp), intent(out) :: carried(n, 2)
 
     call forward(h, n, own, 2, h, probe)
     carried = probe(:n, :)
@@ -391,3 +386,4 @@
     if (any(self%failed > 0)) failed = minval(self%failed, mask=self%failed > 0)
     self%norm = maxval(self%largest_sum)
   end subroutine eliminate_fronts
+end module epcont_linalg_fronts

@@ -1,27 +1,35 @@
-! Full columns of a Cholesky factor, in products as large as may be: what fronts are made of.
-!
-! Included by the modules of both kinds of reals.
+!> Full columns of a Cholesky factor, in products as large as possible: fronts consist of them.
+module epcont_linalg_full_columns
+  use epcont_base_kinds, only: wp
+  use epcont_linalg_front_layout, only: block_width
+  use epcont_linalg_lapack, only: dgemm, dpotrf, dsyrk, dtrsm
+  implicit none
+  private
+  public :: factor_columns, take_block_off
+
+contains
 
   !> Factor columns that are stored full. Halved again and again, most of the work is products; of solving
   !! with a triangle the BLAS makes a third of their rate.
   recursive subroutine factor_columns(rows, columns, leading, a, failed)
     integer, intent(in) :: rows, columns
     integer, intent(in) :: leading                  !! dimension of a
-    real(rp), intent(inout) :: a(leading, columns)  !! [rows, columns]
+    real(wp), intent(inout) :: a(leading, columns)  !! [rows, columns]
     integer, intent(out) :: failed                  !! column that has no pivot; 0: none
     integer, parameter :: few = 24, tall = 256
     integer :: half, i
 
     if (columns <= few) then
-      call potrf('L', columns, a, leading, failed)
+      call dpotrf('L', columns, a, leading, failed)
       if (failed > 0 .or. rows == columns) return
       if (rows <= tall) then
-        call trsm('R', 'L', 'T', 'N', rows - columns, columns, 1.0_rp, a, leading, a(columns + 1, 1), leading)
+        call dtrsm('R', 'L', 'T', 'N', rows - columns, columns, 1.0_wp, a, leading, a(columns + 1, 1), &
+                   leading)
         return
       end if
       !$omp taskloop default(shared) grainsize(1)
       do i = columns + 1, rows, tall
-        call trsm('R', 'L', 'T', 'N', min(tall, rows - i + 1), columns, 1.0_rp, a, leading, a(i, 1), leading)
+        call dtrsm('R', 'L', 'T', 'N', min(tall, rows - i + 1), columns, 1.0_wp, a, leading, a(i, 1), leading)
       end do
       !$omp end taskloop
       return
@@ -40,8 +48,8 @@
   subroutine take_columns_off(rows, columns, factored, leading, l, c)
     integer, intent(in) :: rows, columns, factored
     integer, intent(in) :: leading                        !! dimension of l and c
-    real(rp), intent(in) :: l(leading, factored)          !! [rows, factored]
-    real(rp), intent(inout) :: c(leading, columns)        !! [rows, columns]
+    real(wp), intent(in) :: l(leading, factored)          !! [rows, factored]
+    real(wp), intent(inout) :: c(leading, columns)        !! [rows, columns]
     integer :: j
 
     associate (w => block_width(rows))
@@ -58,16 +66,17 @@
   subroutine take_block_off(rows, columns, factored, leading, l, leading_c, c)
     integer, intent(in) :: rows, columns, factored
     integer, intent(in) :: leading, leading_c             !! dimensions of l and c
-    real(rp), intent(in) :: l(leading, factored)          !! [rows, factored]
-    real(rp), intent(inout) :: c(leading_c, columns)      !! [rows, columns]
+    real(wp), intent(in) :: l(leading, factored)          !! [rows, factored]
+    real(wp), intent(inout) :: c(leading_c, columns)      !! [rows, columns]
     integer, parameter :: narrow = 32
     integer :: w
 
     w = 0
     if (columns > narrow) then
       w = columns
-      call syrk('L', 'N', w, factored, -1.0_rp, l, leading, 1.0_rp, c, leading_c)
+      call dsyrk('L', 'N', w, factored, -1.0_wp, l, leading, 1.0_wp, c, leading_c)
     end if
-    if (rows > w) call gemm('N', 'T', rows - w, columns, factored, -1.0_rp, l(w + 1, 1), leading, l, &
-                            leading, 1.0_rp, c(w + 1, 1), leading_c)
+    if (rows > w) call dgemm('N', 'T', rows - w, columns, factored, -1.0_wp, l(w + 1, 1), leading, l, &
+                            leading, 1.0_wp, c(w + 1, 1), leading_c)
   end subroutine take_block_off
+end module epcont_linalg_full_columns
