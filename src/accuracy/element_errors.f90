@@ -10,7 +10,8 @@ module epcont_accuracy_element_errors
   use epcont_element_element_kind, only: element_kind, most_places
   use epcont_element_kinematics, only: components
   use epcont_material_elasticity, only: cross_modulus
-  use epcont_material_material_law, only: material_law, point_state
+  use epcont_material_material_law, only: point_state
+  use epcont_material_scene_materials, only: scene_materials
   use epcont_plan_forecast, only: loads_at_once
   implicit none
   private
@@ -114,34 +115,38 @@ contains
   end subroutine compare
 
   !> What the stress of the answer is off by, on the material's curve.
-  pure subroutine find_stress(self, kind, law, first, state)
+  pure subroutine find_stress(self, kind, materials, first, state)
     class(element_errors), intent(inout) :: self
     type(element_kind), intent(in) :: kind            !! of the element
-    class(material_law), intent(in) :: law            !! of its section
+    type(scene_materials), intent(in) :: materials
     integer, intent(in) :: first                      !! its first point
     type(point_state), allocatable, intent(in) :: state(:)   !! of the answer, where anything yields [points]
     type(point_state) :: after, before
     real(wp) :: cross
     integer :: k
 
-    cross = cross_modulus(law%bulk, law%shear, law%sheet)
-    do k = 1, self%places
-      if (law%yields) then
-        associate (own => self%own(:components, min(k, self%own_places)))
-          if (kind%sees_points) then
-            before = state(first - 1 + min(k, kind%points))
-          else
-            call law%update(own, point_state(), before)
+    associate (law => materials%section(materials%of_point(first)))
+      cross = cross_modulus(law%bulk, law%shear, law%sheet)
+      do k = 1, self%places
+        if (law%yields) then
+          associate (own => self%own(:components, min(k, self%own_places)), &
+                     point => first - 1 + min(k, kind%points))
+            if (kind%sees_points) then
+              before = state(point)
+            else
+              before = materials%state_at(point, own)
+            end if
+            after = materials%state_at(point, own + self%error(:components, k))
+          end associate
+          if (before%yielded .or. after%yielded) then
+            self%stress(:, k) = self%part(k)*(after%stress - before%stress)
+            cycle
           end if
-          call law%update(own + self%error(:components, k), point_state(), after)
-        end associate
-        if (before%yielded .or. after%yielded) then
-          self%stress(:, k) = self%part(k)*(after%stress - before%stress)
-          cycle
         end if
-      end if
-      call put_elastic_stress(self%part(k)*cross, self%part(k)*law%shear, self%error(1, k), self%stress(1, k))
-    end do
+        call put_elastic_stress(self%part(k)*cross, self%part(k)*law%shear, self%error(1, k), &
+                                self%stress(1, k))
+      end do
+    end associate
   end subroutine find_stress
 
   !> What the stress of the answer is off by, times what the strain of a field is off by: of the answer itself

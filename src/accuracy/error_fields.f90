@@ -206,17 +206,16 @@ contains
       errors = new_element_errors(size(now%u, 2))
       do i = 1, size(element)
         associate (e => element(i), kind => scene%model%kinds(scene%model%kind(element(i))), &
-                   first => scene%model%first_point(element(i)), &
-                   law => linear%materials%section(scene%model%section(element(i)))%law)
+                   first => scene%model%first_point(element(i)))
           if (kind%points == 1) then
             strain(:, 1) = sample(:, samples%before(e) + 1)
           else
             call find_strains(e, size(now%u, 2), strain)
           end if
           call errors%compare(kind, linear%operator%volume(first), strain, places_of(e), smooth)
-          call errors%find_stress(kind, law, first, answer%point)
+          call errors%find_stress(kind, linear%materials, first, answer%point)
           field%element(e) = errors%energy(0)
-          if (size(now%u, 2) > 0) call sums%add(errors, law)
+          if (size(now%u, 2) > 0) call sums%add(errors, linear%materials%section(scene%model%section(e)))
         end associate
       end do
     end subroutine compare_elements

@@ -61,7 +61,7 @@ contains
   subroutine add(self, errors, law)
     class(field_sums), intent(inout) :: self
     type(element_errors), intent(in) :: errors   !! of its fields
-    class(material_law), intent(in) :: law       !! of its section
+    type(material_law), intent(in) :: law       !! of its section
     real(wp) :: cross, part(most_places)
     integer :: f
 

@@ -138,8 +138,7 @@ contains
       do i = model%row_start(k), model%row_start(k + 1) - 1
         elements = elements_behind(model, model%row_node(i))
         if (size(elements) == 0) cycle
-        call materials%section(model%section(elements(1)))%law%update(smooth(:, model%row_node(i)), &
-            point_state(), state)
+        state = materials%state_at(model%first_point(elements(1)), smooth(:, model%row_node(i)))
         ! the row's first node is one side, the others share the other
         n = merge(1, 2, i == model%row_start(k))
         associate (normal => model%normal(:, k), stress => state%stress)

@@ -36,7 +36,7 @@ contains
     allocate (law%changed(size(law%matrix_of)), source=.true.)
     allocate (law%matrix(components, components, last + count(materials%can_yield)))
     do s = 1, last
-      associate (material => materials%section(s)%law)
+      associate (material => materials%section(s))
         law%matrix(:, :, s) = isotropic_matrix(material%bulk, material%shear, material%sheet)
       end associate
     end do

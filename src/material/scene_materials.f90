@@ -1,28 +1,28 @@
-!> The materials of a scene: which law each section has, made once, and the states of all integration points.
+!> The materials of a scene: the law of each section, what each integration point has committed, and the states
+!> of the points.
 module epcont_material_scene_materials
   use epcont_base_kinds, only: wp
-  use epcont_element_kinematics, only: plane_stress
+  use epcont_element_kinematics, only: components, plane_stress
   use epcont_material_curve, only: new_curve
   use epcont_material_elasticity, only: new_elasticity
-  use epcont_material_material_law, only: material_law, point_state
-  use epcont_material_total_theory, only: total_theory
+  use epcont_material_material_law, only: material_law, plastic_history, point_state
   use epcont_model_model, only: model_type
   use epcont_system_threads, only: threads_over
   implicit none
   private
   public :: scene_materials, find_materials
 
-  !> The law of one section.
-  type :: section_law
-    class(material_law), allocatable :: law
-  end type section_law
-
   type :: scene_materials
-    type(section_law), allocatable :: section(:)   !! [sections]
+    type(material_law), allocatable :: section(:)  !! [sections]
     integer, allocatable :: of_point(:)            !! section of each integration point [points]
     logical, allocatable :: can_yield(:)           !! the point can [points]
     logical :: yields = .false.                    !! does any section?
+    !> At the end of the increment before; not allocated: nothing is committed, as in total theory [points]
+    type(plastic_history), allocatable :: committed(:)
   contains
+    procedure :: commit
+    procedure :: history
+    procedure :: state_at
     procedure :: states
     procedure :: measure
   end type scene_materials
@@ -33,24 +33,56 @@ contains
   pure subroutine find_materials(model, materials)
     type(model_type), intent(in) :: model             !! the scene
     type(scene_materials), intent(out) :: materials   !! of its sections and points
-    type(total_theory) :: law
     logical :: yields(size(model%young))
     integer :: s
 
     allocate (materials%section(size(model%young)))
     do s = 1, size(model%young)
-      law%elasticity = new_elasticity(model%young(s), model%poisson(s))
-      law%sheet = model%kinematics(s) == plane_stress
-      law%yields = allocated(model%curve(s)%strain)
-      if (law%yields) law%yield_stress = model%curve(s)%stress(2)
-      law%curve = new_curve(model%curve(s), law%elasticity, model%controls%paper_ratio)
-      materials%section(s)%law = law
-      yields(s) = law%yields
+      associate (law => materials%section(s))
+        law%elasticity = new_elasticity(model%young(s), model%poisson(s))
+        law%sheet = model%kinematics(s) == plane_stress
+        law%yields = allocated(model%curve(s)%strain)
+        if (law%yields) law%yield_stress = model%curve(s)%stress(2)
+        law%curve = new_curve(model%curve(s), law%elasticity, model%controls%paper_ratio)
+        yields(s) = law%yields
+      end associate
     end do
     materials%yields = any(yields)
     materials%of_point = model%section(model%point_element)
     materials%can_yield = yields(materials%of_point)
   end subroutine find_materials
+
+  !> An increment of the loads is over: the next one starts from its strains.
+  subroutine commit(self, strain)
+    class(scene_materials), intent(inout) :: self
+    real(wp), intent(in) :: strain(:, :)   !! at its end [components, points]
+    integer :: p
+
+    if (.not. allocated(self%committed)) allocate (self%committed(size(strain, 2)))
+    !$omp parallel do num_threads(threads_over(size(strain, 2)))
+    do p = 1, size(strain, 2)
+      if (self%can_yield(p)) &
+        self%committed(p) = self%section(self%of_point(p))%history_after(strain(:, p), self%committed(p))
+    end do
+    !$omp end parallel do
+  end subroutine commit
+
+  !> What a point has committed.
+  pure type(plastic_history) function history(self, point)
+    class(scene_materials), intent(in) :: self
+    integer, intent(in) :: point
+
+    if (allocated(self%committed)) history = self%committed(point)
+  end function history
+
+  !> The state of a point at a strain.
+  pure type(point_state) function state_at(self, point, strain) result(state)
+    class(scene_materials), intent(in) :: self
+    integer, intent(in) :: point
+    real(wp), intent(in) :: strain(components)
+
+    call self%section(self%of_point(point))%update(strain, self%history(point), state)
+  end function state_at
 
   !> The states of all points at their strains [points].
   function states(self, strain) result(state)
@@ -62,7 +94,7 @@ contains
     allocate (state(size(strain, 2)))
     !$omp parallel do num_threads(threads_over(size(state)))
     do p = 1, size(state)
-      call self%section(self%of_point(p))%law%update(strain(:, p), point_state(), state(p))
+      call self%section(self%of_point(p))%update(strain(:, p), self%history(p), state(p))
     end do
     !$omp end parallel do
   end function states
@@ -83,7 +115,7 @@ contains
     !$omp reduction(max: farthest) reduction(+: yielded)
     do e = 1, model%elements
       if (.not. model%can_yield(e)) cycle
-      associate (law => self%section(model%section(e))%law, &
+      associate (law => self%section(model%section(e)), &
                  first => model%first_point(e), last => model%first_point(e + 1) - 1)
         do p = first, last
           farthest = max(farthest, law%distance(state(p), stress(:, p)))

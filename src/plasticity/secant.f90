@@ -31,7 +31,7 @@ contains
     type(linear_problem), intent(inout) :: linear    !! its law is set
 
     call linear%law%set_matrix( &
-      p, linear%materials%section(linear%materials%of_point(p))%law%secant_matrix(about%point(p)))
+      p, linear%materials%section(linear%materials%of_point(p))%secant_matrix(about%point(p)))
   end subroutine linearise
 
   !> Make the next law a stiffer one, where a stiffness made of the last could not be factored. Most methods

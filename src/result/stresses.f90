@@ -92,7 +92,7 @@ contains
     real(wp) :: mises(most_points), modulus, share, whole
     integer :: p
 
-    associate (law => linear%materials%section(model%section(e))%law, first => model%first_point(e), &
+    associate (law => linear%materials%section(model%section(e)), first => model%first_point(e), &
                last => model%first_point(e + 1) - 1, volume => linear%operator%volume)
       answer%stress(:, e) = 0.0_wp
       answer%equivalent_stress(e) = 0.0_wp
@@ -110,13 +110,16 @@ contains
         modulus = law%young
         point%total = mises(p - first + 1)/modulus
         if (allocated(answer%point)) point = answer%point(p)
-        if (point%yielded) modulus = 1.0_wp/(1.0_wp/point%modulus + law%shift)
+        if (point%plastic) then   ! the curve's; of several increments stress over strain
+          modulus = 1.0_wp/(1.0_wp/point%modulus + law%shift)
+          if (allocated(linear%materials%committed)) modulus = mises(p - first + 1)/point%total
+        end if
         share = volume(p)/whole
         answer%stress(:, e) = answer%stress(:, e) + share*answer%point_stress(:, p)
         answer%equivalent_stress(e) = answer%equivalent_stress(e) + share*mises(p - first + 1)
         answer%equivalent_strain(e) = answer%equivalent_strain(e) + share*point%total
         answer%secant_modulus(e) = answer%secant_modulus(e) + share*modulus
-        answer%plastic(e) = answer%plastic(e) .or. point%yielded
+        answer%plastic(e) = answer%plastic(e) .or. point%plastic
         answer%beyond(e) = answer%beyond(e) .or. point%beyond
         if (model%controls%paper_ratio) &
           shortfall = max(shortfall, below_curve(model%curve(model%section(e)), law%elasticity, point))

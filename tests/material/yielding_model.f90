@@ -2,7 +2,7 @@
 module yielding_model
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: plane_strain, plane_stress
-  use epcont_material_material_law, only: point_state
+  use epcont_material_material_law, only: plastic_history, point_state
   use epcont_material_scene_materials, only: scene_materials
   use epcont_model_model, only: model_type
   use epcont_model_yield_curve, only: bilinear_curve
@@ -41,7 +41,7 @@ contains
     real(wp), intent(in) :: strain(4)
     type(point_state) :: state
 
-    call materials%section(section)%law%update(strain, point_state(), state)
+    call materials%section(section)%update(strain, plastic_history(), state)
   end function state_at
 
   !> Strains of all directions and sizes, from elastic to 50 times yield; every third in the plane only.
