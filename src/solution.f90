@@ -230,6 +230,7 @@ contains
       type(iteration_plan) :: plan
 
       plan = scene%iteration
+      if (plan%yields) plan%load_steps = scene%model%controls%load_steps   ! of this load case
       call follow_loads(scene, plan, kept%another, kept%linear, kept%virgin, answer%followed_loads, watch)
       ! What the first solve does not find, steps do not.
       if (plan%chosen_here .and. plan%yields .and. size(answer%history) > 1 .and. &

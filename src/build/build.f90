@@ -15,8 +15,8 @@ module epcont_build_build
   use epcont_contact_geometry_line_contacts, only: find_contacts
   use epcont_deck_card_kinds, only: card_bconp, card_blseg, card_celas1, card_celas2, card_cgap, &
       card_cord2r, card_grav, card_grid, card_load, card_mat1, card_mats1, card_mpc, card_mpcadd, &
-      card_param, card_pelas, card_pgap, card_pshell, card_psolid, card_rbe2, card_rforce, card_spc, &
-      card_spc1, card_tables1
+      card_nlparm, card_param, card_pelas, card_pgap, card_pshell, card_psolid, card_rbe2, card_rforce, &
+      card_spc, card_spc1, card_tables1
   use epcont_deck_case_control, only: subcase_control
   use epcont_deck_deck, only: deck_type
   use epcont_deck_entry, only: least_cause
@@ -27,7 +27,7 @@ module epcont_build_build
   use epcont_model_element_shapes, only: check_axis
   use epcont_model_arrays, only: angle
   use epcont_model_finding, only: and_more, findings, of_body, of_body_load, of_couple, of_element, &
-      of_equation, of_line, of_node, of_pair, of_paper_ratio, of_scene
+      of_equation, of_line, of_node, of_pair, of_paper_ratio, of_scene, of_theory
   use epcont_model_load_cases, only: contact_all, contact_none, load_cases, put_case
   use epcont_model_model, only: model_type
   implicit none
@@ -35,8 +35,8 @@ module epcont_build_build
   public :: build_model, tell
 
   !> Cards with ids of their own.
-  integer, parameter :: own_ids(10) = [card_grid, card_mat1, card_mats1, card_tables1, card_pgap, &
-      card_cord2r, card_blseg, card_bconp, card_load, card_mpcadd]
+  integer, parameter :: own_ids(11) = [card_grid, card_mat1, card_mats1, card_tables1, card_pgap, &
+      card_cord2r, card_blseg, card_bconp, card_load, card_mpcadd, card_nlparm]
 
 contains
 
@@ -255,6 +255,8 @@ contains
           card(:2) = [card_rforce, card(2) - deck%card(card_grav)%count]
       case (of_equation)
         card(1) = card_mpc
+      case (of_theory)
+        card(:2) = [card_param, deck%parameter_row('THEORY')]
       case (of_paper_ratio)
         card(:2) = [card_param, max(deck%parameter_row('MUP'), deck%parameter_row('ORIGINAL'))]
       end select

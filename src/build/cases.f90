@@ -5,9 +5,10 @@ module epcont_build_cases
   use epcont_base_sorting, only: new_id_index
   use epcont_base_text, only: short_real, text_of
   use epcont_build_mass_loads, only: build_mass_loads
-  use epcont_build_reference, only: card_index, check_combinations, chosen_sets, note_unused, resolve
-  use epcont_deck_card_kinds, only: card_bconp, card_force, card_grav, card_load, card_moment, card_ploadx1, &
-      card_rforce, card_spc, card_spc1, card_spcd
+  use epcont_build_reference, only: card_index, check_combinations, chosen_sets, note_unnamed, &
+      note_unused, resolve
+  use epcont_deck_card_kinds, only: card_bconp, card_force, card_grav, card_load, card_moment, card_nlparm, &
+      card_param, card_ploadx1, card_rforce, card_spc, card_spc1, card_spcd
   use epcont_deck_deck, only: deck_type
   use epcont_deck_entry, only: farthest, least_cause
   use epcont_build_tie_cards, only: check_directions, find_moments, find_platens, names, turn
@@ -53,6 +54,7 @@ contains
     call check_combinations(deck, card_load, load_cards, 'loads', &
                             'the set of FORCE, PLOADX1, MOMENT, GRAV, RFORCE or SPCD cards', found)
     call check_contacts()
+    call choose_load_steps()
     call note_unused(deck, load_cards, used, found)
     call note_unused(deck, [card_load], loads, found)
     call find_platens(deck, nodes, supports, used, model, found)
@@ -98,6 +100,29 @@ contains
         end associate
       end do
     end subroutine check_contacts
+
+    !> The load steps of each case: those of its NLPARM, else of PARAM NLOAD.
+    subroutine choose_load_steps()
+      integer :: k, row
+
+      cases%case%load_steps = model%controls%load_steps
+      associate (nlparm => deck%card(card_nlparm), choice => deck%subcase%nlparm)
+        do k = 1, size(choice)
+          if (choice(k)%id == 0) cycle
+          row = findloc(nint(nlparm%value(1, :)), choice(k)%id, dim=1)
+          if (row > 0) then
+            cases%case(k)%load_steps = nint(nlparm%number('NINC', row))
+          else if (all(choice(:k - 1)%id /= choice(k)%id) .and. deck%whole) then
+            call found%add_error(choice(k)%place, 'NLPARM = '//text_of(choice(k)%id)// &
+                                 ': there is no such NLPARM', 'the id of an NLPARM card')
+          end if
+        end do
+        call note_unnamed(deck, card_nlparm, 1, choice%id, 'load case', found)
+        row = deck%parameter_row('NLOAD')
+        if (row > 0 .and. any(choice%id > 0)) call found%add_error(card_param, row, 1, &
+          ': NLPARM says the number of load steps, too', 'one of the two')
+      end associate
+    end subroutine choose_load_steps
 
     !> FORCE.
     subroutine add_forces()

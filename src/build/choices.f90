@@ -12,7 +12,7 @@ module epcont_build_choices
 
   !> What PARAM ORIGINAL YES leaves no choice of (`original_controls`).
   character(len=8), parameter :: chosen(*) = [character(len=8) :: &
-    'SOLVER', 'FLEXIB', 'RULE', 'METHOD', 'TOL', 'MUP', 'ACCURACY', 'NLOAD']
+    'SOLVER', 'FLEXIB', 'RULE', 'METHOD', 'TOL', 'MUP', 'ACCURACY', 'NLOAD', 'THEORY']
 
 contains
 
@@ -33,6 +33,7 @@ contains
     controls%load_steps = nint(deck%parameter_value('NLOAD', real(controls%load_steps, wp)))
     controls%by_inversion = deck%parameter_word('FLEXIB') == 'INVERT'
     controls%paper_ratio = deck%parameter_word('MUP') == 'PAPER'
+    controls%flow_theory = deck%parameter_word('THEORY') == 'FLOW'
 
   contains
 

@@ -6,14 +6,14 @@
 module epcont_certificate_certificate
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: valid_to
-  use epcont_certificate_free_expansion, only: expansion_type, free_strains, held_stress, part_of_held
+  use epcont_certificate_element_checks, only: checked_elements, check_elements, ratio
+  use epcont_certificate_free_expansion, only: expansion_type, held_stress, part_of_held
   use epcont_certificate_mass_force, only: given_load
   use epcont_certificate_scene, only: scene_type
   use epcont_certificate_tied, only: check_springs, check_ties, gather_ties, longest_arms
-  use epcont_certificate_unit_strains, only: find_slopes, largest_face, largest_of, strain_by, unit_strains
-  use epcont_certificate_yielding, only: stress_on_curve, von_mises_stress
+  use epcont_certificate_unit_strains, only: find_slopes, largest_face, largest_of
   use epcont_element_element_kind, only: most_nodes, most_points
-  use epcont_element_kinematics, only: axisymmetric, components, directions, plane_stress
+  use epcont_element_kinematics, only: directions
   use epcont_model_model, only: model_type
   use epcont_result_answer, only: answer_type
   use epcont_system_threads, only: threads_over
@@ -62,14 +62,7 @@ module epcont_certificate_certificate
     procedure :: has_spoilt
   end type certificate_type
 
-  !> What is found of elements that follow each other, and that a thread takes at once; these are as many.
-  type :: checked_elements
-    real(wp), allocatable :: force(:, :, :)   !! on their nodes [force] [directions, nodes, elements]
-    real(wp), allocatable :: work(:)          !! of the stresses [points]
-    real(wp) :: off_curve = 0.0_wp, motion_strain = 0.0_wp, lost_stress = 0.0_wp   !! as in the certificate
-    real(wp) :: rounding_stress = 0.0_wp, stress_roundings = 0.0_wp
-    type(expansion_type) :: expansion
-  end type checked_elements
+  !> Elements that a thread takes at once.
   integer, parameter :: at_once = 4096
 
   !> Figures that a limit is set to, and what they say.
@@ -180,43 +173,14 @@ contains
       end do
       !$omp parallel do num_threads(threads_over(model%elements)) schedule(dynamic) ordered private(part)
       do first = 1, model%elements, at_once
-        call check_elements(first, min(first + at_once - 1, model%elements), slope, part)
+        call check_elements(model, answer, largest_stress, first, min(first + at_once - 1, model%elements), &
+                            slope, part)
         !$omp ordered
         call add_part(first, part)
         !$omp end ordered
       end do
       !$omp end parallel do
     end subroutine add_elements
-
-    !> Some elements that follow each other.
-    subroutine check_elements(first, last, slope, part)
-      integer, intent(in) :: first, last          !! of them
-      real(wp), intent(in) :: slope(directions, most_nodes, most_points, *)   !! of each kind
-      type(checked_elements), intent(out) :: part
-      real(wp) :: unit(components, directions, most_nodes, most_points), volume(most_points)
-      real(wp) :: force(directions), free(most_points)
-      integer :: c, e, k, p
-
-      allocate (part%force(directions, size(model%connectivity, 1), first:last), source=0.0_wp)
-      allocate (part%work(model%first_point(first):model%first_point(last + 1) - 1))
-      do e = first, last
-        call unit_strains(model, e, slope(:, :, :, model%kind(e)), unit, volume)
-        call free_strains(model, e, answer%load_factor, volume, free)
-        associate (stress => answer%point_stress(:, model%first_point(e):model%first_point(e + 1) - 1))
-          call part%expansion%add_element(model%young(model%section(e)), stress, &
-                                          unit(:, :, :model%node_count(e), :), volume, free(:size(stress, 2)))
-          call check_points(e, stress, unit, volume, free, part)
-          do k = 1, model%node_count(e)
-            do p = 1, size(stress, 2)
-              do c = 1, directions
-                force(c) = volume(p)*dot_product(stress(:, p), unit(:, c, k, p))
-              end do
-              part%force(:, k, e) = part%force(:, k, e) + force
-            end do
-          end do
-        end associate
-      end do
-    end subroutine check_elements
 
     !> What has been found of elements from `first` on.
     subroutine add_part(first, part)
@@ -242,76 +206,6 @@ contains
       found%rounding_stress = max(found%rounding_stress, part%rounding_stress)
       found%stress_roundings = max(found%stress_roundings, part%stress_roundings)
     end subroutine add_part
-
-    !> The integration points of an element.
-    subroutine check_points(e, stress, unit, volume, free, part)
-      integer, intent(in) :: e
-      real(wp), intent(in) :: stress(:, :), volume(:), free(:)
-      real(wp), intent(in) :: unit(components, directions, most_nodes, *)   !! strains by unit displacements
-      type(checked_elements), intent(inout) :: part
-      real(wp), dimension(directions, most_nodes) :: motion, u
-      real(wp) :: largest, farthest, rounding, strain(components)   ! of `u`, and with `motion`
-      integer :: k, n, node, p
-      logical :: moves, ring
-
-      n = model%node_count(e)
-      ring = model%kinematics(model%section(e)) == axisymmetric
-      do k = 1, n
-        node = model%connectivity(k, e)
-        u(:, k) = answer%deformation(:, node)
-        motion(:, k) = answer%displacement(:, node) - u(:, k)
-      end do
-      moves = any(motion(:, :n) /= 0.0_wp)
-      largest = largest_of(directions*n, u)
-      farthest = maxval(abs(motion(:, :n)) + abs(u(:, :n)))
-      do p = 1, size(stress, 2)
-        ! Of a strain by unit displacements.
-        rounding = epsilon(1.0_wp)*largest_of(components*directions*n, unit(1, 1, 1, p))
-        strain = strain_by(n, u, unit(1, 1, 1, p), ring)
-        part%work(model%first_point(e) + p - 1) = volume(p)*dot_product(stress(:, p), strain)
-        strain(:3) = strain(:3) - free(p)
-        call check_stress(model%section(e), strain, stress(:, p), rounding*largest, part)
-        if (.not. moves) cycle
-        strain = strain_by(n, motion, unit(1, 1, 1, p), ring)
-        rounding = rounding*farthest
-        part%motion_strain = max(part%motion_strain, ratio(maxval(abs(strain)), rounding))
-      end do
-    end subroutine check_points
-
-    !> How far a stress is off its curve. Of a material that yields: von Mises stress of the difference over
-    !! the curve's stress there, or below yield the yield stress (a larger one than any stress is no measure),
-    !! and the difference of the mean parts, which are elastic, over the largest stress: hydrostatic stress
-    !! says nothing of the curve. Of an elastic one: the largest difference over the largest stress. What
-    !! rounding strains makes a stress that is compared with the same.
-    subroutine check_stress(section, strain, stress, rounding, part)
-      integer, intent(in) :: section
-      real(wp), intent(in) :: strain(components), stress(components)
-      real(wp), intent(in) :: rounding         !! of the strain
-      type(checked_elements), intent(inout) :: part
-      real(wp) :: apart(components), off, on_curve(components), scale, stiffest
-
-      on_curve = stress_on_curve(model, section, strain)
-      apart = stress - on_curve
-      scale = largest_stress
-      off = ratio(maxval(abs(apart)), largest_stress)
-      if (allocated(model%curve(section)%strain)) then
-        scale = max(von_mises_stress(on_curve), min(model%curve(section)%stress(2), largest_stress))
-        off = max(ratio(von_mises_stress(apart), scale), ratio(abs(sum(apart(:3)))/3.0_wp, largest_stress))
-      end if
-      part%off_curve = max(part%off_curve, off)
-      ! Stress over the strain along it where nothing gives way to the sides: near a Poisson's ratio of 0.5
-      ! far above E.
-      associate (young => model%young(section), nu => model%poisson(section))
-        stiffest = young
-        if (model%kinematics(section) /= plane_stress) &
-          stiffest = young*(1.0_wp - nu)/((1.0_wp + nu)*(1.0_wp - 2.0_wp*nu))
-        part%lost_stress = max(part%lost_stress, ratio(young*rounding, scale), &
-                               ratio(stiffest*rounding, largest_stress))
-        part%rounding_stress = max(part%rounding_stress, stiffest*rounding)
-        part%stress_roundings = max(part%stress_roundings, &
-                                    ratio(maxval(abs([stress, on_curve])), stiffest*rounding))
-      end associate
-    end subroutine check_stress
 
     !> Smallest force and gap, largest product; the work of the pairs' forces, which are taken off the
     !! residual.
@@ -377,12 +271,4 @@ contains
     call certificate%figures(figure, largest)
     within = figure <= largest
   end function within_limits
-
-  !> a/b, 0 where both are 0, or a is below; finite, but of what is no number.
-  elemental real(wp) function ratio(a, b)
-    real(wp), intent(in) :: a, b
-
-    ratio = 0.0_wp
-    if (.not. a <= 0.0_wp) ratio = a/max(b, tiny(b)*max(a, 1.0_wp))
-  end function ratio
 end module epcont_certificate_certificate

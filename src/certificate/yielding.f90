@@ -8,7 +8,7 @@ module epcont_certificate_yielding
   use epcont_model_model, only: model_type
   implicit none
   private
-  public :: stress_on_curve, von_mises_stress
+  public :: stress_after, stress_on_curve, von_mises_stress
 
   !> Halvings that leave nothing of an interval.
   integer, parameter :: halvings = 60
@@ -97,6 +97,87 @@ contains
       if (model%kinematics(section) == plane_stress) strain_across = -mu/(1.0_wp - mu)*(strain(1) + strain(2))
     end function strain_across
   end function stress_on_curve
+
+  !> Stress after several load steps of flow theory with isotropic hardening [stress].
+  pure function stress_after(model, section, strain) result(stress)
+    type(model_type), intent(in) :: model     !! its sections and their curves
+    integer, intent(in) :: section            !! of the model: one that yields
+    real(wp), intent(in) :: strain(:, :)      !! xx, yy, zz, xy (engineering) [components, load steps]
+    real(wp) :: stress(components), plastic(components), hardened
+    integer :: step
+
+    plastic = 0.0_wp
+    hardened = 0.0_wp
+    do step = 1, size(strain, 2)
+      call return_to_curve(model, section, strain(:, step), plastic, hardened, stress)
+    end do
+  end function stress_after
+
+  !> One load step: bisection for the part of the strain deviator, beyond the plastic strain before, that is
+  !! elastic at its end.
+  pure subroutine return_to_curve(model, section, strain, plastic, hardened, stress)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: section
+    real(wp), intent(in) :: strain(components)
+    real(wp), intent(inout) :: plastic(components), hardened   !! plastic strain, and its equivalent so far
+    real(wp), intent(out) :: stress(components)
+    real(wp) :: bulk, deviator(components), equivalent, high, low, mean, part, shear
+    integer :: k
+
+    bulk = model%young(section)/(3.0_wp*(1.0_wp - 2.0_wp*model%poisson(section)))
+    shear = model%young(section)/(2.0_wp*(1.0_wp + model%poisson(section)))
+    low = 0.0_wp
+    high = 1.0_wp
+    part = high
+    do k = 1, halvings
+      call divide(part, mean, deviator, equivalent)
+      if (3.0_wp*shear*part*equivalent > stress_when_hardened(model%curve(section), model%young(section), &
+                                                               hardened + (1.0_wp - part)*equivalent)) then
+        high = part
+      else
+        low = part
+      end if
+      if (low == high) exit   ! all of it
+      part = 0.5_wp*(low + high)
+    end do
+    call divide(part, mean, deviator, equivalent)
+    stress = 2.0_wp*shear*part*deviator
+    stress(:3) = stress(:3) + 3.0_wp*bulk*mean
+    if (model%kinematics(section) == plane_stress) stress(3) = 0.0_wp
+    plastic = plastic + (1.0_wp - part)*deviator*[1.0_wp, 1.0_wp, 1.0_wp, 2.0_wp]
+    hardened = hardened + (1.0_wp - part)*equivalent
+
+  contains
+
+    !> Mean and deviator of the strain beyond the plastic one; across a sheet it is that of a body with a part
+    !! of the shear modulus.
+    pure subroutine divide(part, mean, deviator, equivalent)
+      real(wp), intent(in) :: part
+      real(wp), intent(out) :: mean, deviator(components), equivalent
+      real(wp) :: beyond(components), lambda
+
+      beyond = strain - plastic
+      lambda = bulk - 2.0_wp/3.0_wp*part*shear
+      if (model%kinematics(section) == plane_stress) &
+        beyond(3) = -lambda/(lambda + 2.0_wp*part*shear)*(beyond(1) + beyond(2))
+      mean = sum(beyond(:3))/3.0_wp
+      deviator = [beyond(:3) - mean, 0.5_wp*beyond(4)]
+      equivalent = sqrt(2.0_wp/3.0_wp*(sum(deviator(:3)**2) + 2.0_wp*deviator(4)**2))
+    end subroutine divide
+  end subroutine return_to_curve
+
+  !> Yield stress at an equivalent plastic strain; the last slope of the curve goes on [stress].
+  pure real(wp) function stress_when_hardened(curve, young, hardened) result(stress)
+    type(uniaxial_curve), intent(in) :: curve
+    real(wp), intent(in) :: young, hardened
+    integer :: k
+
+    associate (plastic => curve%strain - curve%stress/young)
+      k = count(plastic(3:size(plastic) - 1) < hardened) + 3
+      stress = curve%stress(k - 1) + (curve%stress(k) - curve%stress(k - 1))/(plastic(k) - plastic(k - 1))* &
+               (hardened - plastic(k - 1))
+    end associate
+  end function stress_when_hardened
 
   !> Equivalent stress (2-1), from the largest component: squares of very small or large ones are beyond the
   !! range of numbers.

@@ -12,10 +12,11 @@ module epcont_contact_geometry_complete
   use epcont_model_arrays, only: scene_type
   use epcont_model_body_checks, only: check_body_loads
   use epcont_model_body_forces, only: are_massless, put_body_forces
-  use epcont_model_controls, only: method_newton
+  use epcont_model_controls, only: method_auto, method_newton
   use epcont_model_element_shapes, only: check_axis, complete_elements
   use epcont_model_expansion, only: find_free_strains
-  use epcont_model_finding, only: findings, of_body_load, of_node, of_paper_ratio, of_scene, of_section
+  use epcont_model_finding, only: findings, of_body_load, of_node, of_paper_ratio, of_scene, of_section, &
+      of_theory
   use epcont_model_freedoms, only: find_travels, follow_to_the_end, set_reference, tie
   use epcont_model_given, only: check_given, number_parts
   use epcont_model_model, only: model_type
@@ -141,12 +142,18 @@ contains
     call warn_of_lying_together(model, drawn, found)
   end subroutine finish_model
 
-  !> MUP PAPER is of the secant stiffness, and of plane strain.
+  !> MUP PAPER is of the secant stiffness, and of plane strain. Flow theory has no secant.
   pure subroutine check_controls(model, found)
     type(model_type), intent(in) :: model   !! the scene
     type(findings), intent(inout) :: found   !! what is wrong with it is added
     integer :: s
 
+    if (model%controls%flow_theory) then
+      if (model%controls%paper_ratio) call found%add_error(of_theory, 0, 2, &
+        ': FLOW does not go with MUP PAPER, a ratio of total theory', 'MUP EXACT, or THEORY TOTAL')
+      if (all(model%controls%method /= [method_auto, method_newton])) call found%add_error(of_theory, 0, 2, &
+        ': FLOW goes with METHOD NEWTON alone', 'METHOD NEWTON or AUTO, or THEORY TOTAL')
+    end if
     if (.not. model%controls%paper_ratio) return
     if (model%controls%method == method_newton) &
       call found%add_error(of_paper_ratio, 0, 2, ': PAPER does not go with METHOD NEWTON', &

@@ -23,7 +23,7 @@ module epcont_deck_case_control
     integer :: id = 0                                        !! 0: the deck has no SUBCASE
     type(place_type) :: place                                !! of its SUBCASE
     character(len=:), allocatable :: subtitle, label         !! empty where not given
-    type(set_choice) :: spc, load, mpc, temperature
+    type(set_choice) :: spc, load, mpc, temperature, nlparm
     type(set_choice) :: contact                              !! the only BCONP; 0: all; -1: none
     logical :: displacement = .false., stress = .false., spcforces = .false.  !! tables wanted
   end type subcase_control
@@ -170,8 +170,7 @@ contains
       case ('SPCFORCES')
         now%spcforces = says_all()
       case ('NLPARM')
-        call take_number(unused)
-        call faults%add_note(parts%word_place, 'NLPARM has no effect')
+        call take_set(now%nlparm)
       end select
     end subroutine take_statement
 

@@ -133,10 +133,10 @@ module epcont_deck_catalogue
     'PARAM: a choice for the whole deck', &
     '  NAME; word; parameter', &
     '  VALUE; word; its value', &
-    'MATS1: yielding of a MAT1: von Mises, total theory', &
+    'MATS1: yielding of a MAT1: von Mises, isotropic hardening', &
     '  MID; id; its MAT1', &
     '  TID; id optional; its TABLES1; blank: bilinear from LIMIT1 and H', &
-    '  TYPE; word PLASTIC NLELAST; both are taken as total theory', &
+    '  TYPE; word PLASTIC NLELAST; both are taken as PARAM THEORY says', &
     '  H; real zero from=0; stress over plastic strain beyond LIMIT1; blank with TID [stress]', &
     '  YF; whole from=1 to=1 default=1; yield criterion: 1, von Mises', &
     '  HR; whole from=1 to=1 default=1; hardening rule: 1', &
@@ -281,7 +281,11 @@ module epcont_deck_catalogue
     '  PID2; id with_next; second property', &
     '  K2; real positive with_last; stiffness [force/length]', &
     '  GE2; real noted; damping', &
-    '  S2; real noted; stress coefficient']
+    '  S2; real noted; stress coefficient', &
+    'NLPARM: increments of the loads, in load cases that choose it (NLPARM = ID)', &
+    '  ID; id; parameters', &
+    '  NINC; whole from=1 to=10000 default=1; increments, of equal size', &
+    '  ; any noted times=22; iteration: see PARAM METHOD, TOL and MAXIT']
 
   character(len=*), parameter :: cards(*) = [scene_cards, load_cards]
 
@@ -295,10 +299,12 @@ module epcont_deck_catalogue
     'TOL; real positive below=1 for=MATS1; largest change of a displacement, of the largest, that ends'// &
     ' the iteration; default 0.01, for NEWTON 1.E-8', &
     'MAXIT; whole from=1 to=100000 for=MATS1; iterations of a load step; default 100', &
+    'THEORY; for=MATS1 word TOTAL FLOW; plasticity: stresses follow from the strains at full load'// &
+    ' (TOTAL), or increment by increment (FLOW); default TOTAL', &
     'MUP; for=MATS1 word EXACT PAPER; Poisson''s ratio in the equivalent strain: exact, or formula'// &
     ' (2-4); default EXACT', &
     'ORIGINAL; word NO YES; all as in about 1980: SOLVER BAND, FLEXIB INVERT, RULE CONRY, METHOD'// &
-    ' SECANT, TOL 0.01, NLOAD 1, MUP PAPER, no ACCURACY; default NO', &
+    ' SECANT, TOL 0.01, NLOAD 1, THEORY TOTAL, MUP PAPER, no ACCURACY; default NO', &
     'NLOAD; whole from=1 to=10000 for=MATS1; load steps; default 1', &
     'SEARCH; real positive for=BCONP; how far BCONP looks for a segment; default twice the longest'// &
     ' segment of the two lines [length]', &

@@ -59,7 +59,7 @@ module epcont_deck_refused
     'SPCADD: sets of supports under one id | one set of SPC and SPC1 for each load case', &
     'SPCOFF SPCR SPCAX: supports of other kinds | SPC1, SPC and SPCD', &
     'SUPORT1 SUPAX: reference freedoms of one case | SUPORT', &
-    'NLPARM NLSTEP NLAUTO NLCNTL TSTEP TSTEPNL: steps of a solution | PARAM NLOAD, TOL and MAXIT', &
+    'NLSTEP NLAUTO NLCNTL TSTEP TSTEPNL: steps of a solution | NLPARM, PARAM TOL and MAXIT', &
     'EIGRL EIGR EIGC FREQ FREQ1 TLOAD1 TLOAD2 RLOAD1 DLOAD DAREA: vibration and time | a static load', &
     'ASET ASET1 OMIT OMIT1 BSET CSET QSET DMIG SPLINE1: reduction of the scene | nothing: all freedoms'// &
     ' are solved for']

@@ -5,7 +5,7 @@ module epcont_linear_scene_state
   use epcont_material_material_law, only: point_state
   implicit none
   private
-  public :: force_change, relative_change, scene_state
+  public :: committed_step, force_change, relative_change, scene_state
 
   type :: scene_state
     real(wp), allocatable :: displacement(:, :)   !! [length] [directions, nodes]
@@ -20,6 +20,12 @@ module epcont_linear_scene_state
   contains
     procedure :: take
   end type scene_state
+
+  !> The end of a load step from which the next one went on (flow theory).
+  type :: committed_step
+    real(wp) :: load_factor = 0.0_wp
+    real(wp), allocatable :: deformation(:, :)   !! as in `scene_state` [length] [directions, nodes]
+  end type committed_step
 
 contains
 

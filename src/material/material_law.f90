@@ -92,9 +92,9 @@ contains
     state%stress(:3) = state%stress(:3) + 3.0_wp*self%bulk*(sum(strain(:3))/3.0_wp)
   end subroutine find_state
 
-  !> The strain across a sheet in plane stress, less the plastic strain, where the stress across vanishes. That
-  !! stress rises with the strain, and has its zero between that of the elastic sheet and that of constant
-  !! volume.
+  !> The strain across a sheet in plane stress, less the plastic strain, where the stress across vanishes.
+  !! That stress rises with the strain, and has its zero between that of the elastic sheet and that of
+  !! constant volume.
   pure real(wp) function strain_across(self, strain, accumulated) result(across)
     class(material_law), intent(in) :: self
     real(wp), intent(in) :: strain(components), accumulated
@@ -156,7 +156,8 @@ contains
   pure real(wp) function equivalent_of(deviator) result(e)
     real(wp), intent(in) :: deviator(components)
 
-    e = sqrt((deviator(1)**2 + deviator(2)**2 + deviator(3)**2 + deviator(4)**2 + deviator(4)**2)*2.0_wp/3.0_wp)
+    e = sqrt((deviator(1)**2 + deviator(2)**2 + deviator(3)**2 + deviator(4)**2 + deviator(4)**2)* &
+             2.0_wp/3.0_wp)
   end function equivalent_of
 
   !> What the tangent has less than the secant along the deviator: (4/9) (h - E_D)/e**2 [stress].

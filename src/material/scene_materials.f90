@@ -1,5 +1,5 @@
-!> The materials of a scene: the law of each section, what each integration point has committed, and the states
-!> of the points.
+!> The materials of a scene: the law of each section, what each integration point has committed, and the
+!> states of the points.
 module epcont_material_scene_materials
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: components, plane_stress

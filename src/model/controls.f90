@@ -28,13 +28,14 @@ module epcont_model_controls
     real(wp) :: accuracy = 0.0_wp      !! PARAM ACCURACY, relative, of contact pressures; 0: none asked for
     real(wp) :: tolerance = 0.0_wp     !! PARAM TOL; 0: that of the method
     integer :: most_iterations = 100   !! of a load step
-    integer :: load_steps = 1
+    integer :: load_steps = 1          !! PARAM NLOAD, or NINC of NLPARM
     !> PARAM SEARCH, how far lines look for each other [length]; 0: by their sides
     real(wp) :: search = 0.0_wp
     !> PARAM CORNER, turns above it are corners [degree]; 0: by how boundaries turn
     real(wp) :: corner = 0.0_wp
     logical :: by_inversion = .false.  !! PARAM FLEXIB INVERT: flexibility by inversion, whatever it costs
     logical :: paper_ratio = .false.   !! PARAM MUP PAPER: Poisson's ratio (2-4) in the equivalent strain
+    logical :: flow_theory = .false.   !! PARAM THEORY FLOW: each increment goes on from the one before
     logical :: original = .false.      !! PARAM ORIGINAL YES: as the program of about 1980 did it all
   end type controls_type
 

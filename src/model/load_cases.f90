@@ -66,6 +66,7 @@ module epcont_model_load_cases
     integer :: supports = 0                     !! set of supports, by its id; 0: none
     integer :: temperatures = 0                 !! set of these, by its id; 0: none
     integer :: contact = 0                      !! the only BCONP that it has; contact_all or contact_none
+    integer :: load_steps = 1                   !! in which its loads are applied
     integer :: pattern = 1                      !! of the freedoms that supports hold, and contacts
   contains
     procedure :: share_of
@@ -129,6 +130,7 @@ contains
         call add_moment(model, cases%moment(i)%platen, share*cases%moment(i)%moment, model%load)
       end do
     end associate
+    model%controls%load_steps = cases%case(k)%load_steps
     call put_displacements(cases, cases%case(k), model)
     call find_travels(model)
     call put_temperatures(cases, cases%case(k), model)

@@ -12,7 +12,7 @@ module epcont_model_model
   use epcont_geometry_outline_shape, only: outline_type
   use epcont_model_arrays, only: angle, scene_type
   use epcont_model_finding, only: of_body_load, of_couple, of_element, of_line, of_node, of_pair, &
-      of_paper_ratio, of_section
+      of_paper_ratio, of_section, of_theory
   implicit none
   private
   public :: freedom_sums, line_contact, model_type
@@ -386,6 +386,8 @@ contains
       name = 'BCONP '//text_of(self%couple(which)%id)
     case (of_paper_ratio)
       name = 'PARAM MUP'
+    case (of_theory)
+      name = 'PARAM THEORY'
     case default
       name = ''
       if (kind == of_body_load) name = 'body_load('//text_of(which)//')'

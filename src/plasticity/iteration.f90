@@ -6,7 +6,7 @@ module epcont_plasticity_iteration
   use epcont_contact_problem, only: contact_solved, contact_stalled, pivot_record
   use epcont_element_kinematics, only: components, directions
   use epcont_linear_linear_problem, only: linear_problem, new_linear_problem
-  use epcont_linear_scene_state, only: scene_state
+  use epcont_linear_scene_state, only: committed_step, scene_state
   use epcont_material_linear_law, only: elastic_law
   use epcont_model_controls, only: method_inistr, method_modsec, method_newton, method_secant
   use epcont_plan_iteration_plan, only: iteration_plan
@@ -49,6 +49,8 @@ module epcont_plasticity_iteration
     type(weak_pivot) :: weakest            !! of the stiffness
     type(iteration_record), allocatable :: history(:)   !! every solve
     type(pivot_record), allocatable :: pivot(:)         !! those that are kept of each, one after the other
+    !> Flow theory: the load steps before the last, for the certificate [any]
+    type(committed_step), allocatable :: committed(:)
     integer :: unloaded = 0                !! elements whose strain fell, after yielding, as the load grew
     integer :: first_unloaded = 0          !! one of them
   end type followed_loads
@@ -88,6 +90,7 @@ contains
     call watch%lap(stage_stiffness)
     do step = 1, plan%load_steps
       load_factor = real(step, wp)/plan%load_steps
+      if (scene%model%controls%flow_theory .and. step > 1) call commit()
       call iterate()
       answer%factorizations = linear%factorizations - factored_before
       answer%lacks_memory = any(linear%body%lacks_memory)
@@ -103,8 +106,9 @@ contains
       if (failed_body > 0) answer%condition = huge(1.0_wp)
       if (.not. converged) exit
       answer%carried = .true.
-      if (plan%load_steps > 1) call find_unloaded(scene%model, answer%point, plan%tolerance, strained, &
-          answer%unloaded, answer%first_unloaded)
+      if (plan%load_steps > 1 .and. .not. scene%model%controls%flow_theory) &
+        call find_unloaded(scene%model, answer%point, plan%tolerance, strained, answer%unloaded, &
+                           answer%first_unloaded)
       call watch%lap(stage_yielding)
     end do
     answer%converged = converged
@@ -126,13 +130,20 @@ contains
       end if
       linear%borne%keeps = keeps .and. .not. linear%materials%yields
       factored_before = linear%factorizations
+      if (allocated(linear%materials%committed)) deallocate (linear%materials%committed)   ! of another case
       allocate (about%displacement(directions, scene%model%nodes), source=0.0_wp)
       allocate (about%strain(components, scene%model%points), source=0.0_wp)
       allocate (force(scene%model%pairs), strained(scene%model%points), source=0.0_wp)
       if (linear%materials%yields) about%point = linear%materials%states(about%strain)
-      allocate (answer%history(0), answer%pivot(0))
+      allocate (answer%history(0), answer%pivot(0), answer%committed(0))
       yielded = 0
     end subroutine begin
+
+    !> The last load step becomes the state from which the next one goes on.
+    subroutine commit()
+      call linear%materials%commit(answer%strain)
+      answer%committed = [answer%committed, committed_step(answer%load_factor, answer%deformation)]
+    end subroutine commit
 
     !> The method, which knows nothing yet: so it begins at each load.
     subroutine choose_method()

@@ -17,6 +17,7 @@ module epcont_report_array_words
     'PSHELL', 'section', 'PSOLID', 'section', 'the MAT1', 'young', &
     'PARAM MUP', 'controls%paper_ratio', ' (MUP PAPER)', '', &
     'MUP EXACT (ORIGINAL takes PAPER)', '.false.', 'MUP EXACT', '.false.', &
+    'PARAM THEORY', 'controls%flow_theory', 'THEORY TOTAL', '.false.', 'MUP PAPER', 'paper_ratio', &
     'PARAM MAXIT', 'controls%most_iterations', 'METHOD', 'controls%method', '--memory', 'memory', &
     'what follows is', 'the answer is', '`force not unique` in CONTACT', 'answer%contact%indeterminate']
 

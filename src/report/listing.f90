@@ -139,8 +139,8 @@ contains
     subroutine list_iterations()
       call put_table(run, 'history', listing)
       call listing%line('')
-      if (run%answer%load_steps > run%iteration%load_steps) &
-        call say_it('in '//plural(run%iteration%load_steps, 'load step')// &
+      if (run%answer%load_steps > run%model%controls%load_steps) &
+        call say_it('in '//plural(run%model%controls%load_steps, 'load step')// &
                  ' no answer was found; tried again in '//text_of(run%answer%load_steps)//' (AUTO)')
       if (any(run%answer%history%by_tangent)) call say_it( &
         'the last step is one by the tangent: its change is what the others have left')

@@ -94,7 +94,8 @@ contains
         call say('elastic material only: one solve, no iteration')
         return
       end if
-      call say('total theory of plasticity; bodies that can yield: '// &
+      call say(when(scene%model%controls%flow_theory, 'flow', 'total')// &
+               ' theory of plasticity; bodies that can yield: '// &
                text_of(count(yielding_bodies(scene%model))))
       call say('iteration '//trim(method_name(iteration%method))//': '//method_text(iteration%method))
       if (iteration%chosen_here) call say('  chosen here (AUTO): '// &
@@ -105,7 +106,8 @@ contains
       call say('  and no stress is off its curve by more than '//short_real(iteration%off_curve)// &
                ' of the stress there; at most '//plural(scene%model%controls%most_iterations, 'iteration'))
       if (iteration%load_steps > 1) &
-        call say(plural(iteration%load_steps, 'load step')//'; elastic unloading is not modelled')
+        call say(plural(iteration%load_steps, 'load step')//when(scene%model%controls%flow_theory, &
+          ', each from the plastic strains of the one before', '; elastic unloading is not modelled'))
       if (scene%model%controls%paper_ratio) call say('MUP PAPER: Poisson''s ratio in the equivalent '// &
         'strain by formula (2-4): stresses up to (1 - 2 nu)/3 below the curve')
     end subroutine say_iteration

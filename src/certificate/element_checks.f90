@@ -1,0 +1,182 @@
+!> Stresses of the elements against strains found from displacements alone, and the nodal forces that follow
+!> from the work of the stresses on unit displacements.
+module epcont_certificate_element_checks
+  use epcont_base_kinds, only: wp
+  use epcont_certificate_free_expansion, only: expansion_type, free_strains
+  use epcont_certificate_unit_strains, only: largest_of, strain_by, unit_strains
+  use epcont_certificate_yielding, only: stress_after, stress_on_curve, von_mises_stress
+  use epcont_element_element_kind, only: most_nodes, most_points
+  use epcont_element_kinematics, only: axisymmetric, components, directions, plane_stress
+  use epcont_model_model, only: model_type
+  use epcont_result_answer, only: answer_type
+  implicit none
+  private
+  public :: checked_elements, check_elements, ratio
+
+  !> What is found of some elements that follow each other.
+  type :: checked_elements
+    real(wp), allocatable :: force(:, :, :)   !! on their nodes [force] [directions, nodes, elements]
+    real(wp), allocatable :: work(:)          !! of the stresses [points]
+    real(wp) :: off_curve = 0.0_wp, motion_strain = 0.0_wp, lost_stress = 0.0_wp   !! as in the certificate
+    real(wp) :: rounding_stress = 0.0_wp, stress_roundings = 0.0_wp
+    type(expansion_type) :: expansion
+  end type checked_elements
+
+  !> An element at its integration points.
+  type :: element_points
+    real(wp) :: unit(components, directions, most_nodes, most_points)   !! strains by unit displacements
+    real(wp) :: volume(most_points), free(most_points)                  !! and strains of temperatures
+  end type element_points
+
+contains
+
+  !> Some elements that follow each other.
+  subroutine check_elements(model, answer, largest_stress, first, last, slope, part)
+    type(model_type), intent(in) :: model       !! the model
+    type(answer_type), intent(in) :: answer     !! its displacements, deformations and stresses
+    real(wp), intent(in) :: largest_stress      !! what stresses are compared with [stress]
+    integer, intent(in) :: first, last          !! the elements
+    real(wp), intent(in) :: slope(directions, most_nodes, most_points, *)   !! of each kind
+    type(checked_elements), intent(out) :: part
+    type(element_points) :: points
+    real(wp) :: force(directions)
+    integer :: c, e, k, p
+
+    allocate (part%force(directions, size(model%connectivity, 1), first:last), source=0.0_wp)
+    allocate (part%work(model%first_point(first):model%first_point(last + 1) - 1))
+    do e = first, last
+      call unit_strains(model, e, slope(:, :, :, model%kind(e)), points%unit, points%volume)
+      call free_strains(model, e, answer%load_factor, points%volume, points%free)
+      associate (stress => answer%point_stress(:, model%first_point(e):model%first_point(e + 1) - 1))
+        call part%expansion%add_element(model%young(model%section(e)), stress, &
+          points%unit(:, :, :model%node_count(e), :), points%volume, points%free(:size(stress, 2)))
+        call check_points(model, answer, largest_stress, e, points, part)
+        do k = 1, model%node_count(e)
+          do p = 1, size(stress, 2)
+            do c = 1, directions
+              force(c) = points%volume(p)*dot_product(stress(:, p), points%unit(:, c, k, p))
+            end do
+            part%force(:, k, e) = part%force(:, k, e) + force
+          end do
+        end do
+      end associate
+    end do
+  end subroutine check_elements
+
+  !> The integration points of an element.
+  subroutine check_points(model, answer, largest_stress, e, points, part)
+    type(model_type), intent(in) :: model
+    type(answer_type), intent(in) :: answer
+    real(wp), intent(in) :: largest_stress
+    integer, intent(in) :: e
+    type(element_points), intent(in) :: points
+    type(checked_elements), intent(inout) :: part
+    real(wp), dimension(directions, most_nodes) :: motion, u
+    real(wp) :: largest, farthest, rounding, strain(components)   ! of `u`, and with `motion`
+    real(wp) :: before(components, most_points, size(answer%committed))   ! strains of load steps
+    integer :: k, n, node, p
+    logical :: moves, ring
+
+    n = model%node_count(e)
+    ring = model%kinematics(model%section(e)) == axisymmetric
+    do k = 1, n
+      node = model%connectivity(k, e)
+      u(:, k) = answer%deformation(:, node)
+      motion(:, k) = answer%displacement(:, node) - u(:, k)
+    end do
+    call find_strains_before(model, answer, e, points, before)
+    moves = any(motion(:, :n) /= 0.0_wp)
+    largest = largest_of(directions*n, u)
+    farthest = maxval(abs(motion(:, :n)) + abs(u(:, :n)))
+    do p = 1, model%kinds(model%kind(e))%points
+      ! Of a strain by unit displacements.
+      rounding = epsilon(1.0_wp)*largest_of(components*directions*n, points%unit(1, 1, 1, p))
+      strain = strain_by(n, u, points%unit(1, 1, 1, p), ring)
+      associate (point => model%first_point(e) + p - 1)
+        part%work(point) = points%volume(p)*dot_product(answer%point_stress(:, point), strain)
+        strain(:3) = strain(:3) - points%free(p)
+        call check_stress(model, largest_stress, model%section(e), &
+                          reshape([before(:, p, :), strain], [components, size(before, 3) + 1]), &
+                          answer%point_stress(:, point), rounding*largest, part)
+      end associate
+      if (.not. moves) cycle
+      strain = strain_by(n, motion, points%unit(1, 1, 1, p), ring)
+      rounding = rounding*farthest
+      part%motion_strain = max(part%motion_strain, ratio(maxval(abs(strain)), rounding))
+    end do
+  end subroutine check_points
+
+  !> The strains of an element at the end of each load step from which flow theory went on.
+  subroutine find_strains_before(model, answer, e, points, before)
+    type(model_type), intent(in) :: model
+    type(answer_type), intent(in) :: answer
+    integer, intent(in) :: e
+    type(element_points), intent(in) :: points
+    real(wp), intent(out) :: before(:, :, :)   !! [components, points, load steps]
+    real(wp) :: free(most_points), u(directions, most_nodes)
+    integer :: k, n, p, step
+
+    n = model%node_count(e)
+    do step = 1, size(before, 3)
+      associate (committed => answer%committed(step))
+        do k = 1, n
+          u(:, k) = committed%deformation(:, model%connectivity(k, e))
+        end do
+        call free_strains(model, e, committed%load_factor, points%volume, free)
+      end associate
+      do p = 1, model%kinds(model%kind(e))%points
+        before(:, p, step) = strain_by(n, u, points%unit(1, 1, 1, p), &
+                                       model%kinematics(model%section(e)) == axisymmetric)
+        before(:3, p, step) = before(:3, p, step) - free(p)
+      end do
+    end do
+  end subroutine find_strains_before
+
+  !> How far a stress is off its curve. Of a material that yields: von Mises stress of the difference over
+  !! the curve's stress there, or below yield the yield stress (a larger one than any stress is no measure),
+  !! and the difference of the mean parts, which are elastic, over the largest stress: hydrostatic stress
+  !! says nothing of the curve. Of an elastic one: the largest difference over the largest stress. What
+  !! rounding strains makes a stress that is compared with the same.
+  subroutine check_stress(model, largest_stress, section, strain, stress, rounding, part)
+    type(model_type), intent(in) :: model
+    real(wp), intent(in) :: largest_stress
+    integer, intent(in) :: section
+    !> At the end of each load step from which flow theory went on, and now [components, any]
+    real(wp), intent(in) :: strain(:, :)
+    real(wp), intent(in) :: stress(components)
+    real(wp), intent(in) :: rounding         !! of the strain
+    type(checked_elements), intent(inout) :: part
+    real(wp) :: apart(components), off, on_curve(components), scale, stiffest
+
+    if (size(strain, 2) == 1) on_curve = stress_on_curve(model, section, strain(:, 1))
+    if (size(strain, 2) > 1) on_curve = stress_after(model, section, strain)
+    apart = stress - on_curve
+    scale = largest_stress
+    off = ratio(maxval(abs(apart)), largest_stress)
+    if (allocated(model%curve(section)%strain)) then
+      scale = max(von_mises_stress(on_curve), min(model%curve(section)%stress(2), largest_stress))
+      off = max(ratio(von_mises_stress(apart), scale), ratio(abs(sum(apart(:3)))/3.0_wp, largest_stress))
+    end if
+    part%off_curve = max(part%off_curve, off)
+    ! Stress over the strain along it where nothing gives way to the sides: near a Poisson's ratio of 0.5
+    ! far above E.
+    associate (young => model%young(section), nu => model%poisson(section))
+      stiffest = young
+      if (model%kinematics(section) /= plane_stress) &
+        stiffest = young*(1.0_wp - nu)/((1.0_wp + nu)*(1.0_wp - 2.0_wp*nu))
+      part%lost_stress = max(part%lost_stress, ratio(young*rounding, scale), &
+                             ratio(stiffest*rounding, largest_stress))
+      part%rounding_stress = max(part%rounding_stress, stiffest*rounding)
+      part%stress_roundings = max(part%stress_roundings, &
+                                  ratio(maxval(abs([stress, on_curve])), stiffest*rounding))
+    end associate
+  end subroutine check_stress
+
+  !> a/b, 0 where both are 0, or a is below; finite, but of what is no number.
+  elemental real(wp) function ratio(a, b)
+    real(wp), intent(in) :: a, b
+
+    ratio = 0.0_wp
+    if (.not. a <= 0.0_wp) ratio = a/max(b, tiny(b)*max(a, 1.0_wp))
+  end function ratio
+end module epcont_certificate_element_checks
