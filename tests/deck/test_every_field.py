@@ -67,6 +67,8 @@ DECKS = {
     "BCONP,1,2,1,,.1,0,1,0|PARAM,CORNER,20.|",
     "yield": "PARAM,PLANE,STRAIN|" + CORNERS + "SPC1,1,12,1,2|SPC,1,3,2,.02,4,2,.02|CQUAD4,1,1,1,2,3,4|PSHELL,1,1,1.|MAT1,1,1000.,,.3|"
     "MATS1,1,,PLASTIC,50.,1,1,10.|",
+    "flow": OUTPUT + "NLPARM = 3|BEGIN BULK|PARAM,PLANE,STRAIN|" + CORNERS + "SPC1,1,12,1,2|SPC,1,3,2,.02,4,2,.02|CQUAD4,1,1,1,2,3,4|PSHELL,1,1,1.|"
+    "MAT1,1,1000.,,.3|MATS1,1,,PLASTIC,50.,1,1,10.|PARAM,THEORY,FLOW|NLPARM,3,2|",
     "table": "PARAM,PLANE,STRESS|" + CORNERS + "SPC1,1,12,1,2|SPC,1,3,2,.02,4,2,.02|CQUAD4,1,1,1,2,3,4|PSHELL,1,1,1.|MAT1,1,1000.,,.3|"
     "MATS1,1,3,NLELAST|TABLES1,3,,,,,,,,0.,0.,.01,10.,.1,12.,ENDT|TABLES1,4,,,,,,,,0.,0.,.01,10.,.1,13.,ENDT|",
 }
@@ -139,15 +141,16 @@ CARDS = {
                             ("GE", ".1", NOTED), ("S", ".1", NOTED)]),
     "PELAS": ("plane", 0, [("PID1", "99", error("there is no PELAS 30")), ("K1", "60.", CHANGES), ("GE1", ".1", NOTED), ("S1", ".1", NOTED),
                            ("PID2", "99", error("there is no PELAS 31")), ("K2", "70.", CHANGES), ("GE2", ".1", NOTED), ("S2", ".1", NOTED)]),
+    "NLPARM": ("flow", 0, [("ID", "9", error("there is no such NLPARM")), ("NINC", "4", CHANGES), *([ANYTHING]*22)]),
 }
 #: The same for each PARAM.
 PARAMETERS = {
     "PLANE": ("ctria3", "STRAIN", CHANGES), "RULE": ("plane", "BLOCK", LISTED), "GAPGEOM": ("plane", "YES", CHANGES), "UNITS": ("plane", "MM", LISTED),
     "METHOD": ("yield", "SECANT", LISTED), "TOL": ("yield", ".1", LISTED), "MAXIT": ("yield", "7", LISTED), "MUP": ("yield", "PAPER", LISTED),
     "ORIGINAL": ("plane", "YES", LISTED), "NLOAD": ("yield", "2", LISTED), "SEARCH": ("feet", ".1", CHANGES), "SOLVER": ("plane", "FRONTAL", LISTED),
-    "FLEXIB": ("strip", "INVERT", LISTED), "ACCURACY": ("plane", ".1", LISTED), "CORNER": ("lines", "170.", LISTED),
+    "FLEXIB": ("strip", "INVERT", LISTED), "ACCURACY": ("plane", ".1", LISTED), "THEORY": ("flow", "TOTAL", CHANGES), "CORNER": ("lines", "170.", LISTED),
     "WTMASS": ("plane", "2.", CHANGES), "LGDISP": ("plane", "-1", NOTED), "INREL": ("plane", "0", NOTED)}
-WITHOUT = {"PLANE": "ctrax3", "RULE": "yield", "GAPGEOM": "lines", "METHOD": "plane", "TOL": "plane", "MAXIT": "plane", "MUP": "plane", "NLOAD": "plane",
+WITHOUT = {"PLANE": "ctrax3", "RULE": "yield", "GAPGEOM": "lines", "METHOD": "plane", "TOL": "plane", "MAXIT": "plane", "MUP": "plane", "NLOAD": "plane", "THEORY": "plane",
            "SEARCH": "plane", "FLEXIB": "yield", "CORNER": "plane", "WTMASS": "yield"}
 #: The same for each statement of case control, put before the others of `plane` or in place of the one of its name.
 STATEMENTS = {
@@ -155,7 +158,7 @@ STATEMENTS = {
     "CNTNLSUB": ("CNTNLSUB = YES", error("the SUBCASEs are a sequence")), "SUBCASE": ("SUBCASE 9", CHANGES), "SUBTITLE": ("SUBTITLE = X", LISTED),
     "LABEL": ("LABEL = X", LISTED), "SPC": ("SPC = 9", error("SPC = 9: the deck has no such set")), "LOAD": ("LOAD = 12", CHANGES),
     "MPC": ("MPC = 5", CHANGES), "BCONTACT": ("BCONTACT = NONE", CHANGES), "DISPLACEMENT": ("DISPLACEMENT = NONE", CHANGES),
-    "STRESS": ("STRESS = NONE", CHANGES), "SPCFORCES": ("SPCFORCES = ALL", CHANGES), "NLPARM": ("NLPARM = 5", note("NLPARM has no effect")),
+    "STRESS": ("STRESS = NONE", CHANGES), "SPCFORCES": ("SPCFORCES = ALL", CHANGES), "NLPARM": ("NLPARM = 5", error("NLPARM = 5: there is no such NLPARM")),
     "TEMPERATURE": ("TEMPERATURE = 4", CHANGES)}
 
 
@@ -170,8 +173,8 @@ def lines_of(card, form):
     name, *fields = card
     step = 4 if form == "large" else 8
     for k in range(0, max(len(fields), 1), step):
-        head = name if k == 0 else "+" if form == "free" else ""
         part = fields[k:k + step]
+        head = name if k == 0 else "+" if form == "free" or not any(part) else ""   # a blank line continues nothing
         if form == "free":
             yield ",".join([head, *part])
         elif form == "small":
