@@ -8,10 +8,10 @@ module epcont_model_finding
   private
   public :: findings, and_more
 
-  !> What a finding is of, by its position in the model. PARAM MUP and THEORY are of their own; a
-  !! body, by one of its nodes, is named in what is said of it. Of its data the fields of its card are known by their columns:
-  !! 0 all, 1 the id; -k: the k-th of its list, of an element the node k of the model. What is wrong goes on
-  !! behind its name: `: lies on the axis`.
+  !> What a finding is of, by its position in the model. PARAM MUP and THEORY are of their own; a body, by one
+  !! of its nodes, is named in what is said of it. Of its data the fields of its card are known by their
+  !! columns: 0 all, 1 the id; -k: the k-th of its list, of an element the node k of the model. What is wrong
+  !! goes on behind its name: `: lies on the axis`.
   integer, parameter, public :: of_scene = 0, of_node = -1, of_element = -2, of_section = -3, of_pair = -4, &
     of_line = -5, of_couple = -6, of_paper_ratio = -7, of_body = -8, of_body_load = -9, of_equation = -10, &
     of_theory = -11

@@ -20,8 +20,10 @@ def long(value):
 class Deck:
     """Cards of a deck in the order they are asked for; `write` puts head and tail round them. `words`: paragraphs."""
 
-    def __init__(self, title, words, units="N-MM", strain=True, from_geometry=True, rings=False):
-        self.title, self.words, self.lines, self.rings = title, words, [], rings
+    def __init__(self, title, words, units="N-MM", strain=True, from_geometry=True, rings=False, load_steps=None):
+        self.title, self.words, self.lines, self.rings, self.load_steps = title, words, [], rings, load_steps
+        if load_steps:
+            self.card("NLPARM", "1", str(load_steps))
         self.card("PARAM", "UNITS", units)
         if not rings:
             self.card("PARAM", "PLANE", "STRAIN" if strain else "STRESS")
@@ -147,6 +149,7 @@ class Deck:
         head = [f"$ {line}".rstrip() for words in self.words for line in textwrap.wrap(words, 76) or [""]]
         head += ["SOL 106", "CEND", f"TITLE = {self.title}", "SPC = 1"]
         head += ["LOAD = 1"] if any(line.startswith(("FORCE", "PLOADX1", "GRAV", "RFORCE")) for line in self.lines) else []
+        head += ["NLPARM = 1"] if self.load_steps else []
         head.append("BEGIN BULK")
         return "\n".join(head + self.lines + ["ENDDATA", ""])
 

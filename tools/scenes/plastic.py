@@ -92,6 +92,25 @@ def one_element():
     return deck
 
 
+def one_element_flow():
+    """The first of these squares by flow theory."""
+    deck = Deck("UNIFORM STRAIN, FLOW THEORY", [
+        "A square of two triangles, plane strain, pulled in x by 300 and free in y, in 100 load steps of flow theory. E = 210000, "
+        "nu = 0.3, yield stress 240, Et = 21000.",
+        "Known answer: ex 2.1169E-3 in 100 load steps; in ever more ex 2.11434387E-3, ey -1.31270880E-3, sz 120.858415. Total theory: "
+        "ex 2.13574758E-3. The square has side 1: strains are the displacements of node 3."], from_geometry=False, load_steps=100)
+    deck.card("PARAM", "THEORY", "FLOW")
+    square = block([0.0, 1.0], [0.0, 1.0])
+    square = Mesh([square.point[i] for i in (0, 1, 3, 2)], [(0, 1, 2), (0, 2, 3)], {})
+    deck.body(square, 1)
+    deck.material(1, 210000.0, 0.3)
+    deck.yields(1, 240.0, 21000.0 / 0.9)
+    deck.hold(1, [0, 3])
+    deck.hold(2, [0, 1])
+    deck.press(square, [1, 2], -300.0)
+    return deck
+
+
 def cook(n=24, stress=None):
     """Cook's membrane: a tapered panel, sheared at its end."""
     flat = grid([i / n for i in range(n + 1)], [j / n for j in range(n + 1)])

@@ -37,6 +37,8 @@ class Scene:
         wanted = real(parameter.get("ACCURACY", ""), 0.0) * (0.1 if newton else 0.002)
         self.off_curve = real(parameter.get("TOL", ""), wanted or (1e-8 if newton else 0.01)) * (1 if newton else 10)
         self.off_curve *= bool(deck.of("MATS1"))
+        if parameter.get("THEORY") == "FLOW" and deck.of("MATS1"):
+            raise DeckError("PARAM THEORY FLOW: stresses depend on all load steps, and the tables hold the last one alone")
         self.sections()
         self.element = {}
         for name, kind in KINDS.items():
