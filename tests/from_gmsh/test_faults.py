@@ -10,10 +10,9 @@ import sys
 import tempfile
 import unittest
 
-TOOLS = pathlib.Path(__file__).resolve().parents[2] / "tools"
-sys.path.insert(0, str(TOOLS))
-from from_gmsh.faults import Faults, Rejected  # noqa: E402
-from from_gmsh.scene import read_scene  # noqa: E402
+from maker import TOOLS, deck
+from from_gmsh.faults import Faults, Rejected
+from from_gmsh.scene import read_scene
 
 GEO = """
 For k In {0:1}
@@ -187,11 +186,10 @@ class Mistakes(unittest.TestCase):
         self.place = pathlib.Path(directory.name)
 
     def said(self, toml=TOML, geo=GEO, target="scene.dat"):
-        """Exit status, and what goes to both streams; of a process of its own, since Gmsh stumbles again after a mistake."""
+        """Exit status, and what goes to both streams."""
         for name, text in (("scene.toml", toml), ("two.geo", geo)):
             (self.place / name).write_text(text, encoding="utf-8")
-        run = subprocess.run([sys.executable, "-m", "from_gmsh", "scene.toml", "-o", target], cwd=self.place, capture_output=True, text=True,
-                             env={**os.environ, "PYTHONPATH": str(TOOLS)})
+        run = deck("scene.toml", "-o", target, cwd=self.place)
         text = run.stdout + run.stderr
         self.assertNotIn("Traceback", text)
         return run.returncode, text

@@ -1,14 +1,12 @@
 """Finished meshes in each form that Gmsh writes give one deck; what is lost or doubled on the way is told."""
-import os
 import pathlib
 import subprocess
 import sys
 import tempfile
 import unittest
 
-TOOLS = pathlib.Path(__file__).resolve().parents[2] / "tools"
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-from test_faults import GEO, TOML  # noqa: E402
+from maker import deck
+from test_faults import GEO, TOML
 
 #: One curve and one point in two groups each.
 TWICE = GEO + 'Physical Curve("roof") = {7, -6};\nPhysical Point("peak") = {7};\n'
@@ -87,8 +85,7 @@ class Meshes(unittest.TestCase):
             (self.place / name).write_text(mesh, encoding="utf-8")
         else:
             (self.place / name).write_bytes(mesh)
-        run = subprocess.run([sys.executable, "-m", "from_gmsh", "scene.toml"], cwd=self.place, capture_output=True, text=True,
-                             env={**os.environ, "PYTHONPATH": str(TOOLS)})
+        run = deck("scene.toml", cwd=self.place)
         lines = [line for line in (run.stdout + run.stderr).splitlines() if "is used by nothing" not in line]
         files = [self.place / f"scene{suffix}" for suffix in (".dat", ".mesh.bdf")]
         return run.returncode, lines, [file.read_text() if file.exists() else None for file in files]

@@ -13,6 +13,7 @@ import unittest.mock
 TOP = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(TOP / "tools"), str(TOP / "tests" / "independent")]
 import gmsh  # noqa: E402
+import maker  # noqa: E402
 from cards import written  # noqa: E402
 from deck import read, real  # noqa: E402
 from drawing.run import Run  # noqa: E402
@@ -25,8 +26,7 @@ SCENES = TOP / "input" / "from_gmsh"
 
 
 def make(scene, deck):
-    return subprocess.run([sys.executable, "-m", "from_gmsh", scene, "-o", deck], capture_output=True, text=True,
-                          env={**os.environ, "PYTHONPATH": str(TOP / "tools")})
+    return maker.deck(scene, "-o", deck)
 
 
 def hertz(load=500.0, radii=(20.0, 10.0), young=210000.0, poisson=0.3):
