@@ -2,13 +2,17 @@
 import csv
 import os
 import pathlib
+import runpy
 import stat
-import subprocess
 import sys
 import tempfile
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "tools"), str(ROOT / "tests")]
+import copies  # noqa: E402
+from batching import running, slurm  # noqa: E402
+
 PROGRAM = str(pathlib.Path(os.environ["EPCONT_PROGRAM"]).resolve())
 SMALL = ROOT / "input" / "hertz" / "hertz44_elastic.dat"
 REJECTED = ROOT / "input" / "faults" / "no_suport.dat"
@@ -61,9 +65,14 @@ class Case(unittest.TestCase):
         program = () if "--collect" in arguments or "--program" in arguments else ("--program", PROGRAM)
         return [sys.executable, "-B", str(ROOT / "tools" / tool), *map(str, arguments), *program]
 
-    def run_it(self, status, *arguments, tool="batch", **options):
-        run = subprocess.run(self.command(tool, *arguments), cwd=self.place, capture_output=True, text=True, timeout=120,
-                             **options)
+    def run_it(self, status, *arguments, tool="batch", env=None):
+        """The tool in a copy of this process, ten times as impatient with Slurm and with what does not end."""
+        def start():
+            slurm.SHORTEST, running.GRACE = slurm.SHORTEST / 10, running.GRACE / 10
+            runpy.run_path(words[2], run_name="__main__")
+
+        words = self.command(tool, *arguments)
+        run = copies.run(start, *words[2:], cwd=self.place, env=env)
         self.assertEqual(status, run.returncode, run.stdout + run.stderr)
         return run
 

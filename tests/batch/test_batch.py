@@ -10,10 +10,9 @@ import sys
 import time
 import unittest
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools"))
-from batching.outcome import first_fault  # noqa: E402
-from batching.slurm import Watch  # noqa: E402
-from common import PROGRAM, ROOT, SMALL, Case  # noqa: E402
+from common import PROGRAM, ROOT, SMALL, Case  # and where the modules of tools are
+from batching.outcome import first_fault
+from batching.slurm import Watch
 
 
 class Whole(Case):
@@ -287,7 +286,7 @@ class Misbehaving(Case):
         names[40:40] = ["b_rejected.dat", "hangs.dat", "other/segfault.dat", "missing.dat"]
         self.decks(*(name for name in names if name != "missing.dat"))
         (self.place / "list").write_text("\n".join(names))
-        self.run_it(1, "--list", "list", "-o", "out", "--seconds", "5", "--program", self.fake)
+        self.run_it(1, "--list", "list", "-o", "out", "--seconds", "2", "--program", self.fake)
         words = {"segfault": "crashed", "half": "incomplete", "a_rejected": "rejected", "strange": "internal error", "killed": "killed",
                  "b_rejected": "rejected", "hangs": "timed out", "full": "refused", "missing": "refused"}
         rows = self.table()
