@@ -33,6 +33,11 @@ def lines_of(path):
     return {int(card[1]): ids(card[2:]) for card in read_cards(path).of("BLSEG")}
 
 
+def kinds_of(path):
+    """Kinds of cards in a deck: their names, with the fields of the first line that are not blank; of PARAM the name of the parameter."""
+    return {(card[0], card[1] if card[0] == "PARAM" else tuple(map(bool, card[:9]))) for card in read_cards(path).cards}
+
+
 def restore_lines(model, lines):
     """pyNastran 1.4.1 sorts the nodes of a BLSEG and drops the one that closes it; the ids of those that this has changed."""
     changed = [number for number, nodes in lines.items() if model.blseg[number].node_ids != nodes]
