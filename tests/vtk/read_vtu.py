@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""read_vtu.py plain|meshio|pyvista FILE...: what a reader finds in .vtu files, as JSON: one {points, cells, point_data, cell_data,
-field_data} a file. A cell is [VTK's number of its kind, points]. `plain` needs nothing but Python, and is strict.
+"""read_vtu.py plain|meshio|pyvista: what a reader finds in each .vtu file that a line of standard input names, as a line of JSON:
+{points, cells, point_data, cell_data, field_data}. A cell is [VTK's number of its kind, points]. `plain` needs nothing but Python, and is strict.
 """
 import base64
 import json
@@ -70,4 +70,5 @@ def by_pyvista(path):
 
 if __name__ == "__main__":
     reader = {"plain": plain, "meshio": by_meshio, "pyvista": by_pyvista}[sys.argv[1]]
-    print(json.dumps([reader(pathlib.Path(name)) for name in sys.argv[2:]], allow_nan=False))
+    for line in sys.stdin:
+        print(json.dumps(reader(pathlib.Path(line.rstrip("\n"))), allow_nan=False), flush=True)

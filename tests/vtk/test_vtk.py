@@ -74,19 +74,32 @@ class Case(unittest.TestCase):
         run = subprocess.run([PROGRAM, deck, "-o", self.directory, *options], capture_output=True, text=True)
         self.assertEqual(status, run.returncode, run.stderr)
 
-    def grids(self, *names):
-        """What the reader finds; it must have nothing to complain of."""
-        paths = [self.directory / name for name in names]
-        run = subprocess.run([sys.executable, "-W", "error", HERE / "read_vtu.py", READER, *paths], capture_output=True, text=True)
-        self.assertEqual((0, ""), (run.returncode, run.stderr))
-        return json.loads(run.stdout)
-
     def table(self, stem, name):
         return list(csv.DictReader((self.directory / f"{stem}.{name}.csv").read_text().splitlines()))
 
 
 class Values(Case):
     """One deck of each kind of element, of rings, of contact by CGAP and by lines, with RBE2, and without contact."""
+
+    @classmethod
+    def setUpClass(cls):
+        """One process reads all files: to load a package takes longer than to read them."""
+        cls.errors = tempfile.TemporaryFile("w+")
+        cls.addClassCleanup(cls.errors.close)
+        cls.reader = subprocess.Popen([sys.executable, "-W", "error", HERE / "read_vtu.py", READER], stdin=subprocess.PIPE,
+                                      stdout=subprocess.PIPE, stderr=cls.errors, text=True)
+        cls.addClassCleanup(cls.reader.communicate)
+
+    def grids(self, *names):
+        """What the reader finds; it must have nothing to complain of."""
+        found = []
+        for name in names:
+            self.reader.stdin.write(f"{self.directory / name}\n")
+            self.reader.stdin.flush()
+            found.append(self.reader.stdout.readline())
+        self.errors.seek(0)
+        self.assertEqual("", self.errors.read())
+        return [json.loads(line) for line in found]
 
     def check(self, path, status=0):
         self.run_it(path, "--vtk", "--tables", "all", status=status)
