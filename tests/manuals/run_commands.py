@@ -6,7 +6,7 @@ said to be `From X.lst`. The lines of a block, and the commands of a paragraph, 
 whose build folder has the executable under test in every preset. Held against the document are the exit status (0, or what it
 says), the lines shown below a command, and of the remark beside it the number that it prints and the files that it writes.
 
-`plain` runs what epcont, a shell and Python alone can do, `drawing` the blocks that need the Python of tools/venv as well.
+`plain` runs what epcont, a shell and Python alone can do, `drawing` what needs the Python of tools/venv as well, and what it is made from.
 EPCONT_SOURCE_DIR is the project, EPCONT_PROGRAM the executable.
 """
 import dataclasses
@@ -41,6 +41,7 @@ INSTEAD = [
     (r"tools/make_venv \w+", "sh -n tools/make_venv", "fetches packages; the ctest `tools_make_venv` runs it"),
     (r"tests/in_venv", "sh -n tests/in_venv", "runs a test"),
     (r"tools/plot --all", "tools/plot --help", "minutes"),
+    (r"tools/convergence", "tools/convergence --help", "the same without the picture"),
     (r"tools/tradeoff .*", "build/venv/bin/python tools/tradeoffs.py --help", "minutes; installs GNU time"),
     (r"(python tests/independent/compare.py \S+) input/.*", r"\1 input/hertz/hertz44.dat tests/independent/cases/*_size8.dat", "minutes"),
     (r"(python tests/independent/compare.py \S+) --random 300(.*)", r"\1 --random 6\2", "minutes"),
@@ -142,14 +143,22 @@ def as_run(command):
 
 
 def chosen(block, group):
-    """What of a block a group runs: `plain` commands that need no venv, nor a file from one that does; `drawing` all, if any does."""
+    """What of a block a group runs: `plain` commands that need no venv, nor a file from one that does; `drawing` the others, and before
+    them those that write a file for them."""
     plain, made = [], []
     for command in block:
         if FOR_DRAWING.search(as_run(command)[0] or "") or any(name in command.text for name in made):
             made += re.findall(r"-o (\S+\.dat)", command.text)
         else:
             plain.append(command)
-    return plain if group == "plain" else block if len(plain) < len(block) else []
+    if group == "plain":
+        return plain
+    drawing = []
+    for command in reversed(block):
+        written = re.findall(r"(?:-o|>) (\S+)", command.text)
+        if command not in plain or any(name in later.text for name in written for later in drawing):
+            drawing.insert(0, command)
+    return drawing
 
 
 def stand_in(folder):
