@@ -165,8 +165,13 @@ CONTACT
     def test_without_packages_what_needs_their_files_is_left_out(self):
         block = [run_commands.Command("p:1", text) for text in ("tools/run a.dat", "tools/deck s.toml -o b.dat", "tools/run b.dat")]
         self.assertEqual(run_commands.chosen(block, "plain"), block[:1])
-        self.assertEqual(run_commands.chosen(block, "drawing"), block)
+        self.assertEqual(run_commands.chosen(block, "drawing"), block[1:])
         self.assertEqual(run_commands.chosen(block[:1], "drawing"), [])
+        block = [run_commands.Command("p:1", text) for text in ("sed 1d a.geo > c.geo", "sed s/a/c/ a.toml > c.toml", "tools/deck c.toml", "cat d.geo")]
+        self.assertEqual(run_commands.chosen(block, "plain"), [*block[:2], block[3]])
+        self.assertEqual(run_commands.chosen(block, "drawing"), [block[1], block[2]])
+        block[1].text += " c.geo"
+        self.assertEqual(run_commands.chosen(block, "drawing"), block[:3])
 
     def test_what_is_not_as_shown_is_told(self):
         for text, remark, shown, wanted in (
