@@ -1,9 +1,12 @@
 #!/usr/bin/env python3
-"""check_rules.py PROGRAM COMPARE DECK OUTPUT: a deck must give the same tables by RULE CONRY and by RULE BLOCK."""
+"""check_rules.py PROGRAM DECK OUTPUT: a deck must give the same tables by RULE CONRY and by RULE BLOCK."""
 import pathlib
 import re
 import subprocess
 import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "tools"))
+from common import load  # noqa: E402
 
 # What tells of the way to the answer, not of the answer.
 WAY = {"pivots"}
@@ -31,15 +34,16 @@ def run(program, deck, rule, output):
 
 
 def main():
-    program, compare, deck, output = sys.argv[1], sys.argv[2], pathlib.Path(sys.argv[3]), pathlib.Path(sys.argv[4])
+    program, deck, output = sys.argv[1], pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3])
     status = {rule: run(program, deck, rule, output / rule) for rule in ("CONRY", "BLOCK")}
     if status["CONRY"] != status["BLOCK"]:
         sys.exit(f"exit status {status['CONRY']} by CONRY, {status['BLOCK']} by BLOCK")
     names = [sorted(path.name for path in (output / rule).glob("*.csv")) for rule in ("CONRY", "BLOCK")]
     if names[0] != names[1] or not names[0]:
         sys.exit(f"tables {names[0]} by CONRY, {names[1]} by BLOCK")
-    sys.exit(max(subprocess.run([sys.executable, compare, "--relative", "1e-9", "--absolute", "1e-12",
-                                 output / "CONRY" / name, output / "BLOCK" / name]).returncode for name in names[0]))
+    compare = load("compare").main
+    sys.exit(max(compare(["--relative", "1e-9", "--absolute", "1e-12", *(str(output / rule / name) for rule in ("CONRY", "BLOCK"))])
+                 for name in names[0]))
 
 
 if __name__ == "__main__":

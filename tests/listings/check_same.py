@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""check_same.py PROGRAM DECK OUTPUT PARAM ONE OTHER: a deck must have the same answer by two values of a PARAM: SOLVER BAND and
+"""check_same.py PROGRAM DECK OUTPUT [PARAM ONE OTHER]...: a deck must have the same answer by two values of each PARAM: SOLVER BAND and
 FRONTAL, FLEXIB AUTO and INVERT, RULE CONRY and JOINED; or by two kernels of OpenBLAS, as OPENBLAS_CORETYPE names them.
 
 Exit status, words and whole numbers are to be the same; reals to 1e-9 of the largest of their kind in their table, for two
@@ -80,23 +80,28 @@ def faults(name, one, other, words):
                 yield f"{name}: {one[0][column]}: {a} by {words[0]}, {b} by {words[1]} in {','.join(mine)}"
 
 
-def main():
-    program, deck, output, parameter, *words = sys.argv[1:]
-    deck, output = pathlib.Path(deck), pathlib.Path(output)
-    one, tables = run(program, deck, parameter, words[0], output / words[0])
-    other, others = run(program, deck, parameter, words[1], output / words[1])
+def compared(program, deck, output, parameter, *words):
+    """What differs by two values of one PARAM."""
+    (one, tables), (other, others) = (run(program, deck, parameter, word, output / f"{parameter}_{word}") for word in words)
     if one != other:
-        sys.exit(f"exit status {one} by {words[0]}, {other} by {words[1]}")
-    if tables.keys() != others.keys():
-        sys.exit(f"tables {sorted(tables)} by {words[0]}, {sorted(others)} by {words[1]}")
-    if one in (2, 3):
-        sys.exit(f"exit status {one}: nothing was solved")
-    if one != 0:
-        return
-    if not tables:
-        sys.exit("no tables to compare")
-    found = [fault for name in tables for fault in faults(name, tables[name], others[name], words)]
-    sys.exit("\n".join(found[:20]) if found else 0)
+        yield f"exit status {one} by {words[0]}, {other} by {words[1]}"
+    elif tables.keys() != others.keys():
+        yield f"tables {sorted(tables)} by {words[0]}, {sorted(others)} by {words[1]}"
+    elif one in (2, 3):
+        yield f"exit status {one}: nothing was solved"
+    elif one == 0:
+        if not tables:
+            yield "no tables to compare"
+        for name in tables:
+            yield from faults(name, tables[name], others[name], words)
+
+
+def main():
+    program, deck, output, *words = sys.argv[1:]
+    found = []
+    for parameter, one, other in zip(words[::3], words[1::3], words[2::3]):
+        found += [f"{parameter}: {fault}" for fault in compared(program, pathlib.Path(deck), pathlib.Path(output), parameter, one, other)][:20]
+    sys.exit("\n".join(found) if found else 0)
 
 
 if __name__ == "__main__":

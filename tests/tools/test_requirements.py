@@ -209,7 +209,7 @@ class Telling(Case):
     def test_tests(self):
         run = self.run_it(8, "tools/test", "-R", "name")
         self.assertEqual("ctest's summary\n" + TOLD, run.stdout)
-        self.assertEqual("tools/test: testing build/release (all tests take some seven minutes on two cores)\n", run.stderr)
+        self.assertEqual("tools/test: testing build/release (all tests take some five minutes on two cores)\n", run.stderr)
         call, = self.calls("ctest")
         self.assertTrue(call.startswith("ctest --preset release --parallel 2 ") and call.endswith(" -R name"), call)
 
