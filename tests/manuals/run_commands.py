@@ -41,6 +41,7 @@ INSTEAD = [
     (r"tools/make_venv \w+", "sh -n tools/make_venv", "fetches packages; the ctest `tools_make_venv` runs it"),
     (r"tests/in_venv", "sh -n tests/in_venv", "runs a test"),
     (r"tools/plot --all", "tools/plot --help", "minutes"),
+    (r"tools/decks hertz (42|11)000(.*)", r"tools/decks hertz \g<1>0\2", "as much for a smaller one"),
     (r"tools/convergence", "tools/convergence --help", "the same without the picture"),
     (r"tools/tradeoff .*", "build/venv/bin/python tools/tradeoffs.py --help", "minutes; installs GNU time"),
     (r"(python tests/independent/compare.py \S+) input/.*", r"\1 input/hertz/hertz44.dat tests/independent/cases/*_size8.dat", "minutes"),
