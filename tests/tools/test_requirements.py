@@ -13,6 +13,7 @@ CMAKE = """#!/bin/sh
 echo "cmake $*" >> "{place}/calls"
 case "$*" in
   --preset*)
+    echo "generator $CMAKE_GENERATOR" >> "{place}/calls"
     [ -e "{place}/liblapack.so" ] || {{ echo "Could NOT find LAPACK (missing: LAPACK_LIBRARIES)" >&2; exit 1; }}
     mkdir -p "build/$2" && touch "build/$2/Makefile"
     [ -e "{place}/bin/python3" ] && found=/usr/bin/python3 || found=_Python3_EXECUTABLE-NOTFOUND
@@ -131,6 +132,12 @@ class Complete(Case):
 
     def test_plain_user(self):
         self.check()
+        self.assertEqual(["generator "], self.calls("generator"))
+
+    def test_ninja(self):
+        (self.place / "bin" / "ninja").symlink_to(self.place / "kept" / "make")
+        self.check()
+        self.assertEqual(["generator Ninja"], self.calls("generator"))
 
     def test_without_apt(self):
         self.machine(apt=False)
