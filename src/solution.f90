@@ -16,7 +16,7 @@ module epcont_solution
   use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_plan_planned_scene, only: planned_scene
   use epcont_plan_side_by_side, only: plan_threads
-  use epcont_plasticity_iteration, only: follow_loads
+  use epcont_plasticity_load_path, only: follow_loads
   use epcont_plasticity_law_of_state, only: factor_law, linearise
   use epcont_plasticity_newton, only: newton_method
   use epcont_plasticity_observer, only: observer

@@ -1,7 +1,7 @@
 !> The answer to a scene: displacements, contact and stresses, and how they were found.
 module epcont_result_answer
   use epcont_base_kinds, only: wp
-  use epcont_plasticity_iteration, only: followed_loads
+  use epcont_plasticity_load_path, only: followed_loads
   use epcont_result_body_force, only: body_force
   use epcont_result_displacement_gradient, only: gradient_type
   use epcont_result_line_pressure, only: line_pressure

@@ -1,0 +1,356 @@
+!> The iteration to equilibrium at one load; it knows nothing of the method that it drives.
+module epcont_plasticity_equilibrium_iteration
+  use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: solved_to
+  use epcont_contact_problem, only: contact_solved, contact_stalled, pivot_record
+  use epcont_element_kinematics, only: components, directions
+  use epcont_linear_linear_problem, only: linear_problem, new_linear_problem
+  use epcont_linear_scene_state, only: scene_state
+  use epcont_material_linear_law, only: elastic_law
+  use epcont_model_controls, only: method_inistr, method_modsec, method_newton, method_secant
+  use epcont_plan_iteration_plan, only: iteration_plan
+  use epcont_plan_planned_scene, only: planned_scene
+  use epcont_plasticity_error_estimate, only: error_estimate, ratio
+  use epcont_plasticity_initial_stress, only: initial_stress_method
+  use epcont_plasticity_law_of_state, only: factor_law, linearise
+  use epcont_plasticity_newton, only: newton_method
+  use epcont_plasticity_observer, only: iteration_record, observer
+  use epcont_plasticity_secant, only: secant_method
+  use epcont_system_stopwatch, only: stage_yielding
+  implicit none
+  private
+  public :: equilibrium_iteration
+
+  !> Displacements so many times those of the first solve, with a flat curve: nothing carries the load.
+  real(wp), parameter :: far_away = 1.0e4_wp
+  !> Without mixing, so many solves tell the rate; where they are more, or more is to come than so many times
+  !! the last change, it is a slow one. Few, slow or mixed steps say too little of what is to come, and
+  !! prescribed displacements hide it in the largest: the estimate is tested.
+  integer, parameter :: few_solves = 4, many_solves = 8
+  real(wp), parameter :: slow = 3.0_wp
+  !> A tangent step that shows more than so many times what was estimated is no measure of it.
+  real(wp), parameter :: most_doubt = 1.0e2_wp
+  !> A tangent with this part of the secant matrix in it, or more, tests nothing.
+  real(wp), parameter :: too_stiff = 1.0e-3_wp
+  !> Changes that fall no more are rounding up to this part of the largest displacement; beyond, all is lost.
+  real(wp), parameter :: stagnant = 1.0e-3_wp
+
+  type :: equilibrium_iteration
+    type(iteration_plan) :: plan                    !! how it is iterated; it may differ from the scene's
+    type(linear_problem), allocatable :: linear     !! as the last solve left it
+    !> With factors of the unloaded state, where another load case will want these and the bodies yield
+    type(linear_problem), allocatable :: virgin
+    logical :: keeps = .false.                      !! another load case may follow
+    real(wp) :: load_factor = 0.0_wp                !! of the loads
+    type(scene_state), allocatable :: state         !! found at this load
+    logical :: converged = .false.
+    logical :: runs_away = .false.                  !! no equilibrium: displacements grow without end
+    integer :: failed_body = 0                      !! body that could not be factored
+    type(iteration_record), allocatable :: history(:)   !! every solve
+    type(pivot_record), allocatable :: pivot(:)         !! those that are kept of each, one after the other
+    type(scene_state), private :: about             !! that the law is about
+    type(iteration_record), private :: now          !! of the last solve
+    logical, allocatable, private :: touching(:)    !! the last set: the next contact starts from it [pairs]
+    real(wp), allocatable, private :: force(:)      !! the last contact forces [force] [pairs]
+    type(error_estimate), private :: estimate
+    integer, private :: factored_before = 0         !! bodies, for load cases before
+    integer, private :: yielded = 0                 !! elements that yield in the state that the law is about
+    logical, private :: stiff = .false.             !! the scene has been factored
+    logical, private :: elastic = .false.           !! with the law of a state that has not yielded
+  contains
+    procedure :: begin
+    procedure :: iterate
+    procedure :: return_to
+    procedure :: factorizations
+    procedure :: finish
+    procedure, private :: set_law
+    procedure, private :: judge
+    procedure, private :: keep
+    procedure, private :: measure
+    procedure, private :: is_over
+    procedure, private :: wants_test
+    procedure, private :: step_by_tangent
+  end type equilibrium_iteration
+
+contains
+
+  !> The state without loads. Of several load cases the first is one without `linear`; the others have it from
+  !! the one before, and the factors of the unloaded state.
+  subroutine begin(self, scene)
+    class(equilibrium_iteration), intent(inout) :: self
+    type(planned_scene), intent(in) :: scene        !! what is loaded
+
+    if (allocated(self%virgin)) self%linear = self%virgin
+    self%stiff = allocated(self%linear)
+    self%elastic = self%stiff
+    if (self%stiff) then
+      call self%linear%take_case(scene)
+      call move_alloc(self%linear%touching, self%touching)
+    else
+      allocate (self%linear)
+      call new_linear_problem(scene, self%plan, self%linear)
+    end if
+    associate (linear => self%linear, model => scene%model)
+      self%factored_before = linear%factorizations
+      linear%borne%keeps = self%keeps .and. .not. linear%materials%yields
+      if (allocated(linear%materials%committed)) deallocate (linear%materials%committed)   ! of another case
+      allocate (self%about%displacement(directions, model%nodes), source=0.0_wp)
+      allocate (self%about%strain(components, model%points), source=0.0_wp)
+      allocate (self%force(model%pairs), source=0.0_wp)
+      if (linear%materials%yields) self%about%point = linear%materials%states(self%about%strain)
+    end associate
+    allocate (self%history(0), self%pivot(0))
+  end subroutine begin
+
+  !> Iterate at one load. The state is the last, or if that is not converged the one nearest to equilibrium.
+  subroutine iterate(self, scene, load_factor, watch)
+    class(equilibrium_iteration), intent(inout) :: self
+    type(planned_scene), intent(in) :: scene
+    real(wp), intent(in) :: load_factor             !! of the loads
+    class(observer), intent(inout) :: watch         !! takes the time, and is told of each solve
+    class(secant_method), allocatable :: method
+    type(scene_state), allocatable :: found
+    real(wp) :: farthest, least_residual, travel
+    integer :: iteration
+
+    self%load_factor = load_factor
+    self%converged = .false.
+    least_residual = huge(1.0_wp)
+    if (allocated(self%state)) deallocate (self%state)
+    allocate (self%state, found)
+    ! The law may be a last step's tangent.
+    if (.not. self%stiff) self%linear%law = elastic_law(self%linear%materials)
+    call choose_method(self%plan, method)
+    call self%estimate%begin()
+    do iteration = 1, scene%model%controls%most_iterations
+      call self%set_law(scene, method, watch)
+      if (self%failed_body > 0) return
+      call self%linear%solve(scene, load_factor, self%touching, found, watch)
+      if (found%contact%state /= contact_solved) then
+        ! Not found about a later state, such as one beyond the limit load: what was found before is not
+        ! converged.
+        if (iteration == 1 .or. found%contact%state /= contact_stalled) call move_alloc(found, self%state)
+        return
+      end if
+      self%now = iteration_record(iteration=iteration)
+      call self%judge(scene, found, watch)
+      travel = maxval(abs(found%displacement))
+      if (iteration == 1) farthest = far_away*travel
+      ! A state far away is none to show: its numbers may be at the end of their range.
+      self%runs_away = .not. self%converged .and. scene%model%has_flat_curve() .and. travel > farthest
+      if (self%runs_away) return
+      if (.not. self%plan%from_first_pivot) self%touching = found%contact%touching
+      self%force = found%contact%force
+      self%yielded = self%now%yielded
+      ! Behind the last load step nothing is linearised any more.
+      if (self%linear%materials%yields .and. .not. (self%converged .and. load_factor >= 1.0_wp)) &
+        call method%advance(scene%model, self%linear, load_factor, found, self%about)
+      call watch%lap(stage_yielding)
+      call watch%solved(self%now, self%converged)
+      if (.not. self%converged .and. self%now%residual > least_residual) cycle
+      least_residual = self%now%residual
+      call move_alloc(found, self%state)
+      if (self%converged) return
+      if (allocated(self%state%point)) deallocate (self%state%point)
+      allocate (found)
+    end do
+  end subroutine iterate
+
+  !> The stiffness about a state that was found before, made once more.
+  subroutine return_to(self, scene, state, watch)
+    class(equilibrium_iteration), intent(inout) :: self
+    type(planned_scene), intent(in) :: scene
+    type(scene_state), intent(in) :: state
+    class(observer), intent(inout) :: watch
+    class(secant_method), allocatable :: method
+
+    self%about = state
+    self%stiff = self%stiff .and. self%plan%method == method_inistr   ! that is the elastic one, at any load
+    call choose_method(self%plan, method)
+    call self%set_law(scene, method, watch)
+  end subroutine return_to
+
+  !> Bodies that have been factored.
+  pure integer function factorizations(self)
+    class(equilibrium_iteration), intent(in) :: self
+
+    factorizations = self%linear%factorizations - self%factored_before
+  end function factorizations
+
+  !> Hand on what another load case may go on from.
+  subroutine finish(self, is_equilibrium, linear, virgin)
+    class(equilibrium_iteration), intent(inout) :: self
+    logical, intent(in) :: is_equilibrium   !! the last contacts belong to a state of equilibrium
+    type(linear_problem), allocatable, intent(inout) :: linear, virgin
+
+    if (is_equilibrium) call move_alloc(self%touching, self%linear%touching)
+    call move_alloc(self%linear, linear)
+    call move_alloc(self%virgin, virgin)
+  end subroutine finish
+
+  !> The method, which knows nothing yet: so it begins at each load.
+  subroutine choose_method(plan, method)
+    type(iteration_plan), intent(in) :: plan
+    class(secant_method), allocatable, intent(out) :: method
+
+    select case (plan%method)
+    case (method_newton)
+      allocate (newton_method :: method)
+    case (method_inistr)
+      allocate (initial_stress_method :: method)
+    case default
+      allocate (secant_method :: method)
+    end select
+    if (mixes(plan)) allocate (method%mixer)
+  end subroutine choose_method
+
+  !> Does the method mix its last states?
+  pure logical function mixes(plan)
+    type(iteration_plan), intent(in) :: plan
+
+    mixes = any(plan%method == [method_modsec, method_inistr])
+  end function mixes
+
+  !> The law about the last state, and the stiffness for it, unless a body has none that can be factored.
+  subroutine set_law(self, scene, method, watch)
+    class(equilibrium_iteration), intent(inout) :: self
+    type(planned_scene), intent(in) :: scene
+    class(secant_method), intent(inout) :: method
+    class(observer), intent(inout) :: watch
+
+    self%failed_body = 0
+    method%blend = 0.0_wp
+    call linearise(scene, method, self%about, self%linear, watch)
+    if (self%stiff .and. (self%plan%method == method_inistr .or. self%elastic .and. self%yielded == 0)) return
+    self%elastic = self%yielded == 0
+    call factor_law(scene, method, self%about, self%linear, self%failed_body, watch)
+    self%stiff = .true.
+    if (self%keeps .and. self%elastic .and. self%linear%materials%yields .and. &
+        .not. allocated(self%virgin)) self%virgin = self%linear
+  end subroutine set_law
+
+  !> Add a solve to the history, what it has changed and left. Was it the last, or a further one by tangent?
+  subroutine judge(self, scene, found, watch)
+    class(equilibrium_iteration), intent(inout) :: self
+    type(planned_scene), intent(in) :: scene
+    type(scene_state), allocatable, intent(inout) :: found
+    class(observer), intent(inout) :: watch
+
+    call self%measure(scene, found)
+    associate (now => self%now)
+      call self%estimate%estimate(self%about, found, self%force, mixes(self%plan), now)
+      if (now%yielded + self%yielded == 0 .or. now%residual <= solved_to .and. now%error < 0.0_wp) then
+        now%error = merge(now%change, 0.0_wp, now%iteration > 1)   ! what changes is rounding, if anything
+        now%force_error = merge(now%force_change, 0.0_wp, now%iteration > 1)
+      end if
+    end associate
+    call self%keep(found)
+    self%converged = self%is_over()
+    if (self%converged .and. self%wants_test(scene)) call self%step_by_tangent(scene, found, watch)
+  end subroutine judge
+
+  !> Put a solve into the history. Its pivots stand by themselves: a list of lists would be copied slowly.
+  subroutine keep(self, found)
+    class(equilibrium_iteration), intent(inout) :: self
+    type(scene_state), intent(in) :: found
+
+    self%history = [self%history, self%now]
+    if (self%now%kept > 0) self%pivot = [self%pivot, found%contact%history]
+  end subroutine keep
+
+  !> How far the state found is from the last, and its stresses from the curve. Equilibrium and contact are
+  !! exact in each solve: that distance is all that is left of the scene's equations.
+  subroutine measure(self, scene, found)
+    class(equilibrium_iteration), intent(inout) :: self
+    type(planned_scene), intent(in) :: scene
+    type(scene_state), intent(inout) :: found         !! its points are set
+
+    associate (now => self%now, materials => self%linear%materials)
+      now%load_factor = self%load_factor
+      now%change = ratio(maxval(abs(found%displacement - self%about%displacement)), &
+                         maxval(abs(found%displacement)))
+      now%force_change = ratio(maxval(abs(found%contact%force - self%force)), maxval(found%contact%force))
+      now%touching = count(found%contact%touching)
+      now%pivots = found%contact%pivots
+      now%kept = size(found%contact%history)
+      if (.not. materials%yields) return
+      found%point = materials%states(found%strain)
+      call materials%measure(scene%model, found%point, found%point_stress, now%residual, now%yielded)
+    end associate
+  end subroutine measure
+
+  !> Is the iteration over? It is when displacements neither change nor are estimated to be off by more than
+  !! the tolerance. Where nothing has yielded, the first solve was exact; and where stresses are on their
+  !! curves to rounding while the changes fall no more, rounding allows no smaller ones.
+  pure logical function is_over(self)
+    class(equilibrium_iteration), intent(in) :: self
+
+    associate (now => self%now, plan => self%plan)
+      is_over = now%yielded + self%yielded == 0
+      if (now%change <= plan%tolerance .and. now%residual <= plan%off_curve) is_over = is_over .or. &
+        now%residual <= solved_to .or. now%error >= 0.0_wp .and. &
+        self%estimate%doubt*now%error <= plan%tolerance
+      if (now%iteration > 3 .and. now%residual <= solved_to .and. now%change <= stagnant) &
+        is_over = is_over .or. now%change >= self%history(size(self%history) - 2)%change
+    end associate
+  end function is_over
+
+  !> Is the estimate of what is to come to be tested, and is there a tangent to test it with?
+  pure logical function wants_test(self, scene)
+    class(equilibrium_iteration), intent(in) :: self
+    type(planned_scene), intent(in) :: scene
+
+    associate (now => self%now, method => self%plan%method)
+      wants_test = method /= method_secant .or. now%iteration <= few_solves .or. &
+                   now%iteration > many_solves .or. now%error > slow*now%change .or. &
+                   any(scene%model%prescribed /= 0.0_wp)
+      wants_test = wants_test .and. now%residual > solved_to .and. method /= method_newton .and. &
+                   .not. scene%model%controls%paper_ratio
+    end associate
+  end function wants_test
+
+  !> The last step is one by the tangent, whose change is what was left. If that is more than the tolerance,
+  !! all is as it was before, but for the doubt in estimates.
+  subroutine step_by_tangent(self, scene, found, watch)
+    class(equilibrium_iteration), intent(inout) :: self
+    type(planned_scene), intent(in) :: scene
+    type(scene_state), allocatable, intent(inout) :: found
+    class(observer), intent(inout) :: watch
+    type(newton_method) :: tangent
+    type(scene_state), allocatable :: next
+    type(scene_state) :: before
+    type(iteration_record) :: last
+
+    self%converged = .false.
+    if (self%now%iteration == scene%model%controls%most_iterations) return
+    before = self%about
+    last = self%now
+    self%about = found
+    self%force = found%contact%force
+    self%yielded = self%now%yielded
+    self%now%iteration = self%now%iteration + 1
+    self%now%change = huge(1.0_wp)
+    allocate (next)
+    self%stiff = .false.   ! by no tangent, before and after
+    call self%set_law(scene, tangent, watch)
+    if (self%failed_body == 0 .and. tangent%blend < too_stiff) then
+      call self%linear%solve(scene, self%load_factor, found%contact%touching, next, watch)
+      if (next%contact%state == contact_solved) call self%measure(scene, next)
+    end if
+    self%failed_body = 0
+    self%converged = self%now%change <= self%plan%tolerance .and. self%now%residual <= self%plan%off_curve
+    if (self%converged) then
+      self%now%error = self%now%change
+      self%now%force_error = self%now%force_change
+      self%now%by_tangent = .true.
+      call self%keep(next)
+      call move_alloc(next, found)
+    else
+      self%estimate%doubt = max(2.0_wp*self%estimate%doubt, min(self%now%change/last%error, most_doubt))
+      self%now = last
+      self%about = before
+      self%linear%law = elastic_law(self%linear%materials)
+    end if
+    self%stiff = .false.
+  end subroutine step_by_tangent
+end module epcont_plasticity_equilibrium_iteration

@@ -1,0 +1,81 @@
+!> How far an iteration still is from where it goes, from what its last steps were worth.
+!>
+!> An iteration takes x to g(x). To first order a step dx changes g by J dx and the rest g - x by (J - 1) dx,
+!> so that of a rest r there is J/(1 - J) r to come in g. How much that is at most, the steps behind tell:
+!> |dg|/|d(g - x)|. In an iteration without mixing it is the sum of the changes to come, each the last times
+!> the rate at which they fall; its last steps are the slowest.
+module epcont_plasticity_error_estimate
+  use epcont_base_kinds, only: wp
+  use epcont_linear_scene_state, only: scene_state
+  use epcont_plasticity_observer, only: iteration_record
+  implicit none
+  private
+  public :: error_estimate, ratio
+
+  type :: error_estimate
+    !> The last displacements, g of x, and g - x [length] [directions, nodes]
+    real(wp), allocatable, private :: displacement(:, :), rest(:, :)
+    !> By how much displacements, and contact forces, had changed: |dg|/|d(g - x)| of the steps at this load
+    !! [1], [force/length]
+    real(wp), allocatable, private :: gain(:), force_gain(:)
+    real(wp) :: doubt = 1.0_wp   !! times what was estimated is what a tangent step has shown
+  contains
+    procedure :: begin
+    procedure :: estimate
+  end type error_estimate
+
+contains
+
+  !> The first step at a load comes next.
+  pure subroutine begin(self)
+    class(error_estimate), intent(inout) :: self
+
+    self%gain = [real(wp) ::]
+    self%force_gain = [real(wp) ::]
+    self%doubt = 1.0_wp
+  end subroutine begin
+
+  !> The errors of a step that has led from x to g; negative where they are not known.
+  subroutine estimate(self, from, to, force, mixes, now)
+    class(error_estimate), intent(inout) :: self
+    type(scene_state), intent(in) :: from, to      !! x and g
+    real(wp), intent(in) :: force(:)               !! the contact forces before [force] [pairs]
+    logical, intent(in) :: mixes                   !! the iteration mixes its last states
+    type(iteration_record), intent(inout) :: now   !! of this step; gets the errors
+    real(wp), allocatable :: last_rest(:, :)
+    real(wp) :: step, largest
+    integer :: first
+
+    call move_alloc(self%rest, last_rest)
+    self%rest = to%displacement - from%displacement
+    largest = maxval(abs(self%rest))
+    now%error = -1.0_wp
+    now%force_error = -1.0_wp
+    if (now%iteration > 1) then
+      associate (u => to%displacement, now_force => to%contact%force)
+        step = maxval(abs(self%rest - last_rest))
+        self%gain = [self%gain, ratio(maxval(abs(u - self%displacement)), step)]
+        self%force_gain = [self%force_gain, ratio(maxval([0.0_wp, abs(now_force - force)]), step)]
+        if (largest < maxval(abs(last_rest)) .or. largest == 0.0_wp) then
+          first = merge(1, max(1, size(self%gain) - 1), mixes)
+          ! A step may by chance be short where much is to come: as long as stresses are off their curves, no
+          ! less than the last change.
+          now%error = max(ratio(maxval(self%gain(first:))*largest, maxval(abs(u))), &
+                          min(now%change, now%residual))
+          now%force_error = 0.0_wp
+          if (any(now_force > 0.0_wp)) &
+            now%force_error = max(ratio(maxval(self%force_gain(first:))*largest, maxval(now_force)), &
+                                  min(now%force_change, now%residual))
+        end if
+      end associate
+    end if
+    self%displacement = to%displacement
+  end subroutine estimate
+
+  !> a/b, 0 where both are 0; finite.
+  pure real(wp) function ratio(a, b)
+    real(wp), intent(in) :: a, b
+
+    ratio = max(a, 0.0_wp)/max(b, tiny(b)*max(a, 1.0_wp))
+  end function ratio
+end module epcont_plasticity_error_estimate

@@ -1,0 +1,110 @@
+!> The load path: the loads are applied in equal load steps. Each is iterated to equilibrium, and in flow
+!> theory committed before the next one.
+module epcont_plasticity_load_path
+  use epcont_assembly_bodies, only: weak_pivot
+  use epcont_base_kinds, only: wp
+  use epcont_contact_problem, only: contact_solved, pivot_record
+  use epcont_linear_linear_problem, only: linear_problem
+  use epcont_linear_scene_state, only: committed_step, scene_state
+  use epcont_plan_iteration_plan, only: iteration_plan
+  use epcont_plan_planned_scene, only: planned_scene
+  use epcont_plasticity_equilibrium_iteration, only: equilibrium_iteration
+  use epcont_plasticity_observer, only: iteration_record, observer
+  use epcont_plasticity_unloading, only: find_unloaded
+  use epcont_system_stopwatch, only: stage_stiffness, stage_yielding
+  implicit none
+  private
+  public :: followed_loads, follow_loads
+
+  !> What came of the loads, and how: a state, the answer or what came nearest to one.
+  type, extends(scene_state) :: followed_loads
+    real(wp) :: load_factor = 0.0_wp       !! part of the loads for which the state is
+    logical :: converged = .false.         !! all loads, to the tolerance of the iteration
+    logical :: carried = .false.           !! a part of them, to that tolerance
+    logical :: runs_away = .false.         !! no equilibrium: the displacements grow without end
+    integer :: failed_body = 0             !! body that could not be factored
+    logical :: lacks_memory = .false.      !! that was for want of memory
+    integer :: factorizations = 0          !! of bodies
+    real(wp) :: condition = 1.0_wp         !! of the stiffness, estimated in the 1-norm
+    type(weak_pivot) :: weakest            !! of the stiffness
+    type(iteration_record), allocatable :: history(:)   !! every solve
+    type(pivot_record), allocatable :: pivot(:)         !! those that are kept of each, one after the other
+    !> Flow theory: the load steps before the last, for the certificate [any]
+    type(committed_step), allocatable :: committed(:)
+    integer :: unloaded = 0                !! elements whose strain fell, after yielding, as the load grew
+    integer :: first_unloaded = 0          !! one of them
+  contains
+    procedure, private :: keep_step
+  end type followed_loads
+
+contains
+
+  !> Load step by load step to the answer. Of several load cases the first is one without `linear`; the others
+  !! have it from the one before, and the factors of the unloaded state.
+  subroutine follow_loads(scene, plan, keeps, linear, virgin, answer, watch)
+    type(planned_scene), intent(in) :: scene                   !! what is loaded
+    type(iteration_plan), intent(in) :: plan                   !! how; it may differ from the scene's
+    logical, intent(in) :: keeps                               !! another load case may follow
+    type(linear_problem), allocatable, intent(inout) :: linear   !! as the last solve left it
+    !> With factors of the unloaded state, where these will be wanted and the bodies yield
+    type(linear_problem), allocatable, intent(inout) :: virgin
+    type(followed_loads), intent(out) :: answer                !! what came of it
+    class(observer), intent(inout) :: watch                    !! takes the time, and is told of each solve
+    type(equilibrium_iteration) :: iteration
+    real(wp) :: strained(scene%model%points)   ! e of points that yielded in the last load step, else 0
+    integer :: step
+
+    iteration%plan = plan
+    iteration%keeps = keeps
+    call move_alloc(linear, iteration%linear)
+    call move_alloc(virgin, iteration%virgin)
+    call iteration%begin(scene)
+    call watch%lap(stage_stiffness)
+    allocate (answer%committed(0))
+    strained = 0.0_wp
+    do step = 1, plan%load_steps
+      if (scene%model%controls%flow_theory .and. step > 1) then
+        call iteration%linear%materials%commit(answer%strain)
+        answer%committed = [answer%committed, committed_step(answer%load_factor, answer%deformation)]
+      end if
+      call iteration%iterate(scene, real(step, wp)/plan%load_steps, watch)
+      call answer%keep_step(scene, iteration, watch)
+      if (.not. iteration%converged) exit
+      if (plan%load_steps > 1 .and. .not. scene%model%controls%flow_theory) &
+        call find_unloaded(scene%model, answer%point, plan%tolerance, strained, answer%unloaded, &
+                           answer%first_unloaded)
+      call watch%lap(stage_yielding)
+    end do
+    answer%converged = iteration%converged
+    call move_alloc(iteration%history, answer%history)
+    call move_alloc(iteration%pivot, answer%pivot)
+    call iteration%finish(answer%failed_body == 0 .and. answer%contact%state == contact_solved, &
+                          linear, virgin)
+  end subroutine follow_loads
+
+  !> Take what a load step has found. Of a load that was not carried nothing is kept, if one was before.
+  subroutine keep_step(self, scene, iteration, watch)
+    class(followed_loads), intent(inout) :: self
+    type(planned_scene), intent(in) :: scene
+    type(equilibrium_iteration), intent(inout) :: iteration
+    class(observer), intent(inout) :: watch
+
+    self%runs_away = iteration%runs_away
+    self%factorizations = iteration%factorizations()
+    self%failed_body = iteration%failed_body
+    self%lacks_memory = any(iteration%linear%body%lacks_memory)
+    if (self%failed_body > 0) return
+    associate (contact => iteration%state%contact)
+      if (.not. (iteration%converged .or. .not. self%carried .or. contact%state /= contact_solved)) then
+        call iteration%return_to(scene, self%scene_state, watch)
+        if (iteration%failed_body > 0) self%condition = huge(1.0_wp)
+        return
+      end if
+    end associate
+    call self%take(iteration%state)
+    if (self%contact%state /= contact_solved) return
+    self%load_factor = iteration%load_factor
+    self%weakest = iteration%linear%weakest()
+    self%carried = iteration%converged
+  end subroutine keep_step
+end module epcont_plasticity_load_path
