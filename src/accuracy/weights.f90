@@ -60,13 +60,14 @@ module epcont_accuracy_weights
     !! mean over that, short of the pressure at the end: of a straight rise by half of it, of a steeper one by
     !! more (columns pressed at a corner: score_by_chance.py, "stack").
     beyond_mean = 0.625_wp, &
-    !> Largest pressure: of the largest difference between the pressures on the two lines near the peak. If
-    !! the slave line is finer than the master line, its pressure oscillates from master node to master node
-    !! (crowned punches on plates: score_crowned.py).
-    lines_differ = 0.6_wp, &
-    !> Part of the largest pressure by which they may differ: on six-node sides nodal forces swing by a per
+    !> Largest pressure: of the largest difference between the pressures on the two lines near the peak, and
+    !! of how much the pressure oscillates from side to side there. If the slave line is finer than the master
+    !! line, or quadratic on a linear one, its pressure oscillates from master node to master node (crowned
+    !! punches on plates: score_crowned.py).
+    lines_differ = 0.6_wp, oscillates = 0.2_wp, &
+    !> Parts of the largest pressure up to which neither counts: on six-node sides nodal forces swing by a per
     !! cent, though the force on each side is right (score.py, pins in lugs).
-    lines_agree = 0.01_wp, &
+    tolerated = 0.01_wp, &
     !> What flattens waves of the gap, over E* r: waves 2 d long take a pressure of pi E* a/(2 d). Theory
     !! (Westergaard 1939); tests/accuracy/test_waves.
     waves_flattened = acos(-1.0_wp)/16.0_wp, &

@@ -1,15 +1,16 @@
 !> Errors of a zone's largest pressure and of its half-width.
 !>
-!> Of the pressure five things tell: how far the peak is off a parabola through the nearest pairs, off the
+!> Of the pressure six things tell: how far the peak is off a parabola through the nearest pairs, off the
 !> normal stress that the smooth strains of both sides give there, how many pairs the zone has, what part of
-!> the energy the mesh is off by, and how far the pressures on the two lines differ; of the half-width the
-!> spacing at its ends, and the energy. What each counts is measured (tests/accuracy). Where the pressure has
-!> no limit, or the zone too few pairs, nothing is said of it.
+!> the energy the mesh is off by, how far the pressures on the two lines differ, and how much the pressure
+!> oscillates from pair to pair; of the half-width the spacing at its ends, and the energy. What each counts
+!> is measured (tests/accuracy). Where the pressure has no limit, or the zone too few pairs, nothing is said
+!> of it.
 module epcont_accuracy_zone_error
   use epcont_accuracy_limits, only: edge_pairs, has_tip
   use epcont_accuracy_surface_line, only: elements_behind, find_waves, first_element, surface_line
-  use epcont_accuracy_weights, only: beyond_mean, estimate_weights, lines_agree, lines_differ, other_side, &
-      stretched, waves_alone, weights_of
+  use epcont_accuracy_weights, only: beyond_mean, estimate_weights, lines_differ, oscillates, other_side, &
+      stretched, tolerated, waves_alone, weights_of
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: dependent, least_difference, no_effect
   use epcont_geometry_plane, only: cross_product
@@ -24,7 +25,8 @@ module epcont_accuracy_zone_error
   integer, parameter :: &
     !> Pairs that the parabola goes through.
     around_peak = 7, &
-    !> Pairs on either side of the peak at which the pressures on the two lines are compared.
+    !> Pairs on either side of the peak at which the pressures on the two lines are compared; sides on either
+    !! side of it on which oscillations count.
     beside_peak = 3, &
     !> Pairs, with those beyond a line of symmetry, that a zone must have for its pressure to be resolved.
     few = 3, &
@@ -148,11 +150,14 @@ contains
     type(zone_error) :: error
     type(zone_end) :: ends(2)
     real(wp), allocatable :: p(:)     !! pressures of its pairs [stress]
+    !> Distance from the peak and pressure of the pairs in their order, with those beyond a line of symmetry;
+    !! of a closed zone half of it on either side of the peak [length], [stress] [2, any]
+    real(wp), allocatable :: row(:, :)
     !> Length of all of it, but for a mean side of one that goes all around; of that the whole way, else 0
     real(wp) :: long, around
     real(wp) :: flattening, largest, spacing
     logical :: mirrored(2), waves
-    integer :: at(2), kind, n
+    integer :: at(2), k, kind, n
 
     n = size(zone%pairs)
     p = answer%pressure(zone%pairs)
@@ -201,7 +206,11 @@ contains
     if (spacing > 0.0_wp .and. maxval(ends%step) > spacing) &
       error%end_resolution = error%resolution*maxval(ends%step)/spacing
     if (flattening > waves_alone*largest .and. .not. error%unbounded) error%resolved = .false.
-    if (error%resolved .and. .not. error%unbounded) error%pressure = pressure_error()
+    if (.not. error%resolved .or. error%unbounded) return
+    at = merge(peak + [-n/2, n/2], merge([2 - n, 2*n - 1], [1, n], mirrored), around > 0.0_wp)
+    allocate (row(2, at(1):at(2)))
+    row(:, :) = reshape([(place_and_pressure(k), k=at(1), at(2))], shape(row))
+    error%pressure = pressure_error()
 
   contains
 
@@ -234,14 +243,15 @@ contains
       near = [(k, k=peak - beside_peak, peak + beside_peak)]
       if (around > 0.0_wp) near = modulo(near - 1, n) + 1
       near = min(max(near, 1), n)
-      apart = max(0.0_wp, maxval(abs(answer%apart(zone%pairs(near)))) - lines_agree*largest)
+      apart = maxval(abs(answer%apart(zone%pairs(near))))
       coarse = 0.0_wp   ! of an even pressure any spacing tells
       if (error%resolution > 0.0_wp) &
         coarse = max(long/max(1, n - 1), depth_behind())/max(spacing, error%half_length)
       from = [off_parabola(), abs(largest - line%smooth_pressure(error%peak))]
       associate (weights => error%weights)
         off = weights%parabola*from(1) + weights%stress*from(2) + weights%smaller*minval(from) + flattening &
-              + lines_differ*apart + sum(ends%short) &
+              + lines_differ*max(0.0_wp, apart - tolerated*largest) &
+              + oscillates*max(0.0_wp, oscillation() - tolerated*largest) + sum(ends%short) &
               + ((weights%spacing + weights%square*error%resolution)*error%resolution &
                  + weights%graded*max(0.0_wp, coarse - stretched*error%resolution) &
                  + weights%pressure_energy*energy)*largest
@@ -268,29 +278,60 @@ contains
       end do
     end function depth_behind
 
+    !> Distance from the peak and pressure of the k-th pair; of one before the first or after the last as
+    !! mirrored at a line of symmetry, or of the other end of a closed zone.
+    pure function place_and_pressure(k) result(both)
+      integer, intent(in) :: k
+      real(wp) :: both(2)
+      integer :: pair
+
+      pair = modulo(k - 1, n) + 1
+      both = [zone%along(pair) + around*((k - pair)/n), p(pair)]
+      if (around <= 0.0_wp .and. k < 1) both = [-zone%along(2 - k), p(2 - k)]
+      if (around <= 0.0_wp .and. k > n) both = [2.0_wp*zone%along(n) - zone%along(2*n - k), p(2*n - k)]
+      both(1) = both(1) - zone%along(peak)
+    end function place_and_pressure
+
+    !> How much the pressure oscillates near the peak: of two pairs a side apart, one above the straight line
+    !! between the pairs a side before and after it, the other below its own, the smaller of both distances;
+    !! the largest of all. At the last pair of the zone, where contact ends within a side, it says nothing.
+    !! [stress]
+    pure real(wp) function oscillation()
+      real(wp) :: above(lbound(row, 2):ubound(row, 2))
+      integer :: k, side
+
+      above = 0.0_wp
+      associate (first => lbound(row, 2), last => ubound(row, 2))
+        side = model%kinds(kind)%degree
+        do k = max(peak - side*beside_peak, first + side + 1), min(peak + side*beside_peak, last - side - 1)
+          associate (x => row(1, k - side:k + side:side), y => row(2, k - side:k + side:side))
+            if (x(3) > x(1)) above(k) = y(2) - (y(1)*(x(3) - x(2)) + y(3)*(x(2) - x(1)))/(x(3) - x(1))
+          end associate
+        end do
+        associate (one => above(:last - side), next => above(first + side:))
+          oscillation = max(0.0_wp, maxval(min(abs(one), abs(next)), mask=one*next < 0.0_wp))
+        end associate
+      end associate
+    end function oscillation
+
     !> How far the peak is off the least-squares parabola of p**2 through the pairs nearest to it, or short of
     !! its top, if that is more; mirrored ones and those the other way around too; of those that are as near
     !! all. Of too few pairs for one: what Hertz's pressure falls by over half a spacing [stress].
     pure real(wp) function off_parabola() result(off)
-      real(wp) :: x(3*n), y(3*n), m(0:4), reach, right(0:2), square
-      logical :: left(3*n)
+      real(wp) :: m(0:4), reach, right(0:2), square
+      real(wp), dimension(size(row, 2)) :: x, y
+      logical :: left(size(row, 2))
       integer :: i, k
 
-      y = [p, p, p]**2
-      x = [zone%along, -zone%along, 2.0_wp*zone%along(n) - zone%along] - zone%along(peak)
-      left = [spread(.true., 1, n), spread(mirrored(1), 1, n), spread(mirrored(2), 1, n)]
-      left([n + 1, 3*n]) = .false.   ! they are on the lines of symmetry
-      if (around > 0.0_wp) then
-        x = [zone%along, zone%along - around, zone%along + around] - zone%along(peak)
-        left = abs(x) <= (0.5_wp + no_effect)*around
-      end if
-      x = x/max(spacing, tiny(1.0_wp))
+      x = row(1, :)/max(spacing, tiny(1.0_wp))
+      y = row(2, :)**2
       off = largest*error%resolution**2/8.0_wp
-      if (count(left) <= 3) return
+      left = .true.
+      if (size(left) <= 3) return
       m = 0.0_wp
       right = 0.0_wp
       reach = 0.0_wp
-      do i = 1, count(left)
+      do i = 1, size(left)
         k = minloc(abs(x), mask=left, dim=1)
         if (i > around_peak .and. abs(x(k)) > (1.0_wp + no_effect)*reach) exit
         reach = abs(x(k))
