@@ -107,7 +107,7 @@ contains
               k = findloc(line%neighbour(:, pair), 0, dim=1)
               if (k == 0) cycle
               line%neighbour(k, pair) = pair_of_side(side, beside)
-              line%part(k, pair) = share(own)
+              if (line%neighbour(k, pair) > 0) line%part(k, pair) = share(own)
             end if
           end associate
         end do
@@ -225,22 +225,21 @@ contains
       end do
     end function run_on
 
-    !> Neighbours and areas of the pairs along a side: half of each piece between two of them. Where a node of
-    !! the side has no pair, the pieces at its end belong to none.
+    !> Neighbours and areas of the pairs along a side: half of each piece between two of them, as seen along
+    !! their own normals. If a node of the side has no pair, the pieces at its end belong to none.
     subroutine link(segment, run)
       integer, intent(in) :: segment   !! the side
       integer, intent(in) :: run(:)
-      real(wp) :: apart, share(3), width
+      real(wp) :: apart, share(3), width(size(run))
       integer :: i, k, pair
 
       associate (element => contact%slave%element(segment), side => contact%slave%segment(:, segment), &
                  chord => contact%slave%chord_length(segment))
-        i = findloc(run >= contact%first_of_master, .true., dim=1)   ! whose normal is the side's
-        width = sum(shares_of_nodes(model, element, side, model%normal(:, run(i))))/chord
         do i = 1, size(run)
           pair = run(i)
-          if (pair >= contact%first_of_master) cycle
           share = shares_of_nodes(model, element, side, model%normal(:, pair))
+          width(i) = sum(share)/chord
+          if (pair >= contact%first_of_master) cycle
           if (is_along(side, model%normal(:, pair))) &
             line%tributary(pair) = line%tributary(pair) - sum(share, mask=side == line%node(pair))
           do k = 1, 2
@@ -253,7 +252,7 @@ contains
         do i = 1, size(run) - 1
           apart = norm2(foot_of(run(i + 1)) - foot_of(run(i)))
           if (apart < close*(chord/merge(2, 1, side(3) > 0))) call places%join(run(i), run(i + 1))
-          call add_piece(run(i:i + 1), 0.5_wp*width*apart)
+          call add_piece(run(i:i + 1), 0.5_wp*width(i:i + 1)*apart)
         end do
       end associate
     end subroutine link
@@ -261,7 +260,7 @@ contains
     !> Two pairs are neighbours, and a piece of the boundary between them belongs to each.
     subroutine add_piece(pairs, piece)
       integer, intent(in) :: pairs(2)
-      real(wp), intent(in) :: piece   !! of either [length**2]
+      real(wp), intent(in) :: piece(2)   !! of each [length**2]
       integer :: i, k, pair
 
       do i = 1, 2
@@ -270,8 +269,8 @@ contains
         if (k == 0) k = findloc(line%neighbour(:, pair), 0, dim=1)
         if (k == 0) k = 2
         line%neighbour(k, pair) = pairs(3 - i)
-        line%part(k, pair) = line%part(k, pair) + piece
-        line%tributary(pair) = line%tributary(pair) + piece
+        line%part(k, pair) = line%part(k, pair) + piece(i)
+        line%tributary(pair) = line%tributary(pair) + piece(i)
       end do
     end subroutine add_piece
   end function find_contact_line

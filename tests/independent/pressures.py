@@ -175,8 +175,8 @@ def chains(sides, x, stands_on, feet):
 
 
 def divide(sides, x, pairs, own, group, stands_on, feet):
-    """Where nodes of the master stand on a side they share its area with the slave's: each piece belongs by halves to its ends. Of those
-    sides what is beside each pair; and the pairs that stand at one place, by twos."""
+    """Where nodes of the master stand on a side they share its area with the slave's: each piece belongs by halves to its ends, each of which sees
+    it along its own normal. Of those sides what is beside each pair; and the pairs that stand at one place, by twos."""
 
     def at(node, ends):
         """The node's pair against what the side faces: of several the one whose normal is most across it."""
@@ -188,8 +188,7 @@ def divide(sides, x, pairs, own, group, stands_on, feet):
     divided, close = {}, []
     for ends, order in chains(sides, x, of_group, feet):
         a, b = sides[ends].nodes[:2]
-        first = next(k for _, k, _ in order if k is not None)
-        width = sum(share(sides[ends], x, pairs[first][1])) / hypot(x[b][0] - x[a][0], x[b][1] - x[a][1])
+        chord = hypot(x[b][0] - x[a][0], x[b][1] - x[a][1])
         run = [(at(node, ends) if k is None else k, place) for node, k, place in order]
         for k, _ in run:
             if k is not None and (ends in own[k] or k in of_group):
@@ -201,8 +200,8 @@ def divide(sides, x, pairs, own, group, stands_on, feet):
             if one is not None and other is not None:
                 piece = hypot(q[0] - p[0], q[1] - p[1])
                 for k in (one, other):
-                    own[k][ends] = own[k].get(ends, 0.0) + width * piece / 2
-                if piece < CLOSE * hypot(x[b][0] - x[a][0], x[b][1] - x[a][1]) / (len(sides[ends].nodes) - 1):
+                    own[k][ends] = own[k].get(ends, 0.0) + sum(share(sides[ends], x, pairs[k][1])) * piece / chord / 2
+                if piece < CLOSE * chord / (len(sides[ends].nodes) - 1):
                     close.append((one, other))
     return divided, close
 
