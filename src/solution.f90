@@ -87,7 +87,7 @@ contains
       call check_memory(self%expected%bytes, limit, error)
       if (allocated(error)) return
       self%iteration%threads = plan_threads(self%numbering, self%expected%bytes, granted_threads())
-      call watch%expect(self%iteration, self%model%controls%most_iterations, self%expected)
+      call watch%expect(self%expected%operations)
       call analyse(self%planned_scene, self%kept, self%answer, self%certificate, self%accuracy, watch, &
                    failed)
       if (failed) then

@@ -19,15 +19,7 @@ module epcont_app_case_streams
   use epcont_system_threads, only: granted_threads, use_one_thread_each
   implicit none
   private
-  public :: peak_of, run_names, solve_pattern
-
-  !> Least number of cases of a stream, in cases and in square roots of all cases: copying the factors at its
-  !! begin costs half a case.
-  integer, parameter :: least_cases = 12
-  real(wp), parameter :: least_roots = 2.4_wp
-  !> Scenes that take more have one stream [bytes]: threads share their fronts, and each further stream takes
-  !! as much again.
-  integer(i8), parameter :: large = 1000000000_i8
+  public :: run_names, solve_pattern
 
   !> What a run is called, and may take.
   type :: run_names
@@ -64,7 +56,7 @@ contains
     do
       call solve_case(run, 1, watch, error)
       if (allocated(error) .or. size(cases) == 1) return
-      stream = streams_of(size(cases), run%expected%bytes)
+      stream = streams_of(size(cases), run%expected%streams(size(cases)))
       if (size(stream) == 1) then
         call solve_cases(run, 2, size(cases), watch, error)
         if (allocated(error) .or. .not. run%replanned) return
@@ -160,29 +152,13 @@ contains
     end subroutine solve_stream
   end subroutine solve_pattern
 
-  !> Memory at the peak on one thread: if a pattern has several streams, that of a stream and what they all go
-  !! on from [bytes].
-  pure integer(i8) function peak_of(run) result(bytes)
-    type(run_results), intent(in) :: run
-    integer :: p
-
-    bytes = run%expected%bytes
-    do p = 1, run%cases%patterns
-      if (size(streams_of(size(run%cases%of_pattern(p)), run%expected%bytes)) > 1) &
-        bytes = run%expected%bytes + run%expected%kept_bytes
-    end do
-  end function peak_of
-
   !> Streams of all cases of a pattern but the first.
-  pure function streams_of(cases, bytes) result(stream)
+  pure function streams_of(cases, count) result(stream)
     integer, intent(in) :: cases        !! of the pattern
-    integer(i8), intent(in) :: bytes    !! of memory that its scene takes, as forecast
+    integer, intent(in) :: count        !! of streams
     type(case_stream), allocatable :: stream(:)
-    integer :: count, s
+    integer :: s
 
-    count = 1
-    ! Their length grows with their number: neither copies nor threads without work are many.
-    if (bytes <= large) count = max(1, (cases - 1)/max(least_cases, nint(least_roots*sqrt(real(cases, wp)))))
     allocate (stream(count))
     do s = 1, count
       stream(s)%from = 2 + (s - 1)*(cases - 1)/count

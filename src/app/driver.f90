@@ -1,9 +1,8 @@
 !> One deck from file to results.
 module epcont_app_driver
   use epcont_app_arguments, only: arguments_type, stem_of
-  use epcont_app_case_streams, only: peak_of, run_names, solve_pattern
+  use epcont_app_case_streams, only: run_names, solve_pattern
   use epcont_app_case_words, only: case_words
-  use epcont_app_forecast_text, only: forecast_text
   use epcont_app_process, only: print_error, print_text
   use epcont_app_progress_display, only: progress_type, timing_text
   use epcont_base_diagnostic, only: diagnostics
@@ -13,7 +12,6 @@ module epcont_app_driver
   use epcont_build_build, only: build_model, tell
   use epcont_deck_deck, only: deck_type, read_deck
   use epcont_deck_render, only: render, render_notes
-  use epcont_linalg_rate, only: measured_rate
   use epcont_model_load_cases, only: load_cases
   use epcont_plan_planned_scene, only: planned_scene
   use epcont_report_file, only: file_lock, lock_files, unlock_files
@@ -84,10 +82,7 @@ contains
         if (arguments%asks('--plan')) call say_plans()
       end if
       call print_error(render(run%faults, run%deck%source))
-      if (.not. writes) then
-        if (.not. arguments%asks('--check')) call say_forecast()
-        return
-      end if
+      if (.not. writes) return
       run%deck_notes = render_notes(run%faults, run%deck%source)
       if (run%cases%patterns == 1) call run%deck%forget_text()
       call solve_patterns()
@@ -156,13 +151,6 @@ contains
         end associate
       end do
     end subroutine say_words
-
-    !> What the run would take on this machine: on standard error, since plans are compared.
-    subroutine say_forecast()
-      call print_error(name//': '//forecast_text( &
-        run%planned_scene, size(run%cases%case), run%cases%patterns, peak_of(run), &
-        run%rows_of_tables(arguments%asks('--tables')), sum(watch%spent(2, :)), measured_rate())//newline)
-    end subroutine say_forecast
 
     !> Read and check.
     subroutine prepare()

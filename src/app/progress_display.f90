@@ -4,10 +4,6 @@ module epcont_app_progress_display
   use epcont_app_process, only: print_error, terminal_columns
   use epcont_base_kinds, only: i8, wp
   use epcont_base_text, only: formatted, newline, short_real, text_of
-  use epcont_plan_forecast, only: forecast_type
-  use epcont_plan_iteration_plan, only: iteration_plan
-  use epcont_plan_run_time, only: foresee, likely_rate
-  use epcont_plasticity_expectation, only: expectation_type, new_expectation
   use epcont_plasticity_observer, only: iteration_record, observer
   use epcont_report_columns, only: rounding_number
   use epcont_system_stopwatch, only: stage_name, stages, stopwatch
@@ -15,15 +11,15 @@ module epcont_app_progress_display
   private
   public :: progress_type, progress_line, duration, timing_text
 
-  !> Nobody waits for runs that are shorter [s].
-  real(wp), parameter :: short_run = 1.0_wp
+  !> Run time below which no progress is shown [s], and operations of a solve below which none is before it.
+  real(wp), parameter :: short_run = 1.0_wp, short_solve = 2.0e10_wp
 
   type, extends(observer) :: progress_type
     character(len=:), allocatable, private :: stem   !! of the deck
     logical, private :: on_terminal = .false.
     real(wp), private :: silent_to = 0.0_wp          !! nothing is shown of runs that are shorter [s]
     integer, private :: drawn = 0                    !! characters that stand on the terminal
-    type(expectation_type), private :: expected
+    real(wp), private :: operations = 0.0_wp         !! of a solve
   contains
     procedure :: begin
     procedure :: expect
@@ -47,14 +43,11 @@ contains
   end subroutine begin
 
   !> The plan is made; solves begin.
-  subroutine expect(self, plan, most_iterations, expected)
+  subroutine expect(self, operations)
     class(progress_type), intent(inout) :: self
-    type(iteration_plan), intent(in) :: plan   !! how yielding is iterated
-    integer, intent(in) :: most_iterations   !! at a load
-    type(forecast_type), intent(in) :: expected   !! work of a solve
+    real(wp), intent(in) :: operations   !! of a solve
 
-    self%expected = new_expectation(plan, most_iterations, &
-                                    foresee(plan, expected, 0, self%elapsed(), likely_rate))
+    self%operations = operations
     call show(self, iteration_record())
   end subroutine expect
 
@@ -64,7 +57,6 @@ contains
     type(iteration_record), intent(in) :: now   !! what it is like
     logical, intent(in) :: over   !! it was the last at its load
 
-    call self%expected%learn(now, over, self%elapsed())
     call show(self, now)
   end subroutine solved
 
@@ -75,10 +67,11 @@ contains
     character(len=:), allocatable :: line
     integer :: width
 
-    if (max(self%elapsed(), self%expected%seconds, self%expected%first_solve) < self%silent_to) return
+    if (self%elapsed() < self%silent_to .and. .not. &
+        (now%iteration == 0 .and. self%operations >= short_solve .and. self%silent_to <= short_run)) return
     ! A line that fills the last column may go on in the next row, where it could not be erased.
     width = merge(terminal_columns() - 1, huge(1), self%on_terminal)
-    line = progress_line(self%stem, self%elapsed(), self%expected, now, width)
+    line = progress_line(self%stem, self%elapsed(), self%operations, now, width)
     if (self%on_terminal) then
       call print_error(achar(13)//line//repeat(' ', max(0, self%drawn - len(line))))
       self%drawn = max(self%drawn, len(line))
@@ -95,26 +88,23 @@ contains
     self%drawn = 0
   end subroutine erase
 
-  !> Time gone and expected, then what the last solve has found, in the words of the listing. Of a line that
-  !! would be longer than `width` the last parts are left out, whole.
-  pure function progress_line(stem, elapsed, expected, now, width) result(text)
+  !> Elapsed time, then the work of a solve, or what the last solve has found, in the words of the listing. Of
+  !! a line that would be longer than `width` the last parts are left out, whole.
+  pure function progress_line(stem, elapsed, operations, now, width) result(text)
     character(len=*), intent(in) :: stem             !! name of the deck
     real(wp), intent(in) :: elapsed                  !! [s]
-    type(expectation_type), intent(in) :: expected   !! how long it will take
+    real(wp), intent(in) :: operations               !! of a solve
     type(iteration_record), intent(in) :: now        !! iteration 0: before the first solve
     integer, intent(in) :: width                     !! of the terminal, in columns
     character(len=:), allocatable :: text, more
     integer :: room
 
     text = stem//': '//duration(elapsed)
-    if (expected%seconds >= 0.0_wp) text = text//' of about '//duration(expected%seconds)
-    more = ''
+    more = ', solving: '//short_real(operations)//' operations'
     if (now%iteration > 0) then
       more = ', iteration '//text_of(now%iteration)//', load factor '//short_real(now%load_factor)// &
              ', change '//rounding_number(now%change)//', yielded '//text_of(now%yielded)//', touching '// &
              text_of(now%touching)
-    else if (expected%seconds < 0.0_wp) then
-      more = ', first solve after about '//duration(expected%first_solve)
     end if
     room = max(0, width - len(text))
     if (len(text) > width) text = text(:width)

@@ -3,11 +3,9 @@ module epcont_plan_forecast
   use epcont_base_error, only: error_type, raise, status_usage
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: i8, wp
-  use epcont_base_partition, only: new_partition, partition
-  use epcont_base_sorting, only: sorted_order
   use epcont_base_text, only: short_real
   use epcont_linalg_levels, only: levels_of_pairs
-  use epcont_model_controls, only: method_inistr, solver_frontal
+  use epcont_model_controls, only: solver_frontal
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
   use epcont_plan_iteration_plan, only: iteration_plan
@@ -21,16 +19,12 @@ module epcont_plan_forecast
     integer(i8) :: bytes = 0            !! that the process will hold at its peak, on one thread
     integer(i8) :: kept_bytes = 0       !! of these, what is kept from load case to load case
     real(wp) :: operations = 0.0_wp     !! floating-point operations of factor, flexibility and simplex
-    real(wp) :: operations_again = 0.0_wp   !! of these, what each solve but the first has, beyond yield
-    real(wp) :: contact = 0.0_wp        !! of these, what the simplex has
     !> Of joined bodies: about the same should they have to be solved apart, with their F
     integer(i8) :: apart_bytes = 0
-    integer :: motions = 0              !! that are free
-    integer :: loops = 0                !! contacts between bodies beyond those that join them (`loops_of`)
-    integer(i8) :: entries = 0          !! of the factors
-    integer(i8) :: entries_again = 0    !! of these, what is factored for each solve
   contains
     procedure :: keep_unloaded
+    procedure :: streams
+    procedure :: peak
   end type forecast_type
 
   real(wp), parameter :: giga = 1.0e9_wp
@@ -48,8 +42,7 @@ module epcont_plan_forecast
   !> And over pairs and free motions; of many bodies over pairs and those of the largest level, beyond which
   !! few unit loads are told apart (measured: stacks, walls), if not over motions twice, for the rigid start.
   integer(i8), parameter :: motion_matrices = 8, level_matrices = 12
-  !> Sets of many bodies that are factored while the first contact is solved, to be doubled and more by what
-  !! `contact_more` of `plan/run_time.f90` adds: an interior path has 10 to 30.
+  !> Sets of many bodies that are factored while the first contact is solved; an interior path has 10 to 30.
   integer, parameter :: path_sets = 8
   !> Unit loads along free motions whose strains are there at once, of one body, when the figures are
   !! assessed: all that a body feels may take more memory than its factor. And what each takes of a node and
@@ -57,11 +50,19 @@ module epcont_plan_forecast
   integer, parameter, public :: loads_at_once = 15
   integer(i8), parameter :: load_of_node = 64, load_of_element = 32
 
-  !> Of joined bodies, each set of contacts and the steps with it: factors made anew, over the first, and what
-  !! an entry of the factor takes in operations of the same time; a half of both, as `contact` counts.
+  !> Of joined bodies, further sets of contacts and the steps with them: factors made again, over the first,
+  !! and what an entry of the factor takes in operations of the same time.
   real(wp), parameter :: of_sets = 1.0_wp, of_solves = 150.0_wp
   !> Sums of forces that errors are told of, mostly: of all, and along x and y on two bodies.
   integer, parameter :: usual_sums = 4
+
+  !> Least number of cases of a stream, in cases and in square roots of all cases: copying the factors at its
+  !! begin costs half a case.
+  integer, parameter :: least_cases = 12
+  real(wp), parameter :: least_roots = 2.4_wp
+  !> Scenes that take more have one stream [bytes]: threads share their fronts, and each further stream takes
+  !! as much again.
+  integer(i8), parameter :: large = 1000000000_i8
 
 contains
 
@@ -105,6 +106,27 @@ contains
     self%bytes = 2*self%bytes - of_process
   end subroutine keep_unloaded
 
+  !> Streams of load cases that share a plan, beside the first case (`app/case_streams.f90`).
+  pure integer function streams(self, cases)
+    class(forecast_type), intent(in) :: self
+    integer, intent(in) :: cases   !! that share the plan
+
+    streams = 1
+    ! Their length grows with their number: neither copies nor threads without work are many.
+    if (self%bytes <= large) &
+      streams = max(1, (cases - 1)/max(least_cases, nint(least_roots*sqrt(real(cases, wp)))))
+  end function streams
+
+  !> Memory of load cases that share a plan, on one thread: if there are several streams, that of a stream and
+  !! of the factors that they all begin with [bytes].
+  pure integer(i8) function peak(self, cases)
+    class(forecast_type), intent(in) :: self
+    integer, intent(in) :: cases   !! that share the plan
+
+    peak = self%bytes
+    if (self%streams(cases) > 1) peak = self%bytes + self%kept_bytes
+  end function peak
+
   !> By blocks, level by level (`contact/level_factor.f90`), each of which has a part in the next. A full set
   !! of one or two bodies is factored twice, and the sets on the way to it are smaller, or little of them is
   !! factored; of many bodies an interior path of full sets may be needed. A pivot of CONRY runs over the
@@ -131,15 +153,12 @@ contains
     integer(i8), allocatable :: own_pairs(:)
     integer, allocatable :: level(:)          ! pairs of each
     integer(i8) :: coupled, done_with, entries, factor, flexibility, last, pairs, passing, unit_loads
-    real(wp) :: operations
     integer :: b
 
     pairs = model%pairs
     level = sizes_of(levels_of_pairs(model%bodies_of_pairs(), model%bodies))
     ! Entries of F, by levels.
     coupled = sum(int(level, i8)*(level + [level(2:), 0]))
-    expected%loops = loops_of(model%bodies_of_pairs(), model%bodies)
-    expected%motions = motions%count
     if (plan%joined) then
       call foresee_joined()
       return
@@ -176,22 +195,14 @@ contains
         end associate
         unit_loads = max(unit_loads, min(int(min(motions%count, loads_at_once), i8), own_pairs(b))* &
                          (load_of_node*size(body%node) + load_of_element*size(body%element)))
-        operations = 4.0_wp*body%border*factor + body%operations
-        expected%operations = expected%operations + operations
-        expected%entries = expected%entries + factor
-        if (body%can_yield .and. plan%method /= method_inistr) then
-          expected%operations_again = expected%operations_again + operations
-          expected%entries_again = expected%entries_again + factor
-        end if
+        expected%operations = expected%operations + 4.0_wp*body%border*factor + body%operations
       end associate
     end do
     entries = entries + max(int(pair_matrices*coupled, i8), flexibility + coupled, passing) + &
               max(int(motions%count, i8)**2, &
                   pairs*min(motion_matrices*motions%count, level_matrices*maxval(level)))
     expected%bytes = real_bytes*entries + beside_matrices() + unit_loads
-    expected%contact = contact_operations(level, plan%by_blocks)
-    expected%operations = expected%operations + expected%contact
-    expected%operations_again = expected%operations_again + expected%contact
+    expected%operations = expected%operations + contact_operations(level, plan%by_blocks)
 
   contains
 
@@ -199,14 +210,10 @@ contains
     !! wait for memory; and all unit loads at once, of motions and of sums of forces.
     subroutine foresee_joined()
       associate (fronts => numbering%body(1)%fronts, loads => motions%count + usual_sums)
-        expected%entries = fronts%entries(kept=.true.)
-        expected%entries_again = expected%entries
-        expected%bytes = real_bytes*expected%entries + beside_matrices() + &
-                         load_of_node*model%nodes*loads
+        entries = fronts%entries(kept=.true.)
+        expected%bytes = real_bytes*entries + beside_matrices() + load_of_node*model%nodes*loads
         expected%apart_bytes = expected%bytes + int(pair_matrices*coupled, i8)*real_bytes
-        expected%contact = of_sets*fronts%operations() + of_solves*expected%entries
-        expected%operations = fronts%operations() + expected%contact
-        expected%operations_again = expected%operations
+        expected%operations = (1.0_wp + of_sets)*fronts%operations() + of_solves*entries
       end associate
     end subroutine foresee_joined
 
@@ -233,34 +240,4 @@ contains
       end do
     end function beside_matrices
   end function forecast
-
-  !> How many contacts of two bodies there are beyond those that make one heap of them: of a stack none, of a
-  !! wall about as many as bodies. There what one body bears depends on many.
-  pure integer function loops_of(body, bodies) result(loops)
-    integer, intent(in) :: body(:, :)      !! of each pair, 0 behind them [any, pairs]
-    integer, intent(in) :: bodies
-    type(partition) :: heaps
-    integer :: low(size(body, 2)), high(size(body, 2)), order(size(body, 2)), count, i
-    integer :: couple(2), before(2)   ! of bodies, and the one before
-    integer, allocatable :: heap(:)   ! of each body
-
-    loops = 0
-    if (size(body, 1) < 2) return
-    low = minval(body(:2, :), dim=1)
-    high = maxval(body(:2, :), dim=1)
-    order = sorted_order(low)
-    order = order(sorted_order(high(order)))
-    heaps = new_partition(bodies)
-    loops = -bodies
-    before = 0
-    do i = 1, size(order)
-      couple = [low(order(i)), high(order(i))]
-      if (couple(1) == 0 .or. all(couple == before)) cycle
-      before = couple
-      loops = loops + 1
-      call heaps%join(couple(1), couple(2))
-    end do
-    call heaps%numbers(heap, count)
-    loops = loops + count
-  end function loops_of
 end module epcont_plan_forecast

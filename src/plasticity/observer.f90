@@ -2,8 +2,6 @@
 !> changes nothing.
 module epcont_plasticity_observer
   use epcont_base_kinds, only: wp
-  use epcont_plan_forecast, only: forecast_type
-  use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_system_stopwatch, only: stopwatch
   implicit none
   private
@@ -36,11 +34,9 @@ module epcont_plasticity_observer
 contains
 
   !> The plan is made; solves begin.
-  subroutine expect(self, plan, most_iterations, expected)
+  subroutine expect(self, operations)
     class(observer), intent(inout) :: self
-    type(iteration_plan), intent(in) :: plan   !! how yielding is iterated
-    integer, intent(in) :: most_iterations     !! at a load
-    type(forecast_type), intent(in) :: expected   !! work of a solve
+    real(wp), intent(in) :: operations   !! of a solve
   end subroutine expect
 
   !> A solve has been done; `over` if it was the last at its load.

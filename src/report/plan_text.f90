@@ -14,7 +14,7 @@ module epcont_report_plan_text
   use epcont_report_names, only: joined, motion_name, when
   implicit none
   private
-  public :: plan_text, megabytes
+  public :: plan_text
 
   !> Free motions, bodies and contacts that are told of one by one, and corners of each line.
   integer, parameter :: most = 20, most_corners = 8
@@ -65,7 +65,7 @@ contains
     if (scene%model%controls%accuracy > 0.0_wp) call say_choices()
     call say_bodies()
     call plan%line('')
-    call say('memory '//megabytes(scene%expected%bytes)// &
+    call say('memory '//megabytes(scene%expected%peak(scene%plan_cases))// &
              when(iteration%joined, ' (up to '//megabytes(scene%expected%apart_bytes)// &
                   ' should bodies have to be solved apart)')// &
              ', operations '//short_real(scene%expected%operations)//when(iteration%yields, ' a solve'))

@@ -23,7 +23,6 @@ module epcont_report_run
     procedure :: case_suffix
     procedure :: wants_nodes
     procedure :: wants_elements
-    procedure :: rows_of_tables
   end type run_results
 
 contains
@@ -61,13 +60,4 @@ contains
 
     wants_elements = all_tables .or. self%deck%subcase(self%case)%stress
   end function wants_elements
-
-  !> Rows of the tables that grow with a scene.
-  pure integer function rows_of_tables(self, all_tables) result(rows)
-    class(run_results), intent(in) :: self
-    logical, intent(in) :: all_tables   !! on the command line
-
-    rows = self%model%pairs + merge(self%model%nodes, 0, self%wants_nodes(all_tables)) + &
-           merge(self%model%elements, 0, self%wants_elements(all_tables))
-  end function rows_of_tables
 end module epcont_report_run

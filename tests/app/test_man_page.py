@@ -89,9 +89,7 @@ class Page(unittest.TestCase):
             for command in commands:
                 self.assertEqual("epcont", command[0])
                 run = subprocess.run(" ".join(['"$EPCONT_PROGRAM"'] + command[1:]), shell=True, cwd=place, capture_output=True)
-                told = rb"hertz44: about [\d.]+ s of processor time \(7 solves\), \d+ MB\n" if "--plan" in command else b""
-                self.assertEqual(0, run.returncode, command)
-                self.assertRegex(run.stderr, rb"\A" + told + rb"\Z", command)
+                self.assertEqual((0, b""), (run.returncode, run.stderr), command)
             self.assertTrue((pathlib.Path(place) / "out" / "hertz44.nodes.csv").exists())
 
 

@@ -15,7 +15,7 @@ REJECTED = ROOT / "input" / "faults" / "no_suport.dat"
 STAGES = ["reading", "model", "plan", "numbering", "stiffness", "factor", "flexibility", "contact", "displacements", "yielding",
           "stresses", "certificate", "accuracy", "writing"]
 TIME = r"\d+(\.\d)? (s|min|h)"
-SOLVE = rf"{TIME}( of about {TIME})?, iteration \d+, load factor \d\.\d+, change \S+( \S+)?, yielded \d+, touching \d+"
+SOLVE = rf"{TIME}, iteration \d+, load factor \d\.\d+, change \S+( \S+)?, yielded \d+, touching \d+"
 
 
 class Case(unittest.TestCase):
@@ -82,7 +82,7 @@ class Progress(Case):
         lines = run.stderr.splitlines()
         self.assertTrue(run.stderr.endswith("\n"))
         self.assertNotIn("\r", run.stderr)
-        self.assertRegex(lines[0], rf"^hertz44: {TIME}, first solve after about {TIME}$")
+        self.assertRegex(lines[0], rf"^hertz44: {TIME}, solving: \S+ operations$")
         history = (self.place / "hertz44.history.csv").read_text().splitlines()[1:]
         self.assertEqual(len(history) + 1, len(lines))
         for k, (line, row) in enumerate(zip(lines[1:], history), 1):
@@ -92,10 +92,10 @@ class Progress(Case):
             self.assertTrue(line.endswith(f", yielded {row[4]}, touching {row[3]}"), line)
 
     def test_elastic_run(self):
-        """One solve; how long it all takes is told before."""
+        """The operations of the solve, then what it has found."""
         lines = self.run_it(ELASTIC, "--progress").stderr.splitlines()
         self.assertEqual(2, len(lines))
-        self.assertRegex(lines[0], rf"^hertz44_elastic: {TIME} of about {TIME}$")
+        self.assertRegex(lines[0], rf"^hertz44_elastic: {TIME}, solving: \S+ operations$")
         self.assertRegex(lines[1], rf"^hertz44_elastic: {SOLVE}$")
 
     def test_one_line_that_goes(self):
@@ -118,8 +118,8 @@ class Progress(Case):
             self.assertEqual("", self.screen(seen))
             for part in seen.split("\r"):
                 self.assertLess(len(part), columns)
-                if columns > 30 and part.strip() and "first" not in part:
-                    self.assertRegex(part.rstrip() + ", ", rf"^hertz44: {TIME}( of about {TIME})?, (iteration \d+, )?(load factor \d\.\d\d\d, )?"
+                if columns > 30 and part.strip() and "solving" not in part:
+                    self.assertRegex(part.rstrip() + ", ", rf"^hertz44: {TIME}, (iteration \d+, )?(load factor \d\.\d\d\d, )?"
                                      r"(change [\d.E+-]+, )?(yielded \d+, )?(touching \d+, )?$")
         self.assertTrue(all(len(part) <= 9 for part in self.on_terminal(YIELDING, "--progress", columns=10)[2].split("\r")))
 

@@ -15,17 +15,16 @@ SIZES = (6000, 20000, 63000, 200000, 630000, 2000000)
 TIME_POWER, MEMORY_POWER = 1.15, 1.05
 #: Pairs for so many unknowns.
 KINDS = {"pairs as the square root": lambda unknowns: round(unknowns ** 0.5), "pairs a twentieth": lambda unknowns: unknowns // 20}
-#: What a run may take by its forecast: seconds, MB; and with --quick.
-MOST, MOST_QUICK = (150.0, 16000.0), (8.0, 4000.0)
+#: What a run may take by its plan: operations, MB; and with --quick.
+MOST, MOST_QUICK = (3e12, 16000.0), (1.6e11, 4000.0)
 SHORT, LONG = 5.0, 30.0
-UNITS = {"s": 1.0, "min": 60.0, "h": 3600.0}
 
 
 def forecast(program, deck, place):
-    """Seconds and MB by --plan; None where the deck is refused."""
+    """Operations and MB by --plan; None where the deck is refused."""
     status, _, _, out = timed([program, "--plan", deck], place)
-    found = re.search(r"about ([\d.]+) (s|min|h) of processor time.*, (\d+) MB", out)
-    return None if status or not found else (float(found[1]) * UNITS[found[2]], float(found[3]))
+    found = re.search(r"^  memory (\d+) MB.*, operations ([\d.E+]+)", out, re.MULTILINE)
+    return None if status or not found else (float(found[2]), float(found[1]))
 
 
 def size(program, place, unknowns, pairs, turns, most):
@@ -41,7 +40,7 @@ def size(program, place, unknowns, pairs, turns, most):
         sys.exit(f"epcont: exit status {status}\n{out}")
     runs = [(settled if first < SHORT else timed)(command, place) for _ in range(turns if first < LONG else 1)]
     return {"unknowns": unknowns, "pairs": pairs, "cpu": statistics.median(run[1] for run in runs), "memory": memory,
-            "forecast": expected[0], "forecast_memory": expected[1]}
+            "operations": expected[0], "forecast_memory": expected[1]}
 
 
 def growth(place, program, turns, quick, say):

@@ -40,13 +40,13 @@ def scenes(rows, version):
 
 
 def growth(found):
-    lines = [[kind, row["unknowns"], row["pairs"], short(row["cpu"]), short(row["memory"]), short(row["forecast"]), short(row["forecast_memory"])]
+    lines = [[kind, row["unknowns"], row["pairs"], short(row["cpu"]), short(row["memory"]), f"{row['operations']:.1e}", short(row["forecast_memory"])]
              for kind, rows in found.items() for row in rows]
     powers = [[kind, *(verdict(exponent([(row["unknowns"], row[what]) for row in rows]), wanted)
                        for what, wanted in (("cpu", TIME_POWER), ("memory", MEMORY_POWER)))] for kind, rows in found.items() if len(rows) > 1]
-    return ["### Growth with the pairs", "Blocks, elastic: whole processes, and what `--plan` forecasts of them. A row ends before a size of which that is more "
-            "than 150 s or 16 GB (with `--quick` 8 s or 4 GB).",
-            table(["", "unknowns", "pairs", "CPU, s", "MB", "forecast, s", "MB"], lines), "Powers of the unknowns, least squares:",
+    return ["### Growth with the pairs", "Blocks, elastic: whole processes, and what `--plan` states. A row ends before a size of which that is more "
+            "than 3E12 operations or 16 GB (with `--quick` 1.6E11 or 4 GB).",
+            table(["", "unknowns", "pairs", "CPU, s", "MB", "operations", "forecast, MB"], lines), "Powers of the unknowns, least squares:",
             table(["", "CPU", "memory"], powers)]
 
 
