@@ -7,7 +7,6 @@ module epcont_app_driver
   use epcont_app_progress_display, only: progress_type, timing_text
   use epcont_base_diagnostic, only: diagnostics
   use epcont_base_error, only: error_type, status_deck, status_valid
-  use epcont_base_kinds, only: i8
   use epcont_base_text, only: newline, shown
   use epcont_build_build, only: build_model, tell
   use epcont_deck_deck, only: deck_type, read_deck
@@ -17,7 +16,6 @@ module epcont_app_driver
   use epcont_report_file, only: file_lock, lock_files, unlock_files
   use epcont_report_results, only: remove_results, results_type
   use epcont_report_run, only: run_results
-  use epcont_system_large_pages, only: heap_step, take_heap
   use epcont_system_memory, only: peak_memory
   use epcont_system_stopwatch, only: stage_model, stage_plan, stage_reading, stage_writing
   implicit none
@@ -154,11 +152,6 @@ contains
 
     !> Read and check.
     subroutine prepare()
-      integer, parameter :: memory_of_deck = 8   ! until it is solved, over its size
-      integer(i8) :: bytes
-
-      inquire (file=path, size=bytes)
-      call take_heap(min(memory_of_deck*bytes, int(heap_step, i8)))
       call read_deck(path, run%deck, run%faults, error)
       call watch%lap(stage_reading)
       if (allocated(error)) return

@@ -3,7 +3,6 @@ module epcont_linalg_blocked
   use epcont_base_kinds, only: i8, wp
   use epcont_linalg_assembled, only: assembled_matrix, probes
   use epcont_linalg_lapack, only: dgemm, dgemv
-  use epcont_system_large_pages, only: use_large_pages
   implicit none
   private
   public :: blocked_matrix, begin_blocks, diagonal, forward, backward
@@ -51,7 +50,6 @@ contains
     allocate (self%entries(self%start(size(first))), stat=status)   ! one more: where columns would go on
     self%lacks_memory = status /= 0
     if (self%lacks_memory) return
-    call use_large_pages(self%entries, storage_size(self%entries))
     stale = .true.
     call self%clear(stale)
   end subroutine begin_blocks

@@ -20,7 +20,6 @@ module epcont_linalg_fronts
   use epcont_linalg_front_layout, only: columns_along, front_layout
   use epcont_linalg_front_solve, only: front_factor
   use epcont_linalg_update_matrix, only: lay_out, take_update_off, update_matrix
-  use epcont_system_large_pages, only: use_small_pages
   !$ use omp_lib, only: omp_get_num_threads
   implicit none
   private
@@ -119,7 +118,7 @@ contains
     self%failed(p) = maxval([self%failed(below), 0])
     associate (h => self%height(p), n => self%columns(p), m => self%layout%reached(p), f => self%first(p), &
                update => self%update(p))
-      call clear_entries(self%entries(self%start(p):), int(h, i8)*n)
+      self%entries(self%start(p):self%start(p + 1) - 1) = 0.0_wp
       if (.not. allocated(update%entries)) call lay_out(n, m, update)
       update%entries = 0.0_wp
       if (allocated(self%carried)) call put_probes(h, n, self%carried(f:f + n - 1, :), &
@@ -130,23 +129,6 @@ contains
       if (self%once .or. self%layout%unit(below(i)) /= below(i)) self%update(below(i)) = update_matrix()
     end do
   end subroutine open_front
-
-  !> Zeros for the columns of a front; what stands above the diagonal, too: small products compute with it,
-  !! though nothing comes of that. Where the pages for them came slowly, those that follow are to be small.
-  subroutine clear_entries(entries, own)
-    real(wp), contiguous, intent(inout) :: entries(:)   !! of this front and those behind it
-    integer(i8), intent(in) :: own          !! of this one
-    integer(i8), parameter :: bits = storage_size(entries)
-    real(wp), parameter :: long = 1.0e-3_wp, slow = 1.0e9_wp   ! ten times the usual [s], [bits/s]
-    integer(i8), parameter :: ahead = 2_i8**30/bits            ! 128 MB
-    integer(i8) :: begun, ended, rate
-
-    call system_clock(begun, rate)
-    entries(:own) = 0.0_wp
-    call system_clock(ended)
-    if (real(ended - begun, wp)/rate < long + own*bits/slow) return
-    call use_small_pages(entries(own + 1:min(own + ahead, size(entries, kind=i8))), int(bits))
-  end subroutine clear_entries
 
   !> The probes' own rows among what goes along.
   pure subroutine put_probes(h, n, own, along)

@@ -1,10 +1,10 @@
-!> Whether the system has memory to give, before it is needed.
+!> Memory of the system: whether there is enough before it is needed, how the heap grows, what was taken.
 module epcont_system_memory
-  use, intrinsic :: iso_c_binding, only: c_int, c_intptr_t, c_long, c_size_t
+  use, intrinsic :: iso_c_binding, only: c_int, c_intptr_t, c_long, c_signed_char, c_size_t
   use epcont_base_kinds, only: i8
   implicit none
   private
-  public :: has_memory, peak_memory
+  public :: has_memory, peak_memory, prepare_heap
 
   !> What libraries take for themselves: OpenBLAS maps 134 MB with its first call, and where it cannot have
   !! them it waits without end; besides, the heap grows in large steps.
@@ -16,7 +16,19 @@ module epcont_system_memory
   !! them.
   integer(c_int), parameter :: readable_writable = 3, private_anonymous = 34, no_file = -1
 
+  !> Parameters of glibc's `mallopt`.
+  integer(c_int), parameter :: trim_threshold = -1, top_pad = -2, mmap_threshold = -3, arena_max = -8
+  !> The heap grows by this; memory is taken when it is touched [bytes].
+  integer(c_int), parameter :: heap_step = 67108864
+  !> Arrays of at most this size are in the heap: glibc's own limit [bytes].
+  integer(c_int), parameter :: largest_in_heap = 33554432
+
   interface
+    integer(c_int) function mallopt(parameter, value) bind(c)
+      import
+      integer(c_int), value :: parameter, value
+    end function mallopt
+
     integer(c_intptr_t) function c_mmap(address, length, protection, flags, file, offset) bind(c, name='mmap')
       import
       integer(c_intptr_t), value :: address
@@ -39,6 +51,21 @@ module epcont_system_memory
   end interface
 
 contains
+
+  !> Let the heap grow in large steps and keep what is freed. Threads have no heaps of their own: each would
+  !! take 128 MB of addresses, and keep what it frees from the others.
+  subroutine prepare_heap()
+    integer(c_int) :: ignored
+    integer(c_signed_char), allocatable :: array(:)
+    integer :: status
+
+    ignored = mallopt(mmap_threshold, largest_in_heap)
+    ignored = mallopt(trim_threshold, huge(ignored))
+    ignored = mallopt(top_pad, heap_step)
+    ignored = mallopt(arena_max, 1_c_int)
+    allocate (array(heap_step/4), stat=status)   ! too large for what the heap has: it grows
+    if (status /= 0) ignored = mallopt(top_pad, 0_c_int)   ! memory is short: ask for no more than is needed
+  end subroutine prepare_heap
 
   !> Does the system give `bytes` in one piece? They are given back untouched. (The heap would keep them, and
   !! libraries and threads want theirs beside it.)

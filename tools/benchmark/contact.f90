@@ -7,7 +7,7 @@
 program bench_contact
   use, intrinsic :: iso_fortran_env, only: int32
   use epcont_base_kinds, only: wp
-  use epcont_system_large_pages, only: prepare_heap
+  use epcont_system_memory, only: prepare_heap
   use epcont_contact_flexibility_matrix, only: dense_flexibility
   use epcont_contact_problem, only: contact_problem, contact_solution
   use epcont_contact_solver, only: solve_contact

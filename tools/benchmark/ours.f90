@@ -12,7 +12,7 @@ program bench_ours
   use epcont_base_error, only: error_type
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
-  use epcont_system_large_pages, only: prepare_heap
+  use epcont_system_memory, only: prepare_heap
   use epcont_contact_flexibility_matrix, only: new_flexibility
   use epcont_contact_problem, only: contact_problem, contact_solution, contact_solved
   use epcont_contact_solver, only: solve_contact
