@@ -221,12 +221,17 @@ REMOVED = [
      "1 000 lines of templates included twice, a second solve where single precision fails, every test in three precisions: for 3 to 20 % of "
      "the time of large models and a fifth of their memory. Rows of MIXED and SINGLE in the other tables of this page are of the program before"],
     ["forecast of the run time in seconds: `--plan`, progress",
-     "the time of 151 of 152 decks within a factor of 2; `--plan` took 3 ms to measure the rate of the processor. No run is slower without it",
+     "the time of 151 of 152 decks within a factor of 2 (as `src/README.md` had it), of which `--plan` took 3 ms; other runs take the same time without it",
      "360 lines of src and 700 of tests that follow the machine; `--plan` states operations and memory, progress what is done"],
     ["large pages (madvise) under the factors and the first step of the heap",
      "0 to 7 % of processor time, no memory: `tools/decks` hertz 11000 0.091 s with, 0.091 without; `--plastic` 0.198, 0.206; hertz 42000 0.351, 0.366; "
-     "`--plastic` 0.834, 0.840; blocks of 43 000 nodes and 1500 pairs 0.642, 0.657; dovetail 0.380, 0.408; hertz 150000 1.48, 1.52",
-     "120 lines, and small pages again where a virtual machine finds large ones slowly"]]
+     "`--plastic` 0.834, 0.840; blocks of 43 000 nodes and 1500 pairs 0.642, 0.657; dovetail 0.380, 0.408; medians of three: hertz 150000 1.48, 1.52. "
+     "Without: the program before, `madvise` replaced by nothing (LD_PRELOAD)",
+     "120 lines, and small pages again where a virtual machine finds large ones slowly"],
+    ["probes of the condition taken through the factorization and the solves of the error estimates",
+     "at most 3 % of processor time: hertz 42000 0.366 s with, 0.372 with two solves more; `--plastic` 0.840, 0.851; blocks of 43 000 nodes 0.657, 0.665; "
+     "stack 0.440, 0.446; dovetail 0.408, 0.403; medians of three: hertz 150000 1.52, 1.56. Memory 0 to 1 % less without",
+     "110 lines in five files; now one procedure of 20 lines (`assembly/stiffness.f90`)"]]
 
 
 def page(found, quick, spent, picture):

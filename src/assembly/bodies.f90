@@ -117,22 +117,16 @@ contains
   end subroutine prescribe
 
   !> Estimate of the condition of the stiffness in the 1-norm: the largest of the bodies. What has yielded is
-  !! not as stiff as it was when it was assembled first. Bodies that have been solved for fields have
-  !! theirs, or half of it.
+  !! not as stiff as it was when it was assembled first.
   subroutine estimate_condition(self, scene, condition)
     class(factored_bodies), intent(inout) :: self
     type(planned_scene), intent(in) :: scene   !! with the numbers of its equations
     real(wp), intent(out) :: condition         !! 1 where all bodies are rigid
-    type(force_fields) :: nothing
-    real(wp) :: u(directions, 0, 0)
     integer :: b
 
     condition = 1.0_wp
-    allocate (nothing%node(0), nothing%force(directions, 0, 0))
     do b = 1, size(self%body)
-      do while (self%body(b)%condition <= 0.0_wp)
-        call self%body_displacements(scene, b, nothing, [integer ::], u)
-      end do
+      call self%body(b)%estimate_condition()
       condition = max(condition, self%body(b)%condition)
     end do
     if (scene%numbering%joined) condition = condition*self%spring%norm/self%body(1)%matrix%norm
@@ -285,8 +279,7 @@ contains
   end function tied_value
 
   !> Displacements of nodes of one body under several fields of forces on some of its nodes, supports at zero.
-  !! All fields are solved for at once, and what is left of the estimate of the condition: so the factor is
-  !! read only twice.
+  !! All fields are solved for at once: so the factor is read only twice.
   subroutine body_displacements(self, scene, b, loads, node, u)
     class(factored_bodies), intent(inout) :: self
     type(planned_scene), intent(in) :: scene       !! with the numbers of its equations
@@ -296,29 +289,29 @@ contains
     real(wp), intent(out) :: u(:, :, :)            !! [length] [directions, fields, nodes asked for]
     real(wp), allocatable :: border(:, :), inner(:, :)
     real(wp) :: own(directions, size(u, 2))
-    integer :: c, fields, i
+    integer :: c, i
 
-    fields = size(u, 2)
     associate (body => scene%numbering%body(b))
-      allocate (inner(body%equations, fields + 2), border(body%border, fields + 2), source=0.0_wp)
+      allocate (inner(body%equations, size(u, 2)), border(body%border, size(u, 2)), source=0.0_wp)
     end associate
     do i = 1, size(loads%node)
       own = loads%force(:, :, i)
       call turn(loads%node(i), .true.)
       do c = 1, directions
         associate (number => scene%numbering%equation(c, loads%node(i)))
-          if (number > 0) inner(number, :fields) = inner(number, :fields) + own(c, :)
-          if (number < 0) call add_tied(scene%numbering%body(b)%tied, -number, own(c, :), border(:, :fields))
+          if (number > 0) inner(number, :) = inner(number, :) + own(c, :)
+          if (number < 0) call add_tied(scene%numbering%body(b)%tied, -number, own(c, :), border)
         end associate
       end do
     end do
-    call self%body(b)%solve_and_estimate(inner, border)
+    call self%body(b)%solve_lower(inner, border)
+    call self%body(b)%solve_upper(inner, border, 1)
     do i = 1, size(node)
       own = 0.0_wp
       do c = 1, directions
         associate (number => scene%numbering%equation(c, node(i)))
-          if (number > 0) own(c, :) = inner(number, :fields)
-          if (number < 0) own(c, :) = tied_value(scene%numbering%body(b)%tied, -number, border(:, :fields))
+          if (number > 0) own(c, :) = inner(number, :)
+          if (number < 0) own(c, :) = tied_value(scene%numbering%body(b)%tied, -number, border)
         end associate
       end do
       call turn(node(i), .false.)

@@ -8,7 +8,7 @@ module epcont_assembly_stiffness
   use epcont_assembly_strain_operator, only: strain_operator
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: directions
-  use epcont_linalg_assembled, only: assembled_matrix, sparse_rows
+  use epcont_linalg_assembled, only: assembled_matrix, probes, sparse_rows
   use epcont_linalg_dense, only: cholesky_factor, cholesky_solve
   use epcont_linalg_fronts, only: front_matrix
   use epcont_linalg_panels, only: panel_matrix
@@ -36,15 +36,13 @@ module epcont_assembly_stiffness
     real(wp) :: smallest_ratio = 1.0_wp       !! smallest pivot over its diagonal entry
     !> Estimate of the condition of K_bb in the 1-norm; 0: none has been made of this factor
     real(wp) :: condition = 0.0_wp
-    real(wp), private :: inverse_norm = 0.0_wp           !! by half of that estimate
-    real(wp), allocatable, private :: signs(:, :)        !! columns of its other half [equations, 2]
   contains
     procedure :: assemble
     procedure :: factor
     procedure :: is_sound
     procedure :: solve_lower
     procedure :: solve_upper
-    procedure :: solve_and_estimate
+    procedure :: estimate_condition
   end type body_stiffness
 
 contains
@@ -205,7 +203,7 @@ contains
             call move_alloc(fronts, self%matrix)
           else
             allocate (panels)
-            call panels%begin(body%panels, once, trailing)
+            call panels%begin(body%panels, trailing)
             call move_alloc(panels, self%matrix)
           end if
         end associate
@@ -268,7 +266,6 @@ contains
 
     self%smallest_ratio = 0.0_wp
     self%condition = 0.0_wp
-    if (allocated(self%signs)) deallocate (self%signs)
     if (self%lacks_memory) return
     call self%matrix%factor(self%smallest_ratio, at)
     if (self%smallest_ratio == 0.0_wp .or. size(self%schur) == 0) return
@@ -309,51 +306,28 @@ contains
     inner = inner - matmul(self%coupling, border)
   end subroutine solve_upper
 
-  !> Solve, and estimate the condition in the 1-norm with two more columns: of the inverse's norm that is a
-  !! lower bound, seldom under a third of it. By Higham and Tisseur (SIAM J. Matrix Anal. Appl. 21 (2000)
-  !! 1185) it takes two solves, since a factor takes longer to read than to use: `dlacn2`, one column in each
-  !! of five, takes two and a half times as long for the same figure; the alternating column alone three
-  !! quarters, but its figure depends on the order of the equations (0.6 to 1 of this one). (Begun with a
-  !! solution already known it would take one, but where that has ties or zeros the figure would be a matter
-  !! of rounding: 0.4 to 1 of this one.) Of probes that were taken along half of the first is done.
-  subroutine solve_and_estimate(self, inner, border)
+  !> Estimate the condition in the 1-norm, if that has not been done with this factor, by two solves with two
+  !! columns each: of the norm of the inverse a lower bound, seldom below a third of it. By Higham and Tisseur
+  !! (SIAM J. Matrix Anal. Appl. 21 (2000) 1185): a factor takes longer to read than to use, so `dlacn2`, one
+  !! column in each of five solves, takes two and a half times as long for the same figure.
+  subroutine estimate_condition(self)
     class(body_stiffness), intent(inout) :: self
-    !> The last two columns are those of the estimate [order of the matrix, any]
-    real(wp), contiguous, intent(inout) :: inner(:, :)
-    real(wp), contiguous, intent(inout) :: border(:, :)   !! the same [border, any]
-    logical :: begun
-    integer :: fields
+    real(wp) :: x(self%matrix%order, 2), border(size(self%schur, 1), 2), inverse_norm
 
-    fields = size(inner, 2) - 2
-    if (self%condition > 0.0_wp) then
-      call self%solve_lower(inner(:, :fields), border(:, :fields))
-      call self%solve_upper(inner(:, :fields), border(:, :fields), 1)
-      return
-    end if
-    associate (x => inner(:, fields + 1:))
-      begun = .false.
-      if (.not. allocated(self%signs)) call self%matrix%begin_estimate(x, begun)
-      if (begun) call turn(x)
-      begun = allocated(self%signs)
-      if (begun) x = self%signs
-      call self%solve_lower(inner, border)
-      call self%solve_upper(inner, border, 1)
-      if (begun) then   ! the inverse is symmetric: a row's sum is a column's
-        self%condition = max(1.0_wp, self%matrix%norm*maxval([self%inverse_norm, abs(x)]))
-        deallocate (self%signs)
-      else
-        call turn(x)
-      end if
-    end associate
+    if (self%condition > 0.0_wp) return
+    x = probes(self%matrix%order)
+    call solve()
+    inverse_norm = maxval(sum(abs(x), dim=1))
+    x = sign(1.0_wp, x)   ! the inverse is symmetric: the sum of a row is that of a column
+    call solve()
+    self%condition = max(1.0_wp, self%matrix%norm*maxval([inverse_norm, abs(x)]))
 
   contains
 
-    !> What the first solve tells, and the columns of the second.
-    subroutine turn(x)
-      real(wp), intent(in) :: x(:, :)
-
-      self%inverse_norm = maxval(sum(abs(x), dim=1))
-      self%signs = sign(1.0_wp, x)
-    end subroutine turn
-  end subroutine solve_and_estimate
+    subroutine solve()
+      border = 0.0_wp
+      call self%solve_lower(x, border)
+      call self%solve_upper(x, border, 1)
+    end subroutine solve
+  end subroutine estimate_condition
 end module epcont_assembly_stiffness

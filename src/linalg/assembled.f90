@@ -37,7 +37,6 @@ module epcont_linalg_assembled
     procedure :: factor
     procedure(first_half), deferred :: solve_lower
     procedure(second_half), deferred :: solve_upper
-    procedure(first_columns), deferred :: begin_estimate
     procedure(last_of_factor), deferred :: get_trailing_factor
     procedure :: solve
     procedure :: find_compliance
@@ -85,14 +84,6 @@ module epcont_linalg_assembled
       real(wp), contiguous, intent(inout) :: x(:, :)  !! [order, any]
       integer, intent(in) :: first
     end subroutine second_half
-
-    !> `probes`; where they were taken along when the factor was made, solved for by half a solve.
-    subroutine first_columns(self, x, solved)
-      import :: assembled_matrix, wp
-      class(assembled_matrix), intent(in) :: self
-      real(wp), contiguous, intent(out) :: x(:, :)   !! [order, 2]
-      logical, intent(out) :: solved                 !! they have the solve behind them
-    end subroutine first_columns
 
     !> L22, the last rows and columns of the factor. (A function would hand back a copy.)
     pure subroutine last_of_factor(self, x)
@@ -144,16 +135,15 @@ contains
     call self%solve_upper(x, 1)
   end subroutine solve
 
-  !> What an estimate of the condition begins with, of 1-norm 1: equal parts, and the alternating column that
-  !! finds what they cancel (Higham's).
+  !> Columns that an estimate of the condition begins with, of 1-norm 1: equal parts, and the alternating
+  !! column that finds what they cancel (Higham's).
   pure function probes(order) result(x)
-    integer, intent(in) :: order           !! of the matrix
+    integer, intent(in) :: order   !! of the matrix
     real(wp) :: x(order, 2)
     integer :: i
 
     x(:, 1) = 1.0_wp/max(1, order)
-    x(:, 2) = [(1.0_wp + real(i - 1, wp)/max(1, order - 1), i=1, order)]
-    x(2::2, 2) = -x(2::2, 2)
+    x(:, 2) = [((1 - 2*modulo(i - 1, 2))*(1.0_wp + real(i - 1, wp)/max(1, order - 1)), i=1, order)]
     x(:, 2) = x(:, 2)/sum(abs(x(:, 2)))
   end function probes
 

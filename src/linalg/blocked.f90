@@ -1,7 +1,7 @@
 !> Cholesky factors in blocks of columns, panels or fronts: what both do alike.
 module epcont_linalg_blocked
   use epcont_base_kinds, only: i8, wp
-  use epcont_linalg_assembled, only: assembled_matrix, probes
+  use epcont_linalg_assembled, only: assembled_matrix
   use epcont_linalg_lapack, only: dgemm, dgemv
   implicit none
   private
@@ -15,11 +15,7 @@ module epcont_linalg_blocked
     integer, allocatable :: height(:)      !! rows of each block [blocks]
     integer(i8), allocatable :: start(:)   !! of each block in `entries` [blocks + 1]
     real(wp), allocatable :: entries(:)
-    logical :: once = .false.              !! it will be factored once, and takes the probes along
-    !> `probes`, taken through L^-1 while the blocks are at hand [order, 2]
-    real(wp), allocatable :: carried(:, :)
   contains
-    procedure :: begin_estimate
     procedure :: get_trailing_factor
   end type blocked_matrix
 
@@ -27,16 +23,14 @@ contains
 
   !> A matrix of zeros in these blocks, or word that there is no memory for it. (A function would hand back a
   !! copy of the whole matrix.)
-  subroutine begin_blocks(self, first, height, once, trailing)
+  subroutine begin_blocks(self, first, height, trailing)
     class(blocked_matrix), intent(inout) :: self
     integer, intent(in) :: first(:)         !! [blocks + 1]
     integer, intent(in) :: height(:)        !! [blocks]
-    logical, intent(in) :: once             !! as in `begin`
-    integer, intent(in) :: trailing
+    integer, intent(in) :: trailing         !! as in `begin`
     logical :: stale(first(size(first)) - 1)
     integer :: p, status
 
-    self%once = once
     self%trailing = trailing
     self%order = size(stale)
     self%first = first
@@ -53,21 +47,6 @@ contains
     stale = .true.
     call self%clear(stale)
   end subroutine begin_blocks
-
-  !> The columns that an estimate of the condition begins with.
-  subroutine begin_estimate(self, x, solved)
-    class(blocked_matrix), intent(in) :: self
-    real(wp), contiguous, intent(out) :: x(:, :)
-    logical, intent(out) :: solved
-
-    solved = allocated(self%carried)
-    if (solved) then
-      x = self%carried
-      call self%solve_upper(x, 1)
-    else
-      x = probes(self%order)
-    end if
-  end subroutine begin_estimate
 
   !> L22, its columns gathered from the last blocks.
   pure subroutine get_trailing_factor(self, x)

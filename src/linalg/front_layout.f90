@@ -13,8 +13,8 @@ module epcont_linalg_front_layout
   !> Operations of a unit of work: 0.3 ms, hundreds of times what a task more takes, and little to be done
   !! anew where something in it has changed. (With 1E6 bodies that yield take a tenth more memory.)
   real(wp), parameter :: least_work = 4.0e6_wp
-  !> What goes along with a front, one number a row: diagonal of the matrix, sums of magnitudes, two probes.
-  integer, parameter, public :: columns_along = 4
+  !> What goes along with a front, one number a row: diagonal of the matrix, sums of magnitudes.
+  integer, parameter, public :: columns_along = 2
 
   type :: front_layout
     integer, allocatable :: first(:)       !! equation of each front [fronts + 1]

@@ -14,11 +14,10 @@
 !> fronts, few operations are done, and all of them on full matrices.
 module epcont_linalg_fronts
   use epcont_base_kinds, only: i8, wp
-  use epcont_linalg_assembled, only: probes
-  use epcont_linalg_blocked, only: begin_blocks, diagonal, forward
-  use epcont_linalg_full_columns, only: factor_columns
+  use epcont_linalg_blocked, only: begin_blocks, diagonal
   use epcont_linalg_front_layout, only: columns_along, front_layout
   use epcont_linalg_front_solve, only: front_factor
+  use epcont_linalg_full_columns, only: factor_columns
   use epcont_linalg_update_matrix, only: lay_out, take_update_off, update_matrix
   !$ use omp_lib, only: omp_get_num_threads
   implicit none
@@ -26,6 +25,7 @@ module epcont_linalg_fronts
   public :: front_matrix
 
   type, extends(front_factor) :: front_matrix
+    logical :: once = .false.                  !! it will be factored once, else filled again in parts
     type(update_matrix), allocatable :: update(:)   !! [fronts]
     logical, allocatable :: stale(:)           !! fronts to be filled and factored anew, by whole units
     !> Equation that could not be eliminated in each front or below it; 0: none
@@ -52,11 +52,12 @@ contains
     integer, intent(in) :: trailing
 
     self%layout = layout
+    self%once = once
     !$ self%threads = omp_get_num_threads()
     associate (fronts => size(layout%own))
       allocate (self%update(fronts), self%failed(fronts), self%stale(fronts), self%largest_sum(fronts))
     end associate
-    call begin_blocks(self, layout%first, layout%own + layout%reached, once, trailing)
+    call begin_blocks(self, layout%first, layout%own + layout%reached, trailing)
   end subroutine begin_fronts
 
   !> Whatever is above a stale front is stale, too.
@@ -78,7 +79,6 @@ contains
         stale(self%first(p):self%first(p + 1) - 1) = self%stale(p)
       end do
     end associate
-    if (self%once) self%carried = probes(self%order)
   end subroutine clear_fronts
 
   !> The places of later equations, ascending, among the rows of a front that has them all.
@@ -121,23 +121,12 @@ contains
       self%entries(self%start(p):self%start(p + 1) - 1) = 0.0_wp
       if (.not. allocated(update%entries)) call lay_out(n, m, update)
       update%entries = 0.0_wp
-      if (allocated(self%carried)) call put_probes(h, n, self%carried(f:f + n - 1, :), &
-                                                   update%entries(update%along + 1))
     end associate
     do i = 1, size(below)
       call pass_on(self, below(i), p)
       if (self%once .or. self%layout%unit(below(i)) /= below(i)) self%update(below(i)) = update_matrix()
     end do
   end subroutine open_front
-
-  !> The probes' own rows among what goes along.
-  pure subroutine put_probes(h, n, own, along)
-    integer, intent(in) :: h, n
-    real(wp), intent(in) :: own(n, 2)
-    real(wp), intent(inout) :: along(h, columns_along)
-
-    along(:n, 3:4) = own
-  end subroutine put_probes
 
   !> Add what a front leaves to the one above it: to the columns that are eliminated there, to what that will
   !! leave, and to what goes along.
@@ -316,7 +305,7 @@ contains
     end do
   end subroutine add_along
 
-  !> Factor a front's own columns, take what they eliminate off its update matrix, and the probes along.
+  !> Factor a front's own columns, take what they eliminate off its update matrix.
   subroutine close_front(self, p)
     class(front_matrix), intent(inout) :: self
     integer, intent(in) :: p   !! that is filled
@@ -333,7 +322,6 @@ contains
       if (m > 0) call take_update_off(m, n, h, own(n + 1), update)
       associate (along => update%entries(update%along + 1:))
         call close_along(h, n, own, along, self%pivot_ratio(f:f + n - 1), self%largest_sum(p))
-        if (allocated(self%carried)) call carry(h, n, own, along(2*h + 1), self%carried(f:f + n - 1, :))
       end associate
     end associate
   end subroutine close_front
@@ -347,17 +335,6 @@ contains
     ratio = diagonal(h, n, own)**2/along(:n, 1)
     largest_sum = maxval(along(:n, 2))
   end subroutine close_along
-
-  !> Take the probes along.
-  pure subroutine carry(h, n, own, probe, carried)
-    integer, intent(in) :: h, n
-    real(wp), intent(in) :: own(h, n)
-    real(wp), intent(inout) :: probe(h, 2)
-    real(wp), intent(out) :: carried(n, 2)
-
-    call forward(h, n, own, 2, h, probe)
-    carried = probe(:n, :)
-  end subroutine carry
 
   !> All fronts are factored when they are closed.
   subroutine eliminate_fronts(self, failed)

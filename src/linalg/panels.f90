@@ -13,7 +13,7 @@
 module epcont_linalg_panels
   use epcont_base_kinds, only: i8, wp
   use epcont_base_sorting, only: sorted_order
-  use epcont_linalg_assembled, only: find_compliance, order_rows, probes, sparse_rows
+  use epcont_linalg_assembled, only: find_compliance, order_rows, sparse_rows
   use epcont_linalg_blocked, only: backward, begin_blocks, blocked_matrix, diagonal, forward
   use epcont_linalg_lapack, only: dgemm, dpotrf, dsyrk, dtrsm
   use epcont_linalg_panel_layout, only: panel_layout
@@ -38,16 +38,15 @@ module epcont_linalg_panels
 contains
 
   !> Begin a matrix of zeros.
-  subroutine begin_panels(self, layout, once, trailing)
+  subroutine begin_panels(self, layout, trailing)
     class(panel_matrix), intent(inout) :: self
     type(panel_layout), intent(in) :: layout   !! where its panels begin and how high they are
-    logical, intent(in) :: once            !! it will be factored once
     !> Last equations, the only ones that `find_compliance` is asked for; 0: any.
     integer, intent(in) :: trailing
 
     self%width = layout%width
     allocate (self%row_sum(layout%first(size(layout%first)) - 1))
-    call begin_blocks(self, layout%first, layout%height, once, trailing)
+    call begin_blocks(self, layout%first, layout%height, trailing)
   end subroutine begin_panels
 
   !> Whatever stands behind the first stale column is stale, too.
@@ -59,8 +58,6 @@ contains
     stale(self%first(self%kept + 1):) = .true.
     self%entries(self%start(self%kept + 1):) = 0.0_wp
     self%row_sum(self%first(self%kept + 1):) = 0.0_wp
-    if (allocated(self%carried)) deallocate (self%carried)
-    if (self%once .and. self%kept == 0) self%carried = probes(self%order)
   end subroutine clear_panels
 
   !> Entries go to the panel of their column; those of panels that are kept are left out.
@@ -111,7 +108,7 @@ contains
     self%norm = maxval(self%row_sum)
   end subroutine eliminate_panels
 
-  !> Factor a panel that those before have been taken off, and take the probes along.
+  !> Factor a panel that those before have been taken off.
   pure subroutine factor_panel(self, p, given, failed)
     class(panel_matrix), intent(inout) :: self
     integer, intent(in) :: p
@@ -126,7 +123,6 @@ contains
       end if
       if (h > w) call dtrsm('R', 'L', 'T', 'N', h - w, w, 1.0_wp, self%entries(s), h, self%entries(s + w), h)
       self%pivot_ratio(f:f + w - 1) = diagonal(h, w, self%entries(s))**2/given
-      if (allocated(self%carried)) call forward(h, w, self%entries(s), 2, self%order, self%carried(f, 1))
     end associate
   end subroutine factor_panel
 

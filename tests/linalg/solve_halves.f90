@@ -1,7 +1,7 @@
 !> Solves in two halves, against whole ones.
 module solve_halves
   use epcont_base_kinds, only: wp
-  use epcont_linalg_assembled, only: assembled_matrix
+  use epcont_linalg_assembled, only: assembled_matrix, probes
   implicit none
   private
   public :: condition_of, error_of_halves
@@ -32,14 +32,13 @@ contains
     end do
   end function error_of_halves
 
-  !> The estimate of the condition, by the two solves of `solve_and_estimate`.
+  !> The estimate of the condition, as of a body without a border.
   real(wp) function condition_of(matrix) result(condition)
     class(assembled_matrix), intent(in) :: matrix   !! factored
     real(wp) :: inverse_norm, x(matrix%order, 2)
-    logical :: solved
 
-    call matrix%begin_estimate(x, solved)
-    if (.not. solved) call matrix%solve(x)
+    x = probes(matrix%order)
+    call matrix%solve(x)
     inverse_norm = maxval(sum(abs(x), dim=1))
     x = sign(1.0_wp, x)
     call matrix%solve(x)

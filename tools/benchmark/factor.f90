@@ -68,7 +68,7 @@ contains
     logical :: stale(n)
     integer :: at, k, times
 
-    call matrix%begin(new_panel_layout([(min(n, k + w), k=1, n)]), .false., 0)
+    call matrix%begin(new_panel_layout([(min(n, k + w), k=1, n)]), 0)
     spent = 0
     times = 0
     do while (spent < least)
