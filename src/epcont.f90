@@ -17,8 +17,8 @@ module epcont
   use epcont_model_finding, only: findings
   use epcont_model_yield_curve, only: bilinear_curve
   use epcont_plasticity_observer, only: observer
-  use epcont_report_array_words, only: in_array_words
-  use epcont_report_outcome, only: judge, outcome_type
+  use epcont_messages_array_words, only: in_array_words
+  use epcont_messages_outcome, only: judge, outcome_type
   use epcont_solution, only: solution_type
   use epcont_system_threads, only: one_thread, threads_now, use_threads
   implicit none

@@ -6,6 +6,7 @@ module epcont_solution
   use epcont_base_tolerances, only: lost_digits
   use epcont_certificate_certificate, only: certificate_type, certify
   use epcont_certificate_scene, only: look_through
+  use epcont_verdict, only: find_verdict, verdict_type
   use epcont_contact_geometry_nearness, only: find_nodes_that_came_near, pair_nodes_that_came_near
   use epcont_contact_problem, only: contact_solved
   use epcont_flexibility_flexibility, only: pair_forces
@@ -60,6 +61,7 @@ module epcont_solution
     type(answer_type) :: answer
     type(certificate_type) :: certificate
     type(accuracy_type) :: accuracy
+    type(verdict_type) :: verdict
     type(kept_factors) :: kept           !! from load case to load case
     logical :: replanned = .false.       !! the last solve has changed the plan, also for other load cases
     !> The scene before nodes that came near in this load case got pairs; not allocated if there were none
@@ -105,6 +107,7 @@ contains
       call self%kept%forget()
       call self%make_plan(watch)
     end do
+    self%verdict = find_verdict(self%answer, self%certificate, self%model%contact_is_off)
     if (.not. self%kept%another) call self%kept%forget()
     if (allocated(self%kept%virgin) .and. allocated(self%kept%linear)) deallocate (self%kept%linear)
   end subroutine solve

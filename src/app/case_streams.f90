@@ -11,7 +11,7 @@ module epcont_app_case_streams
   use epcont_plan_forecast, only: check_memory, forecast_type, most_memory
   use epcont_plan_planned_scene, only: planned_scene
   use epcont_plasticity_observer, only: observer
-  use epcont_report_outcome, only: judge
+  use epcont_messages_outcome, only: judge
   use epcont_report_results, only: results_type
   use epcont_report_run, only: run_results
   use epcont_system_memory, only: has_memory, memory_of_thread

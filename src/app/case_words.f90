@@ -4,7 +4,7 @@ module epcont_app_case_words
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: newline, shown, text_of
   use epcont_report_columns, only: known, listed_number, number, right
-  use epcont_report_outcome, only: limit_of_pressure, reason_of, remark_lines
+  use epcont_messages_outcome, only: limit_of_pressure, reason_of, remark_lines
   use epcont_report_run, only: run_results
   implicit none
   private

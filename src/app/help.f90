@@ -5,7 +5,7 @@ module epcont_app_help
   use epcont_base_error, only: status_meaning
   use epcont_base_text, only: newline, text_of, upper
   use epcont_base_version, only: program_date, program_name, program_version
-  use epcont_report_names, only: when
+  use epcont_messages_names, only: when
   use epcont_report_results, only: result_files
   use epcont_report_tables, only: columns_in
   implicit none

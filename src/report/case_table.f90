@@ -4,7 +4,7 @@ module epcont_report_case_table
   use epcont_base_text, only: short_real, text_of
   use epcont_report_columns, only: column, columns_text, estimate, estimate_number, known, length, number, &
       part, rounding, stress, table_type, unknown, whole, word
-  use epcont_report_outcome, only: limit_of_pressure, unbounded
+  use epcont_messages_outcome, only: limit_of_pressure, unbounded
   use epcont_report_run, only: run_results
   implicit none
   private

@@ -6,10 +6,11 @@ module epcont_report_columns
   use epcont_base_text, only: formatted, short_real, text_of
   use epcont_base_tolerances, only: least_difference, rounded_off
   use epcont_report_file, only: text_file
+  use epcont_messages_names, only: percent
   implicit none
   private
   public :: column, table_type, columns_text
-  public :: right, listed_number, full_number, estimate_number, rounding_number, percent
+  public :: right, listed_number, full_number, estimate_number, rounding_number
 
   !> What the values of a column are. Of a number it says how that is written: in a file in full, in the
   !! listing in the digits that tell.
@@ -279,21 +280,4 @@ contains
     text = formatted('(es9.1e2)', value)
     if (value >= 0.94e100_wp .or. value < 1.0e-99_wp) text = formatted('(es9.1e3)', value)
   end function estimate_number
-
-  !> A part in per cent, two digits of it; empty where it is a hundred times the whole.
-  pure function percent(value, of) result(text)
-    real(wp), intent(in) :: value   !! the number
-    real(wp), intent(in) :: of      !! the whole
-    character(len=:), allocatable :: text
-    real(wp) :: hundredths
-
-    text = ''
-    if (of <= 0.0_wp .or. value >= 100.0_wp*of) return
-    hundredths = 100.0_wp*value/of
-    text = '< 0.001'
-    if (hundredths >= 0.00095_wp) &
-      text = formatted('(f12.'//text_of(max(0, 1 - floor(log10(1.05_wp*hundredths))))//')', hundredths)
-    if (text(len(text):) == '.') text = text(:len(text) - 1)
-    text = text//' %'
-  end function percent
 end module epcont_report_columns

@@ -6,13 +6,14 @@ module epcont_report_listing
   use epcont_base_version, only: program_name, program_version
   use epcont_certificate_scene, only: little, overlap_place
   use epcont_deck_render, only: printable
-  use epcont_report_columns, only: estimate_number, listed_number, number, part, percent, right, &
+  use epcont_report_columns, only: estimate_number, listed_number, number, part, right, &
       rounding_number, table_type
   use epcont_report_echo, only: list_cards
-  use epcont_report_names, only: centre_name, joined, point_name, when
-  use epcont_report_outcome, only: limit_of_pressure, most_pairs, poisson_text, remark_lines, unbounded
+  use epcont_messages_names, only: centre_name, joined, percent, point_name, when
+  use epcont_messages_outcome, only: limit_of_pressure, poisson_text, remark_lines, unbounded
+  use epcont_messages_sentences, only: most_pairs
   use epcont_report_run, only: run_results
-  use epcont_report_scene_text, only: deeper
+  use epcont_messages_scene_text, only: deeper
   use epcont_report_summary, only: figure_type
   use epcont_report_tables, only: put_table
   implicit none

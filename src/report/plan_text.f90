@@ -11,7 +11,7 @@ module epcont_report_plan_text
   use epcont_plan_numbering, only: many_of_flexibility, many_operations
   use epcont_plan_planned_scene, only: planned_scene
   use epcont_report_columns, only: column, state, table_type, whole, word
-  use epcont_report_names, only: joined, motion_name, when
+  use epcont_messages_names, only: joined, motion_name, when
   implicit none
   private
   public :: plan_text

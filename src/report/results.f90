@@ -8,7 +8,7 @@ module epcont_report_results
   use epcont_report_columns, only: table_type
   use epcont_report_file, only: new_text_file, remove_file, text_file
   use epcont_report_listing, only: list_case, list_scene
-  use epcont_report_names, only: joined
+  use epcont_messages_names, only: joined
   use epcont_report_plan_text, only: plan_text
   use epcont_report_run, only: run_results
   use epcont_report_summary, only: figure_type, summarise

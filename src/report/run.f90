@@ -4,7 +4,7 @@ module epcont_report_run
   use epcont_base_text, only: text_of
   use epcont_deck_deck, only: deck_type
   use epcont_model_load_cases, only: load_cases
-  use epcont_report_outcome, only: outcome_type
+  use epcont_messages_outcome, only: outcome_type
   use epcont_solution, only: solution_type
   implicit none
   private

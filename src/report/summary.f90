@@ -8,11 +8,11 @@ module epcont_report_summary
   use epcont_certificate_scene, only: little, overlap_place
   use epcont_element_kinematics, only: directions
   use epcont_report_columns, only: estimate, factor, force, full_number, known, length, listed_number, &
-      number, part, percent, rounding, size_of, stress
+      number, part, rounding, size_of, stress
   use epcont_model_arrays, only: angle
   use epcont_model_springs, only: spring_stretch
-  use epcont_report_names, only: direction_of, motion_name, point_name, when
-  use epcont_report_outcome, only: limit_of_pressure, reason_of, unbounded
+  use epcont_messages_names, only: direction_of, motion_name, percent, point_name, when
+  use epcont_messages_outcome, only: limit_of_pressure, reason_of, unbounded
   use epcont_report_run, only: run_results
   use epcont_result_stresses, only: first_largest, place_of_point
   implicit none

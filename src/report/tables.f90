@@ -8,7 +8,7 @@ module epcont_report_tables
   use epcont_report_case_table, only: case_columns_text
   use epcont_report_columns, only: column, columns_text, estimate, force, known, length, no_number, number, &
       off_curve, rounding, state, stress, table_type, whole, word
-  use epcont_report_outcome, only: limit_of_pressure
+  use epcont_messages_outcome, only: limit_of_pressure
   use epcont_report_run, only: run_results
   use epcont_result_stresses, only: place_of_point
   implicit none

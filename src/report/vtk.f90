@@ -12,7 +12,7 @@ module epcont_report_vtk
   use epcont_element_kinematics, only: directions
   use epcont_flexibility_flexibility, only: pair_forces
   use epcont_report_file, only: new_text_file, text_file
-  use epcont_report_names, only: when
+  use epcont_messages_names, only: when
   use epcont_report_run, only: run_results
   use epcont_result_contact_line, only: contact_line, find_contact_line
   implicit none

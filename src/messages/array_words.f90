@@ -1,5 +1,5 @@
 !> Messages for programs that make their scenes from arrays: what is said of cards, in the words of arrays.
-module epcont_report_array_words
+module epcont_messages_array_words
   implicit none
   private
   public :: in_array_words
@@ -40,4 +40,4 @@ contains
       end do
     end do
   end function in_array_words
-end module epcont_report_array_words
+end module epcont_messages_array_words

@@ -1,5 +1,5 @@
 !> Bodies that pass through each other, in words: where, how deep, and what would mend it.
-module epcont_report_scene_text
+module epcont_messages_scene_text
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: short_real, text_of
   use epcont_certificate_scene, only: beyond_place, largest_change, overlap_place, scene_type
@@ -7,7 +7,7 @@ module epcont_report_scene_text
   use epcont_geometry_boundary_line, only: boundary_line
   use epcont_model_finding, only: of_element, of_node
   use epcont_model_model, only: model_type
-  use epcont_report_names, only: first_grid, point_name
+  use epcont_messages_names, only: first_grid, point_name
   implicit none
   private
   public :: scene_sentence
@@ -229,4 +229,4 @@ contains
                      line%element == model%body_outline%element(side(k))), k=1, 2)]
     end function are_of
   end function scene_sentence
-end module epcont_report_scene_text
+end module epcont_messages_scene_text

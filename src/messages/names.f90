@@ -1,7 +1,7 @@
 !> Parts of a model in words: by their ids, and where they are.
-module epcont_report_names
+module epcont_messages_names
   use epcont_base_kinds, only: wp
-  use epcont_base_text, only: short_real, text_of
+  use epcont_base_text, only: formatted, short_real, text_of
   use epcont_element_kinematics, only: directions
   use epcont_model_arrays, only: angle
   use epcont_model_finding, only: of_node
@@ -10,7 +10,7 @@ module epcont_report_names
   use epcont_plan_planned_scene, only: planned_scene
   implicit none
   private
-  public :: centre_name, direction_of, first_grid, joined, motion_name, point_name, when
+  public :: centre_name, direction_of, first_grid, joined, motion_name, percent, point_name, when
 
 contains
 
@@ -90,4 +90,21 @@ contains
       chosen = otherwise
     end if
   end function when
-end module epcont_report_names
+
+  !> A part in per cent, two digits of it; empty where it is a hundred times the whole.
+  pure function percent(value, of) result(text)
+    real(wp), intent(in) :: value   !! the number
+    real(wp), intent(in) :: of      !! the whole
+    character(len=:), allocatable :: text
+    real(wp) :: hundredths
+
+    text = ''
+    if (of <= 0.0_wp .or. value >= 100.0_wp*of) return
+    hundredths = 100.0_wp*value/of
+    text = '< 0.001'
+    if (hundredths >= 0.00095_wp) &
+      text = formatted('(f12.'//text_of(max(0, 1 - floor(log10(1.05_wp*hundredths))))//')', hundredths)
+    if (text(len(text):) == '.') text = text(:len(text) - 1)
+    text = text//' %'
+  end function percent
+end module epcont_messages_names

@@ -1,0 +1,204 @@
+!> What came of a run, in a word and a sentence; what the largest pressures are beside their figures: bounded,
+!> unbounded, or not resolved by the mesh. And warnings and notes: what the deck has that is not as it seems,
+!> and what of the answer is not as it should be. They stand in the listing, are counted in the summary, and
+!> warnings go to standard error too.
+module epcont_messages_outcome
+  use epcont_base_diagnostic, only: place_type, severity_warning
+  use epcont_base_error, only: status_valid
+  use epcont_base_kinds, only: wp
+  use epcont_base_text, only: newline, plural, short_real, text_of
+  use epcont_base_tolerances, only: no_effect
+  use epcont_element_kinematics, only: directions
+  use epcont_messages_names, only: centre_name, motion_name, percent, when
+  use epcont_messages_scene_text, only: scene_sentence, scene_warnings, side_changed, unsound
+  use epcont_messages_sentences, only: axis_name, body_name, sentence_of
+  use epcont_model_finding, only: findings, of_node, of_scene
+  use epcont_result_answer, only: answer_type
+  use epcont_result_locking, only: high_poisson
+  use epcont_solution, only: solution_type
+  implicit none
+  private
+  public :: outcome_type, judge, limit_of_pressure, reason_of
+  public :: remark_lines, poisson_text
+
+  character(len=*), parameter, public :: unbounded = 'unbounded'
+  character(len=*), parameter :: not_resolved = 'not resolved', no_contact = 'no contact'
+
+  !> What came of a run.
+  type :: outcome_type
+    integer :: status = status_valid            !! exit status
+    character(len=:), allocatable :: word       !! valid, no equilibrium, ...
+    character(len=:), allocatable :: sentence   !! empty where the answer is valid
+    logical :: has_answer = .false.             !! displacements and forces were found
+    type(findings) :: found                     !! warnings and notes of the answer
+  end type outcome_type
+
+  !> A component of the force on a body is warned of where its error is as large, but for a tenth, and it is
+  !! some of the total contact force.
+  real(wp), parameter :: as_much = 0.9_wp, of_total = 0.01_wp
+
+contains
+
+  !> What came of a run.
+  function judge(run) result(outcome)
+    class(solution_type), intent(in) :: run   !! a model with its answer
+    type(outcome_type) :: outcome
+
+    outcome%status = run%verdict%status()
+    outcome%word = run%verdict%word()
+    outcome%sentence = sentence_of(run)
+    outcome%has_answer = run%verdict%has_answer()
+    if (outcome%has_answer) call remark_answer(run, outcome%found)
+  end function judge
+
+  !> Add warnings and notes of an answer: where its equations, solved as they are, are not those of the
+  !! scene.
+  subroutine remark_answer(run, found)
+    class(solution_type), intent(in) :: run
+    type(findings), intent(inout) :: found
+    integer :: k, vague
+
+    if (run%model%contact_is_off .and. .not. run%certificate%scene%sound()) call warn(found,  &
+      'contact is off (BCONTACT): '//scene_sentence(run%model, run%certificate%scene, unsound))
+    call warn_of_contact(run, found)
+    call warn_of_forces(run, found)
+    do k = 1, scene_warnings
+      if (k == side_changed .and. run%answer%gradient%part > 0.0_wp) then
+        call warn(found, 'displacements are not small: '//text_of(nint(100.0_wp*run%answer%gradient%part))// &
+                  ' % of the volume turned or stretched by over 0.1, most at '// &
+                  centre_name(run%model, run%answer%gradient%worst)// &
+                  '; equilibrium and contact are those of the undeformed shape')
+      else
+        call warn(found, scene_sentence(run%model, run%certificate%scene, k))
+      end if
+    end do
+    call warn_of_material(run, found)
+    vague = count(run%answer%contact%indeterminate)
+    if (vague > 0) call warn(found, &
+      'the forces of '//plural(vague, 'pair')//' are one choice of many, and so are their '// &
+      'pressures: pairs at one place, or parts that cannot bend (`force not unique` in CONTACT)')
+    do k = 1, run%motions%count
+      if (.not. run%answer%contact%motion_free(k)) cycle
+      call found%add_note(place_type(), 'approach of '//motion_name(run, k)// &
+                                  ': nothing resists or drives this motion: its value is a choice')
+    end do
+  end subroutine remark_answer
+
+  !> Add a warning; an empty text is none.
+  subroutine warn(found, text)
+    type(findings), intent(inout) :: found
+    character(len=*), intent(in) :: text
+
+    if (len(text) > 0) call found%add_warning(of_scene, 0, 0, text, '')
+  end subroutine warn
+
+  !> No pair closes.
+  subroutine warn_of_contact(run, found)
+    class(solution_type), intent(in) :: run
+    type(findings), intent(inout) :: found
+    integer :: nearest
+
+    if (run%model%pairs == 0 .or. any(run%answer%contact%touching)) return
+    associate (gap => run%answer%contact%gap)
+      ! Of gaps that are as good as equal the first: rounding chooses no pair.
+      nearest = findloc(gap <= (1.0_wp + no_effect)*minval(gap), .true., dim=1)
+      call warn(found, 'nothing touches: no pair carries a force; nearest is '// &
+                run%model%name_of(of_node, run%model%pair_node(1, nearest))//', '// &
+                short_real(gap(nearest))//' away')
+    end associate
+  end subroutine warn_of_contact
+
+  !> A component that narrow contact has by how its normals lean alone, and that may hold a body.
+  subroutine warn_of_forces(run, found)
+    class(solution_type), intent(in) :: run
+    type(findings), intent(inout) :: found
+    real(wp) :: error, force
+    integer :: c, i
+
+    if (.not. allocated(run%accuracy%body_force)) return
+    do i = 1, size(run%answer%bodies)
+      do c = 1, directions
+        force = abs(run%answer%bodies(i)%resultant(c))
+        error = run%accuracy%body_force(c, i)
+        if (error < as_much*force .or. force < of_total*sum(run%answer%contact%force)) cycle
+        call warn(found, 'contact may not bear '//short_real(force)//' along '//axis_name(c)// &
+                  ' on '//body_name(run, run%answer%bodies(i)%body)// &
+                  ': its error is as large, normals lean there; what rests on it may slide')
+      end do
+    end do
+  end subroutine warn_of_forces
+
+  !> Elements that are too stiff, strained too far, or unloaded.
+  subroutine warn_of_material(run, found)
+    class(solution_type), intent(in) :: run
+    type(findings), intent(inout) :: found
+    if (run%answer%locking%elements > 0) &
+      call warn(found, plural(run%answer%locking%elements, 'three-node element')// &
+                ' of nearly constant volume ('//poisson_text(run%answer)// &
+              '): too stiff; six-node elements or CQUAD4 would be right')
+    if (any(run%answer%beyond)) &
+      call warn(found, plural(count(run%answer%beyond), 'element')// &
+                ' strained beyond the last point of the table, whose last slope goes on')
+    if (run%answer%shortfall > 0.0_wp) &
+      call warn(found, 'formula (2-4) (MUP PAPER) is an approximation: stresses beyond yield are up to '// &
+                percent(run%answer%shortfall, 1.0_wp)//' below the curve; the certificate does not see it')
+    if (run%answer%unloaded > 0) &
+      call warn(found, plural(run%answer%unloaded, 'element')//' unloaded after yielding: '// &
+                'the theory takes them back along the curve, not along the elastic line')
+  end subroutine warn_of_material
+
+  !> What the largest pressure of a zone is, or of all zones; empty where that is not known. Where no pair
+  !! touches, it is 0.0, and that is said.
+  pure function limit_of_pressure(run, zone) result(word)
+    class(solution_type), intent(in) :: run   !! a scene with its answer
+    integer, intent(in), optional :: zone     !! not given: the one with the largest pressure
+    character(len=:), allocatable :: word
+    integer :: z
+
+    z = run%accuracy%leading
+    if (present(zone)) z = zone
+    word = ''
+    if (z == 0 .and. run%model%pairs > 0 .and. .not. any(run%answer%contact%touching)) word = no_contact
+    if (z == 0 .or. z > size(run%accuracy%zone)) return
+    if (run%answer%zones(z)%max_pressure < 0.0_wp) return
+    word = when(run%accuracy%zone(z)%resolved, 'bounded', not_resolved)
+    if (run%accuracy%zone(z)%unbounded) word = unbounded
+  end function limit_of_pressure
+
+  !> What a limit means, for the end of a line of the listing; empty where there is nothing to say.
+  pure function reason_of(word) result(text)
+    character(len=*), intent(in) :: word   !! as `limit_of_pressure` has it
+    character(len=:), allocatable :: text
+
+    text = ''
+    if (word == unbounded) text = '   unbounded: it grows with every finer mesh'
+    if (word == no_contact) text = '   no contact: nothing touches'
+    if (word == not_resolved) text = '   not resolved: too few pairs where it is largest'
+  end function reason_of
+
+  !> Warnings of an answer in lines, and its notes if these are wanted.
+  pure function remark_lines(found, with_notes) result(text)
+    type(findings), intent(in) :: found     !! of the answer
+    logical, intent(in) :: with_notes       !! are they?
+    character(len=:), allocatable :: text
+    integer :: i
+
+    text = ''
+    do i = 1, found%count
+      if (found%list(i)%severity == severity_warning) then
+        text = text//'warning: '//found%list(i)%what//newline
+      else if (with_notes) then
+        text = text//found%list(i)%what//newline
+      end if
+    end do
+  end function remark_lines
+
+  !> From which Poisson's ratio on three-node elements lock, and why they have it.
+  pure function poisson_text(answer) result(text)
+    type(answer_type), intent(in) :: answer   !! the answer
+    character(len=:), allocatable :: text
+
+    text = 'Poisson''s ratio '//short_real(high_poisson)//' or more'// &
+           when(any(answer%plastic), ', as yielding has made it')
+  end function poisson_text
+end module epcont_messages_outcome

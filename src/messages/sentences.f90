@@ -1,0 +1,144 @@
+!> The sentence about a verdict: what stands against an answer, and what would mend it.
+module epcont_messages_sentences
+  use epcont_base_kinds, only: wp
+  use epcont_base_text, only: plural, short_real
+  use epcont_base_tolerances, only: valid_to
+  use epcont_certificate_certificate, only: figure_name
+  use epcont_verdict, only: reason_memory, reason_no_equilibrium, reason_none, &
+      reason_not_converged, reason_overlap, reason_rounding, reason_singular, reason_unsound
+  use epcont_element_kinematics, only: directions
+  use epcont_messages_names, only: first_grid, joined, motion_name, when
+  use epcont_messages_scene_text, only: scene_sentence, unsound
+  use epcont_model_arrays, only: angle
+  use epcont_model_finding, only: of_node
+  use epcont_solution, only: solution_type
+  implicit none
+  private
+  public :: body_name, sentence_of
+
+  !> Pairs that are named.
+  integer, parameter, public :: most_pairs = 8
+  character(len=*), parameter, public :: axis_name(2) = ['x', 'y']
+  character(len=*), parameter :: ill_shaped = &
+    'elements differ too much in size or stiffness, hardly anything resists a motion, '// &
+    'a body is too slender, or a Poisson''s ratio is too near 0.5'
+
+contains
+
+  !> The sentence about the verdict of a run; empty where the answer is valid.
+  pure function sentence_of(run) result(text)
+    class(solution_type), intent(in) :: run   !! a model with its answer
+    character(len=:), allocatable :: text
+
+    select case (run%verdict%reason)
+    case (reason_none)
+      text = ''
+    case (reason_memory)
+      text = 'there is not enough memory to factor '//body_name(run, run%answer%failed_body)
+    case (reason_singular)
+      text = 'the stiffness of '//body_name(run, run%answer%failed_body)//' cannot be factored: '// &
+             ill_shaped//when(run%model%has_flat_curve(), '; or a flat curve carries no more (limit load)')
+    case (reason_no_equilibrium)
+      text = escaping(run)
+    case (reason_overlap)
+      text = 'pairs overlap and nothing can give way: CGAP '// &
+             joined(pack(run%model%pair_id, run%answer%contact%overlapping), ' ', most_pairs)
+    case (reason_rounding)
+      text = 'no set of touching pairs passed the test: inconclusive because of rounding ('// &
+             cause_of_rounding(run)//')'
+    case (reason_unsound)
+      text = scene_sentence(run%model, run%certificate%scene, unsound)
+    case (reason_not_converged)
+      text = unconverged(run)
+    case default
+      text = 'the figures are not to be trusted: '//doubts(run)
+    end select
+  end function sentence_of
+
+  !> Which body moves off, and how.
+  pure function escaping(run) result(text)
+    class(solution_type), intent(in) :: run
+    character(len=:), allocatable :: text
+    integer :: k
+
+    k = maxloc(abs(run%answer%contact%escape), dim=1)
+    text = body_name(run, run%motions%body(k))//' moves off and no contact holds it: '// &
+           run%model%name_of(of_node, run%motions%node(k))//' moves along '// &
+           merge('-', '+', run%answer%contact%escape(k) < 0)// &
+           axis_name(min(directions, run%motions%component(k)))
+    if (run%motions%component(k) == angle) text = text(:index(text, ' moves along'))//'turns'
+  end function escaping
+
+  !> Why no set of pairs passed the test.
+  pure function cause_of_rounding(run) result(text)
+    class(solution_type), intent(in) :: run
+    character(len=:), allocatable :: text
+
+    text = 'condition of the stiffness'
+    if (.not. any(run%answer%contact%overlapping)) return
+    associate (turn => abs(run%answer%contact%escape))
+      text = 'CGAP '//joined(pack(run%model%pair_id, run%answer%contact%overlapping), ' ', most_pairs)// &
+             ' alone hold '//motion_name(run, findloc(turn > 0.5_wp*maxval(turn), .true., dim=1))// &
+             ', and hardly: hold it by SPC1'
+    end associate
+  end function cause_of_rounding
+
+  !> What speaks against an answer: the figure of the certificate that is farthest beyond its tolerance, and
+  !! lost digits.
+  pure function doubts(run) result(text)
+    class(solution_type), intent(in) :: run
+    character(len=:), allocatable :: text
+    real(wp), parameter :: least = 1.0e-200_wp   ! a figure over a limit of no size stays a number
+    real(wp) :: figure(size(figure_name)), largest(size(figure_name)), much, taken
+    integer :: worst
+
+    call run%certificate%figures(figure, largest)
+    worst = maxloc(figure/max(largest, least), dim=1)
+    text = ''
+    if (figure(worst) > largest(worst)) text = trim(figure_name(worst))//' '//short_real(figure(worst))// &
+        ' (at most '//short_real(largest(worst))//')'
+    much = 0.1_wp*valid_to
+    taken = epsilon(1.0_wp)/run%answer%weakest%ratio   ! of a pivot: the cause, even if mended
+    if (.not. all(figure <= huge(figure))) then
+      text = 'the work of the loads is too far from 1.0 for a number: other units'
+    else if (taken > much) then
+      if (len(text) > 0) text = text//'; '
+      text = text//'rounding takes '//short_real(taken)//' of a pivot in the stiffness of '// &
+             body_name(run, run%answer%weakest%body)//': '//ill_shaped
+    else if (run%certificate%lost_stress > much) then
+      text = text//'; the rounding of displacements is '//short_real(run%certificate%lost_stress)// &
+             ' of the largest stress: elements too small or too stiff for how far they travel, '// &
+             'or a Poisson''s ratio is too near 0.5'
+    else if (run%answer%condition*epsilon(1.0_wp) > much) then
+      text = text//'; the condition of the stiffness is '//short_real(run%answer%condition)// &
+             ': slender bodies or elements, or SUPORT nodes that are near each other'
+    end if
+  end function doubts
+
+  !> An iteration that was given up, in words.
+  pure function unconverged(run) result(text)
+    class(solution_type), intent(in) :: run
+    character(len=:), allocatable :: text
+
+    associate (last => run%answer%history(size(run%answer%history)))
+      text = 'at load factor '//short_real(last%load_factor)//' '// &
+             when(run%answer%runs_away, 'the displacements grow without end: '// &
+                  'it is more than a material with a flat curve can carry (limit load)', &
+                  'after '//plural(last%iteration, 'iteration')//' displacements still change by '// &
+                  short_real(last%change)// &
+                  ' of the largest (PARAM MAXIT: more of them; '// &
+                  when(run%model%controls%original, 'no ORIGINAL', 'METHOD')//': another way)')// &
+             when(run%answer%carried, '; what follows is for load factor '// &
+                  short_real(run%answer%load_factor)//', the largest that converged')
+    end associate
+  end function unconverged
+
+  !> A body by its first node.
+  pure function body_name(run, body) result(name)
+    class(solution_type), intent(in) :: run
+    integer, intent(in) :: body
+    character(len=:), allocatable :: name
+
+    name = 'the body of '//first_grid(run%model, run%model%body == body)
+  end function body_name
+end module epcont_messages_sentences
