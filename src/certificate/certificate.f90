@@ -90,6 +90,7 @@ contains
     real(wp) :: terms                        ! sum of the sizes of all that these two are sums of
     real(wp) :: forces, largest_force, largest_stress, length
     real(wp), dimension(size(model%platen)) :: torque, turn   ! of those that turn
+    real(wp) :: strained      ! volume times the largest strain, of all points [length**3]
     real(wp) :: given_force   ! largest load or spring force [force]
     real(wp) :: face          ! of the largest element [length**2]
     logical :: unstressed     ! stresses and forces are rounding errors of zero
@@ -98,6 +99,7 @@ contains
     residual = 0.0_wp
     element_force = 0.0_wp
     stored = 0.0_wp
+    strained = 0.0_wp
     call check_springs(model, answer%displacement, residual, element_force, stored)
     given_force = max(maxval(abs(load)), maxval(element_force))
     face = largest_face(model)
@@ -137,7 +139,9 @@ contains
                                 0.0_wp])
     found%equilibrium = max(found%equilibrium, ratio(maxval(abs(residual)), largest_force))
     ! On its curve no stress does less than no work; as far off it as the iteration may leave it, it can.
-    found%energy = ratio(max(abs(work - stored), expansion%work - stored), terms)
+    ! Of bodies that travel far and expand freely all work is that of the stress which rounding makes.
+    found%energy = ratio(max(abs(work - stored), expansion%work - stored) - found%rounding_stress*strained, &
+                         terms)
     found%curve_tolerance = max(valid_to, curve_tolerance)
     found%off_curve_limit = found%curve_tolerance + min(several*found%lost_stress, found%curve_tolerance)
     found%valid = all(within_limits(found))
@@ -199,6 +203,7 @@ contains
           stored = stored + part%work(p)
         end do
       end do
+      strained = strained + part%strained
       call expansion%include(part%expansion)
       found%off_curve = max(found%off_curve, part%off_curve)
       found%motion_strain = max(found%motion_strain, part%motion_strain)

@@ -17,6 +17,7 @@ module epcont_certificate_element_checks
   type :: checked_elements
     real(wp), allocatable :: force(:, :, :)   !! on their nodes [force] [directions, nodes, elements]
     real(wp), allocatable :: work(:)          !! of the stresses [points]
+    real(wp) :: strained = 0.0_wp             !! volume times the largest strain [length**3]
     real(wp) :: off_curve = 0.0_wp, motion_strain = 0.0_wp, lost_stress = 0.0_wp   !! as in the certificate
     real(wp) :: rounding_stress = 0.0_wp, stress_roundings = 0.0_wp
     type(expansion_type) :: expansion
@@ -94,6 +95,7 @@ contains
       strain = strain_by(n, u, points%unit(1, 1, 1, p), ring)
       associate (point => model%first_point(e) + p - 1)
         part%work(point) = points%volume(p)*dot_product(answer%point_stress(:, point), strain)
+        part%strained = part%strained + points%volume(p)*maxval(abs(strain))
         strain(:3) = strain(:3) - points%free(p)
         call check_stress(model, largest_stress, model%section(e), &
                           reshape([before(:, p, :), strain], [components, size(before, 3) + 1]), &
