@@ -21,10 +21,7 @@ module epcont_app_options
     option_type('-o', 'write results to DIR (default: the current directory)', 'DIR', &
                 more='DIR is made where there is none; what it lies in must be there.'), &
     option_type('--check', 'read and check the decks, then stop'), &
-    option_type('--plan', 'print what would be solved and what it takes, then stop', &
-                more='The time that the run would take on this machine goes to standard error: within a '// &
-                     'factor of 2 where contact is found in few steps, and beyond yield in about as many '// &
-                     'solves as are told.'), &
+    option_type('--plan', 'print model size, methods, memory and operations, then stop'), &
     option_type('--tables', 'write node and element tables, whatever the deck asks for', 'all', &
                 more='Without it they are written where the deck has DISPLACEMENT, SPCFORCES or STRESS.'), &
     option_type('--brief', 'write the listing and the summary alone, none of the other tables', &
@@ -34,8 +31,8 @@ module epcont_app_options
     option_type('--memory', 'refuse decks that need more memory (default 16)', 'GB'), &
     option_type('--progress', 'tell of every solve on standard error, terminal or not', &
                 more='Without it, one line on a terminal tells of runs of more than a second, and goes '// &
-                     'when they end: seconds gone and expected, iteration, load factor, change of the '// &
-                     'displacements, yielded elements, touching pairs.'), &
+                     'when they end: elapsed time, then the operations of the first solve, or iteration, '// &
+                     'load factor, change of the displacements, yielded elements, touching pairs.'), &
     option_type('--timing', 'print on standard error where the time of each run went', &
                 more='Seconds of wall clock and of processor by stage, and the largest memory of the '// &
                      'process so far.'), &
