@@ -189,8 +189,6 @@ def check(root):
             yield from ((path, n, text) for n, text in checks)
     yield from ((root / "src", 1, text) for text in check_shape(path.read_text().splitlines() for path in sources))
     yield from ((path, 1, text) for path, text in check_names(sources))
-    for path in sorted((root / "src").rglob("*.inc")):
-        yield from ((path, n, text) for n, text in check_size(path.read_text().splitlines(), columns=COLUMNS))
     for path in sorted((root / "tests").rglob("*.f90")):
         lines = path.read_text().splitlines()
         yield from ((path, n, text) for checks in (check_size(lines), check_habits(lines)) for n, text in checks)
