@@ -223,14 +223,14 @@ REMOVED = [
     ["forecast of the run time in seconds: `--plan`, progress",
      "the time of 151 of 152 decks within a factor of 2 (as `src/README.md` had it), of which `--plan` took 3 ms; other runs take the same time without it",
      "360 lines of src and 700 of tests that follow the machine; `--plan` states operations and memory, progress what is done"],
-    ["large pages (madvise) under the factors and the first step of the heap",
-     "0 to 7 % of processor time, no memory: `tools/decks` hertz 11000 0.091 s with, 0.091 without; `--plastic` 0.198, 0.206; hertz 42000 0.351, 0.366; "
-     "`--plastic` 0.834, 0.840; blocks of 43 000 nodes and 1500 pairs 0.642, 0.657; dovetail 0.380, 0.408; medians of three: hertz 150000 1.48, 1.52. "
-     "Without: the program before, `madvise` replaced by nothing (LD_PRELOAD)",
-     "120 lines, and small pages again where a virtual machine finds large ones slowly"],
+    ["large pages under the factors and, touched ahead, under the heap; small ones where large ones come slowly",
+     "0 to 4 % of processor time (medians of seven, with the row below): `tools/decks` hertz 11000 0.078 s with, 0.081 without; `--plastic` 0.183, 0.183; "
+     "hertz 42000 0.314, 0.328; blocks of 43 000 nodes and 1500 pairs 0.616, 0.621. Large pages under the first step of the heap stay: without them "
+     "0.093, 0.208, 0.367, 0.666 s",
+     "90 lines; one call of madvise (`system/memory.f90`) has most of the gain"],
     ["probes of the condition taken through the factorization and the solves of the error estimates",
-     "at most 3 % of processor time: hertz 42000 0.366 s with, 0.372 with two solves more; `--plastic` 0.840, 0.851; blocks of 43 000 nodes 0.657, 0.665; "
-     "stack 0.440, 0.446; dovetail 0.408, 0.403; medians of three: hertz 150000 1.52, 1.56. Memory 0 to 1 % less without",
+     "at most 3 % of processor time: hertz 42000 0.362 s with, 0.368 with two solves more; `--plastic` 0.818, 0.820; blocks of 43 000 nodes 0.659, 0.680; "
+     "stack 0.442, 0.440; dovetail 0.407, 0.407; hertz 150000 1.473, 1.498. Memory 0 to 1 % less without",
      "110 lines in five files; now one procedure of 20 lines (`assembly/stiffness.f90`)"]]
 
 
