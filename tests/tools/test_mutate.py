@@ -79,7 +79,7 @@ class Generator(unittest.TestCase):
         """All layers that decide an answer."""
         mutate = load("mutate")
         self.assertEqual({path.split("/")[1] for path in mutate.sources()},
-                         {"contact", "contact_geometry", "geometry", "certificate", "plasticity", "flexibility", "accuracy", "report", "result"})
+                         {"contact", "contact_geometry", "geometry", "certificate", "plasticity", "flexibility", "accuracy", "messages", "result", "verdict.f90"})
 
 
 class Judged(Trial):
