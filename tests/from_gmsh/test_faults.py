@@ -113,7 +113,7 @@ SCENE = [
     ('slave = "under"', 'slave = "face"', ["[[contact]] master: 'face' is the slave, too", "the line on the other side of the contact"]),
     ('slave = "under", ', "", ["[[contact]] slave: is missing", 'the name of a line, the one of the coarser mesh, such as slave = "pin"']),
     ("[load]", "[PARAM]\nSERCH = 0.5\n[load]", ["[PARAM] SERCH: is no key here", "one of: RULE, METHOD, MUP, SOLVER, TOL, SEARCH, CORNER, ACCURACY, "
-                                              "MAXIT, NLOAD, FLEXIB, ORIGINAL, WTMASS; did you mean 'SEARCH'?"]),
+                                              "MAXIT, NLOAD, THEORY, FLEXIB, ORIGINAL, WTMASS; did you mean 'SEARCH'?"]),
     ("[load]", "[PARAM]\nMAXIT = 0.5\n[load]", ["[PARAM] MAXIT: is 0.5", "a whole number above zero; epcont --cards PARAM says which"]),
     ("[load]", '[PARAM]\nPLANE = "STRESS"\n[load]', ["[PARAM] PLANE: is said by the scene itself", "kind = ... before the first table"]),
     ("[body.below]", "[body.belov]", ["[body.belov]: two.geo has no Physical Surface of that name", "its surfaces: below, above; did you mean 'below'?",

@@ -141,14 +141,14 @@ class Installed(unittest.TestCase):
             self.assertAlmostEqual(4e-3/(0.91/2.1e5 + 0.8911/7e4), sum(forces), delta=0.25*sum(forces))
 
     def test_sources_in_another_project(self):
-        """add_subdirectory gives the target of find_package, and no tests, benchmarks or packages. (Configured only: to build takes minutes.)"""
+        """add_subdirectory gives the target of find_package, and no tests, benchmarks or packages. (Configured only, for `make`, which lists its targets: to build takes minutes.)"""
         with tempfile.TemporaryDirectory() as name:
             place = pathlib.Path(name)
             (place / "CMakeLists.txt").write_text("cmake_minimum_required(VERSION 3.21)\nproject(other LANGUAGES Fortran)\n"
                                                   f'add_subdirectory("{ROOT}" epcont EXCLUDE_FROM_ALL)\n'
                                                   f'add_executable(two_blocks "{ROOT}/input/library/two_blocks.f90")\n'
                                                   "target_link_libraries(two_blocks PRIVATE epcont::library)\n")
-            done = run(CMAKE, "-S", place, "-B", place / "build", cwd=place)
+            done = run(CMAKE, "-G", "Unix Makefiles", "-S", place, "-B", place / "build", cwd=place)
             self.assertEqual(0, done.returncode, done.stdout + done.stderr)
             told = run(CMAKE, "--build", place / "build", "--target", "help").stdout
             self.assertIn("two_blocks", told)
