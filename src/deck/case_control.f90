@@ -112,7 +112,6 @@ contains
     !> Take one statement.
     subroutine take_statement()
       character(len=:), allocatable :: words
-      integer :: unused
 
       select case (parts%word)
       case ('SOL')
