@@ -3,6 +3,7 @@ module epcont_app_arguments
   use epcont_app_options, only: find_option, option_type, options
   use epcont_base_error, only: error_type, raise, status_usage
   use epcont_base_kinds, only: wp
+  use epcont_deck_field, only: scan_no_point, scan_real, scan_sound
   implicit none
   private
   public :: arguments_type, command_line, read_arguments, stem_of
@@ -63,11 +64,10 @@ contains
 
     !> Take an option, and the word behind it where that is its value.
     subroutine take_option()
-      integer, parameter :: longest = 20
       type(option_type) :: option
       character(len=:), allocatable :: right   ! value, where this is not
       character(len=:), allocatable :: value
-      integer :: status
+      integer :: outcome
 
       option = find_option(words(i)%text)
       value = ''
@@ -88,9 +88,8 @@ contains
       case ('--tables')
         if (value /= 'all') right = '--tables all'
       case ('--memory')
-        ! No exponent, and no length that overflows. READ alone takes `2 x`, `,` and `nan`.
-        read (value, *, iostat=status) arguments%memory
-        if (status /= 0 .or. verify(value, '0123456789.') > 0 .or. len(value) > longest .or. &
+        call scan_real(value, arguments%memory, outcome)
+        if (all(outcome /= [scan_sound, scan_no_point]) .or. verify(value, '0123456789.') > 0 .or. &
             .not. arguments%memory > 0.0_wp) right = 'a positive number of GB'
       case ('--cards')
         arguments%card = value
