@@ -318,13 +318,14 @@ contains
     !! its top, if that is more; mirrored ones and those the other way around too; of those that are as near
     !! all. Of too few pairs for one: what Hertz's pressure falls by over half a spacing [stress].
     pure real(wp) function off_parabola() result(off)
-      real(wp) :: m(0:4), reach, right(0:2), square
+      real(wp) :: m(0:4), reach, right(0:2), square, unit
       real(wp), dimension(size(row, 2)) :: x, y
       logical :: left(size(row, 2))
       integer :: i, k
 
       x = row(1, :)/max(spacing, tiny(1.0_wp))
-      y = row(2, :)**2
+      unit = scale(1.0_wp, exponent(largest) - 1)   ! a power of two, so that no square overflows
+      y = (row(2, :)/unit)**2
       off = largest*error%resolution**2/8.0_wp
       left = .true.
       if (size(left) <= 3) return
@@ -342,8 +343,8 @@ contains
       square = determinant(m, m(0:2))
       if (square <= dependent*m(0)*m(2)*m(4)) return
       associate (here => max(0.0_wp, determinant(m, right)/square))
-        off = sqrt(here) - largest
-        off = max(-off, off + error%weights%rise*rise(m, right, here))
+        off = unit*sqrt(here) - largest
+        off = max(-off, off + error%weights%rise*unit*rise(m, right, here))
       end associate
     end function off_parabola
   end function estimate_at
