@@ -5,7 +5,6 @@ module epcont_accuracy_accuracy
   use epcont_accuracy_error_fields, only: body_fields, compare_fields, error_fields
   use epcont_accuracy_joined_loads, only: contact_sensitivity
   use epcont_accuracy_narrow_zone, only: find_turned, shifted_loads, too_near
-  use epcont_accuracy_passed_loads, only: dense_loads
   use epcont_accuracy_patches, only: new_patch_table, patch_table, wide_patch
   use epcont_accuracy_surface_line, only: first_element, new_surface_line, smooth_pressures, surface_line
   use epcont_accuracy_unit_loads, only: find_sensitivity, find_unit_loads, unit_loads
@@ -83,7 +82,7 @@ contains
       call find_unit_loads(scene, linear, answer, kept%loads, same)
     else
       kept%loads = none%loads
-      call dense_loads(reshape([real(wp) ::], [scene%model%pairs, 0]), kept%loads%passed)
+      allocate (kept%loads%contact%force(scene%model%pairs, 0), kept%loads%contact%unit(0))
     end if
     if (.not. same) then
       if (allocated(kept%field)) deallocate (kept%field)
@@ -122,7 +121,7 @@ contains
     !> The error of the mesh in the energy norm, and the elements that have the most of it.
     subroutine assess_mesh()
       if (kept%table%places == 0) kept%table = new_patch_table(scene%model)
-      call compare_fields(scene, linear, answer, kept%table, kept%loads%passed, kept%field, field)
+      call compare_fields(scene, linear, answer, kept%table, kept%loads%contact, kept%field, field)
       accuracy%element = field%element
       associate (error => sum(field%element))
         if (error > least_difference**2*held_energy()) &
@@ -172,7 +171,7 @@ contains
     !> Approaches and forces, and what errors may do to pairs.
     subroutine assess_sums()
       !> Error of each approach, of the sum of forces, of what bodies bear
-      real(wp) :: off(kept%loads%passed%loads)
+      real(wp) :: off(size(kept%loads%contact%unit))
       integer :: j
 
       accuracy%sensitivity = kept%loads%sensitivity
@@ -184,12 +183,14 @@ contains
       ! What the last step of refinement has not changed is right.
       accuracy%sensitivity%rounding = min(accuracy%sensitivity%rounding, answer%last_correction)
       off = errors()
-      do j = 1, motions
-        if (.not. kept%loads%told(j)) cycle
-        accuracy%approach(j) = off(j)
-        accuracy%approach_unbounded(j) = point_load(j)
-      end do
-      call assess_forces(off(motions + 1:))
+      associate (motion => kept%loads%contact%motion)
+        do j = 1, size(motion)
+          if (kept%loads%contact%unit(j) <= 0.0_wp) cycle
+          accuracy%approach(motion(j)) = off(j)
+          accuracy%approach_unbounded(motion(j)) = point_load(motion(j))
+        end do
+        call assess_forces(off(size(motion) + 1:))
+      end associate
       ! Pressures are as much off as the total force, where that is not given by loads: of uniform ones
       ! nothing else tells.
       where (accuracy%zone%pressure >= 0.0_wp) accuracy%zone%pressure = &
@@ -200,14 +201,13 @@ contains
 
     !> Errors of approaches, then of sums of forces.
     pure function errors() result(off)
-      real(wp) :: off(kept%loads%passed%loads)
+      real(wp) :: off(size(kept%loads%contact%unit))
       !> What a force at each pair adds of what contact at nodes alone lets the bodies come too near, and of
       !! what its ends leave open [length] [pairs]
       real(wp), dimension(scene%model%pairs) :: near, at_ends
-      real(wp), dimension(kept%loads%passed%loads) :: near_sum, end_sum   !! of these, under each load
+      real(wp), dimension(size(off)) :: near_sum, end_sum   !! of these, under each load
       real(wp) :: at_end
       integer :: j, z
-
 
       near = 0.0_wp
       at_ends = 0.0_wp
@@ -223,17 +223,16 @@ contains
         end associate
       end do
       ! Of a tilt of either sign the ends count, not the sum.
-      near_sum = kept%loads%passed%weighed(near)
-      end_sum = kept%loads%passed%weighed(at_ends, magnitudes=.true.)
+      near_sum = matmul(near, kept%loads%contact%force)
+      end_sum = matmul(at_ends, abs(kept%loads%contact%force))
       off = 0.0_wp
       do j = 1, size(off)
-        if (kept%loads%told(j)) off(j) = error_along(j, near_sum(j), end_sum(j))
+        if (kept%loads%contact%unit(j) > 0.0_wp) off(j) = error_along(j, near_sum(j), end_sum(j))
       end do
-      associate (shifted => shifted_loads(scene%model, line, scene%motions, answer))
-        do j = 1, size(kept%loads%share, 2)
-          associate (shared => kept%loads%passed%weighed(kept%loads%share(:, j)))
-            off(motions + j) = off(motions + j) + sum(abs(matmul(shared(:motions), shifted)))
-          end associate
+      associate (shifted => shifted_loads(scene%model, line, scene%motions, answer), &
+                 shared => kept%loads%contact%shared, before => size(kept%loads%contact%motion))
+        do j = 1, size(shared, 2)
+          off(before + j) = off(before + j) + sum(abs(matmul(shared(:, j), shifted)))
         end do
       end associate
     end function errors
@@ -249,7 +248,7 @@ contains
       vague = merge(1.0_wp, unresolved, all(accuracy%zone%resolved))
       short = max(abs(field%along(1, j) - near), uncancelled*field%along(2, j))
       ! Of what pairs or bodies share no part cancels another.
-      if (j > max(1, motions)) short = of_shares*(field%along(2, j) + abs(near))
+      if (j > max(1, size(kept%loads%contact%motion))) short = of_shares*(field%along(2, j) + abs(near))
       ! What a mesh misses is measured by what it has: each error is larger by as much as the energy of its
       ! field is too small. Of unlike elements that bear the largest weight counts.
       error = vague*(at_ends + maxval(accuracy%zone%weights%product)*short/ &
@@ -290,7 +289,7 @@ contains
       if (off(k) <= least_difference*sum(answer%contact%force)) return   ! that is rounding
       do z = 1, size(accuracy%zone)
         force = force + min(1.0_wp, accuracy%zone(z)%waviness**3)* &
-                        sum(abs(kept%loads%share(answer%zones(z)%pairs, k))* &
+                        sum(abs(kept%loads%contact%share(answer%zones(z)%pairs, k))* &
                             answer%contact%force(answer%zones(z)%pairs))
       end do
       force = off(k) + force

@@ -1,11 +1,10 @@
-!> What arrives of unit loads at one body, and its displacements under them.
+!> Unit loads, the forces that they cause at the pairs in contact, and displacements of one body under them.
 !>
 !> Contact frozen, a unit load on one body presses on others down to the ground. But far from it they feel its
 !> resultants only, and no body feels more than its pairs can tell apart: of all loads few are solved for, and
 !> the others are sums of these.
 module epcont_accuracy_body_loads
   use epcont_accuracy_element_errors, only: most_fields
-  use epcont_accuracy_passed_loads, only: passed_loads
   use epcont_assembly_bodies, only: force_fields
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: no_effect
@@ -15,17 +14,33 @@ module epcont_accuracy_body_loads
   use epcont_plan_planned_scene, only: planned_scene
   implicit none
   private
-  public :: body_loads, choose_fields, find_displacements, load_batch, new_body_loads, take_fields
+  public :: body_loads, choose_fields, contact_loads, find_displacements, load_batch, new_body_loads
 
   !> A load that others make up for, but for this part of its largest force on any body, is a sum of these:
   !! with ten times as much the error of an approach could be twice what all loads tell (blocks that tilt),
   !! and a stack of 30 bodies took a twentieth less.
   real(wp), parameter :: made_up_for = 1.0e-3_wp
 
+  !> A unit load along each of some rigid-body modes, then gaps that shrink by the share of each pair in a sum
+  !> of forces.
+  type :: contact_loads
+    integer, allocatable :: motion(:)      !! the modes [assessed modes]
+    real(wp), allocatable :: share(:, :)   !! of each pair in each sum [pairs, sums]
+    real(wp), allocatable :: force(:, :)   !! at each pair under each load [force] [pairs, loads]
+    !> Largest force under each load; 0: nothing is asked of it [force] [loads]
+    real(wp), allocatable :: unit(:)
+    !> Change of each sum by a unit load along each mode of the model [modes, sums]
+    real(wp), allocatable :: shared(:, :)
+    !> Under each load, of joined bodies only [length] [directions, loads, nodes]
+    real(wp), allocatable :: displacement(:, :, :)
+  contains
+    procedure :: ask_for
+  end type contact_loads
+
   !> Of unit loads those that a body feels, and that no batch of fields has told of yet.
   type :: body_loads
     integer, allocatable :: pair(:)        !! those in contact with a node in the body [its pairs]
-    integer, allocatable :: load(:)        !! their columns in what is passed on [loads]
+    integer, allocatable :: load(:)        !! which unit loads these are [loads]
     !> Contact forces, in the unit of each load [loads, its pairs]
     real(wp), allocatable :: force(:, :)
   end type body_loads
@@ -33,23 +48,35 @@ module epcont_accuracy_body_loads
   !> Some loads, and the few of them that make up for all.
   type :: load_batch
     integer, allocatable :: load(:)        !! as in `body_loads` [loads]
-    real(wp), allocatable :: force(:, :)   !! of those that are solved for [body's pairs, fields]
+    integer, allocatable :: field(:)       !! those that are solved for [fields]
+    real(wp), allocatable :: force(:, :)   !! under these [body's pairs, fields]
     real(wp), allocatable :: share(:, :)   !! of each field in each load [fields, loads]
   end type load_batch
 
 contains
 
-  !> The loads that a body feels, of those that are asked for.
-  function new_body_loads(pair, passed) result(loads)
-    integer, intent(in) :: pair(:)              !! those of the body
-    type(passed_loads), intent(in) :: passed    !! forces there
-    type(body_loads) :: loads
-    integer :: k
+  !> Say which loads are asked for; loads without forces tell nothing.
+  pure subroutine ask_for(self, asked)
+    class(contact_loads), intent(inout) :: self
+    logical, intent(in) :: asked(:)   !! [loads]
 
-    loads%pair = pack(pair, passed%level_of(pair) > 0)
-    call passed%find_at(loads%pair, loads%load, loads%force)
-    do k = 1, size(loads%pair)
-      loads%force(:, k) = loads%force(:, k)/passed%unit(loads%load)
+    self%unit = merge(maxval(abs(self%force), dim=1), 0.0_wp, asked .and. any(self%force /= 0.0_wp, dim=1))
+  end subroutine ask_for
+
+  !> The loads that a body feels, of those that are asked for.
+  pure function new_body_loads(pair, unit_loads) result(loads)
+    integer, intent(in) :: pair(:)                   !! those of the body
+    type(contact_loads), intent(in) :: unit_loads    !! forces there
+    type(body_loads) :: loads
+    integer :: j
+
+    associate (felt => unit_loads%force(pair, :) /= 0.0_wp)
+      loads%pair = pack(pair, any(felt, dim=2))
+      loads%load = pack([(j, j=1, size(felt, 2))], any(felt, dim=1) .and. unit_loads%unit > 0.0_wp)
+    end associate
+    allocate (loads%force(size(loads%load), size(loads%pair)))
+    do j = 1, size(loads%load)
+      loads%force(j, :) = unit_loads%force(loads%pair, loads%load(j))/unit_loads%unit(loads%load(j))
     end do
   end function new_body_loads
 
@@ -93,21 +120,6 @@ contains
     call divide(loads, left <= made_up_for**2, chosen(:fields), share, batch)
   end subroutine choose_fields
 
-  !> Take the first loads out of those that are left, each a field of its own.
-  pure subroutine take_fields(loads, batch)
-    type(body_loads), intent(inout) :: loads   !! those that are left
-    type(load_batch), intent(out) :: batch     !! fields that make up for themselves
-    real(wp), allocatable :: share(:, :)
-    integer :: j, n
-
-    n = min(size(loads%load), most_fields)
-    allocate (share(size(loads%load), n), source=0.0_wp)
-    do j = 1, n
-      share(j, j) = 1.0_wp
-    end do
-    call divide(loads, [(j <= n, j=1, size(loads%load))], [(j, j=1, n)], share, batch)
-  end subroutine take_fields
-
   !> From sums of directions to sums of the fields that gave them.
   pure subroutine from_directions(chosen, share)
     integer, intent(in) :: chosen(:)            !! the load of each field
@@ -133,6 +145,7 @@ contains
 
     associate (told => pack([(j, j=1, size(is_told))], is_told), &
                others => pack([(j, j=1, size(is_told))], .not. is_told))
+      batch%field = loads%load(chosen)
       batch%force = transpose(loads%force(chosen, :))
       batch%load = loads%load(told)
       batch%share = transpose(share(told, :size(chosen)))

@@ -2,11 +2,10 @@
 !> (Zienkiewicz and Zhu 1987), and what their errors have in common. Body by body, since of all loads a body
 !> feels few that it tells apart (`body_loads.f90`).
 module epcont_accuracy_error_fields
-  use epcont_accuracy_body_loads, only: body_loads, choose_fields, find_displacements, load_batch, &
-    new_body_loads, take_fields
+  use epcont_accuracy_body_loads, only: body_loads, choose_fields, contact_loads, find_displacements, &
+    load_batch, new_body_loads
   use epcont_accuracy_element_errors, only: element_errors, new_element_errors
   use epcont_accuracy_field_sums, only: field_sums, new_field_sums
-  use epcont_accuracy_passed_loads, only: passed_loads
   use epcont_accuracy_patches, only: patch_table
   use epcont_accuracy_recovery, only: body_samples, place_samples, recover
   use epcont_base_incidence, only: incidence, new_incidence
@@ -52,12 +51,12 @@ module epcont_accuracy_error_fields
 contains
 
   !> Errors of the answer's strains, and what they have in common with those of unit loads.
-  subroutine compare_fields(scene, linear, answer, table, passed, known, field)
+  subroutine compare_fields(scene, linear, answer, table, unit_loads, known, field)
     type(planned_scene), intent(in) :: scene     !! that was solved
     type(linear_problem), intent(inout) :: linear   !! of the last solve
     class(scene_state), intent(in) :: answer     !! to it
     type(patch_table), intent(in) :: table       !! of its elements
-    type(passed_loads), intent(in) :: passed     !! contact forces under unit loads
+    type(contact_loads), intent(in) :: unit_loads   !! contact forces under these
     type(body_fields), intent(inout) :: known(:) !! of the load case before, if the same; of these [bodies]
     type(error_fields), intent(out) :: field     !! what is off
     type(incidence) :: elements, pairs           ! of each body
@@ -65,15 +64,14 @@ contains
     type(body_fields) :: now                     ! of the body
     type(body_samples) :: samples
     real(wp) :: kept                             ! for the next load case [bytes]
-    real(wp) :: sum_of(4, size(passed%unit))     ! what `field_sums` has of all bodies, of each column
-    real(wp) :: total(4, passed%loads)           ! of each load
+    real(wp) :: total(4, size(unit_loads%unit))  ! what `field_sums` has of all bodies, of each load
     integer, allocatable :: element(:)           ! of the body
     integer :: b, k
 
     allocate (field%smooth(components, table%places), field%element(scene%model%elements), &
-              field%missing(passed%loads), source=0.0_wp)
+              field%missing(size(unit_loads%unit)), source=0.0_wp)
     pairs = new_incidence(scene%model%bodies_of_pairs(), scene%model%bodies)
-    sum_of = 0.0_wp
+    total = 0.0_wp
     kept = 0.0_wp
     if (scene%numbering%joined) elements = scene%model%elements_of_bodies()
     do b = 1, scene%model%bodies
@@ -87,8 +85,8 @@ contains
         call known(b)%hand_over(now)
         call compare_on_body(element, table%of_body%of(b))
       else
-        loads = new_body_loads(pairs%of(b), passed)
-        do k = 1, size(passed%unit) + 1
+        loads = new_body_loads(pairs%of(b), unit_loads)
+        do k = 1, size(unit_loads%unit) + 1
           call find_fields(table%of_body%of(b))
           call compare_on_body(element, table%of_body%of(b))
           if (size(loads%load) == 0) exit
@@ -98,31 +96,27 @@ contains
       kept = kept + real_bytes*(size(now%u) + size(now%sample) + size(now%smooth))
       if (linear%borne%keeps .and. kept <= part_of_memory*scene%expected%bytes) call now%hand_over(known(b))
     end do
-    total = passed%add_up(sum_of*spread(passed%unit, 1, 4)**spread([1, 1, 2, 2], 2, size(passed%unit)))
+    total = total*spread(unit_loads%unit, 1, 4)**spread([1, 1, 2, 2], 2, size(unit_loads%unit))
     field%along = total(:2, :)
     where (total(3, :) > 0.0_wp) field%missing = total(3, :)/(total(3, :) + total(4, :))
-    do k = 1, scene%model%points
-      field%energy = field%energy + linear%operator%volume(k)* &
-                     dot_product(answer%strain(:, k), answer%point_stress(:, k))
-    end do
+    field%energy = sum(linear%operator%volume*sum(answer%strain*answer%point_stress, dim=1))
 
   contains
 
-    !> The next batch of loads, and displacements under its fields; joined bodies have those of all loads.
+    !> The next batch of loads, and displacements under its fields; of joined bodies these are known.
     subroutine find_fields(place)
       integer, intent(in) :: place(:)   !! of the body
       integer :: f
 
       if (allocated(now%smooth)) deallocate (now%sample, now%smooth)   ! of the batch before
+      call choose_fields(loads, now%batch)
       if (.not. scene%numbering%joined) then
-        call choose_fields(loads, now%batch)
         call find_displacements(scene, linear, b, loads%pair, now%batch, table%node(place), now%u)
         return
       end if
-      call take_fields(loads, now%batch)
-      now%u = passed%displacement(:, now%batch%load, table%node(place))
+      now%u = unit_loads%displacement(:, now%batch%field, table%node(place))
       do f = 1, size(now%u, 2)
-        now%u(:, f, :) = now%u(:, f, :)/passed%unit(now%batch%load(f))
+        now%u(:, f, :) = now%u(:, f, :)/unit_loads%unit(now%batch%field(f))
       end do
     end subroutine find_fields
 
@@ -165,8 +159,8 @@ contains
       if (width == components) return
       call sums%finish()
       if (.not. told) now%energy = sums%energy
-      sum_of(:2, now%batch%load) = sum_of(:2, now%batch%load) + sums%along
-      sum_of(3:, now%batch%load) = sum_of(3:, now%batch%load) + now%energy
+      total(:2, now%batch%load) = total(:2, now%batch%load) + sums%along
+      total(3:, now%batch%load) = total(3:, now%batch%load) + now%energy
     end subroutine compare_on_body
 
     !> The strains of some elements at their samples, of the answer and so many fields.

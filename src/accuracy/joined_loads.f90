@@ -1,11 +1,12 @@
 !> Unit loads on bodies that are one system, and what errors of the stiffness and of the gaps do to its
 !> contact forces: the figures of `unit_loads`, by solves with its factor, which they share.
 module epcont_accuracy_joined_loads
-  use epcont_accuracy_passed_loads, only: dense_loads, passed_loads
+  use epcont_accuracy_body_loads, only: contact_loads
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: solved_to
   use epcont_element_kinematics, only: directions
   use epcont_flexibility_flexibility, only: terms_of_openings
+  use epcont_linear_joined_springs, only: frozen_response
   use epcont_linear_linear_problem, only: linear_problem
   use epcont_plan_planned_scene, only: planned_scene
   use epcont_result_answer, only: answer_type
@@ -22,57 +23,59 @@ module epcont_accuracy_joined_loads
 
 contains
 
-  !> Unit loads along the motions, then closing gaps; behind them two columns that tell the 1-norms of D M
+  !> Unit loads along motions, then closing gaps; behind them two columns that tell the 1-norms of D M
   !! (`unit_loads`) by Higham and Tisseur. The second solve makes the loads better, and has the columns that
   !! the first has led to. What the contact forces open gaps by, body by body, is taken from the deformation.
   !> Of another load case with the same contacts the loads are known: those columns alone are new.
-  subroutine find_joined_loads(scene, linear, answer, share, passed, probe, sensitivity)
+  subroutine find_joined_loads(scene, linear, answer, unit_loads, probe, sensitivity)
     type(planned_scene), intent(in) :: scene         !! that was solved
     type(linear_problem), intent(inout) :: linear    !! of the last solve
     type(answer_type), intent(in) :: answer          !! with some contact
-    real(wp), intent(in) :: share(:, :)              !! by which gaps close [pairs, loads of that kind]
-    type(passed_loads), intent(inout) :: passed      !! contact forces and displacements
+    !> Motions and shares by which gaps close; contact forces and displacements
+    type(contact_loads), intent(inout) :: unit_loads
     !> What the first solve has for the two columns; not allocated: nothing is known [pairs, 2]
     real(wp), allocatable, intent(inout) :: probe(:, :)
     type(contact_sensitivity), intent(out) :: sensitivity
-    real(wp) :: load(scene%motions%count, &
-                     merge(2, scene%motions%count + size(share, 2) + 2, allocated(probe)))
-    real(wp), dimension(scene%model%pairs, size(load, 2)) :: force, opening
-    real(wp) :: u(directions, size(load, 2), scene%model%nodes)
+    type(frozen_response) :: found
     !> Sums that the gaps come from, of deformations and of travels; what these change of a force, if they are
     !! as much off, of the largest [length] [pairs, 2], [2]
     real(wp) :: sums(scene%model%pairs, 2), change(2), condition
     integer, allocatable :: pressed(:)
-    integer :: j, k, loads
+    integer :: j, k, loads, motions
 
-    loads = size(load, 2) - 2
+    motions = size(unit_loads%motion)
+    loads = merge(0, motions + size(unit_loads%share, 2), allocated(probe))
     pressed = pack([(k, k=1, scene%model%pairs)], answer%contact%force > 0.0_wp)
-    load = 0.0_wp
-    opening = 0.0_wp
-    force = 0.0_wp
-    u = 0.0_wp
+    allocate (found%load(scene%motions%count, loads + 2), found%opening(scene%model%pairs, loads + 2), &
+              found%force(scene%model%pairs, loads + 2), &
+              found%displacement(directions, loads + 2, scene%model%nodes), source=0.0_wp)
     if (.not. allocated(probe)) then
-      do j = 1, scene%motions%count
-        load(j, j) = 1.0_wp
+      do j = 1, motions
+        found%load(unit_loads%motion(j), j) = 1.0_wp
       end do
-      opening(:, scene%motions%count + 1:loads) = -share
-      call begin_probes(opening(:, loads + 1:))
-      call linear%joined%respond(scene, linear%factored_bodies, load, opening, force, u)
-      probe = force(:, loads + 1:)
+      found%opening(:, motions + 1:loads) = -unit_loads%share
+      call begin_probes(found%opening(:, loads + 1:))
+      call linear%joined%respond(scene, linear%factored_bodies, found, at_contact=.true.)
+      probe = found%force(:, loads + 1:)
     end if
-    call turn_probes(opening(:, loads + 1:))
-    force(:, loads + 1:) = 0.0_wp
-    u(:, loads + 1:, :) = 0.0_wp
-    call linear%joined%respond(scene, linear%factored_bodies, load, opening, force, u)
-    change = max(change, maxval(abs(force(pressed, loads + 1:)), dim=1)/maxval(answer%contact%force))
+    call turn_probes(found%opening(:, loads + 1:))
+    found%force(:, loads + 1:) = 0.0_wp
+    found%displacement(:, loads + 1:, :) = 0.0_wp
+    call linear%joined%respond(scene, linear%factored_bodies, found, at_contact=loads == 0)
+    change = max(change, maxval(abs(found%force(pressed, loads + 1:)), dim=1)/maxval(answer%contact%force))
     call linear%estimate_condition(scene, condition)
     sensitivity = contact_sensitivity(.true., change(1), rounding())
     if (loads == 0) return
-    do j = scene%motions%count + 1, loads
-      if (give_way(opening(:, j))) force(:, j) = 0.0_wp
+    do j = motions + 1, loads
+      if (give_way(found%opening(:, j))) found%force(:, j) = 0.0_wp
     end do
-    call dense_loads(force(:, :loads), passed)
-    passed%displacement = u(:, :loads, :)
+    unit_loads%force = found%force(:, :loads)
+    unit_loads%displacement = found%displacement(:, :loads, :)
+    allocate (unit_loads%shared(scene%motions%count, loads - motions))
+    do k = 1, scene%motions%count
+      unit_loads%shared(k, :) = -unit_loads%displacement(scene%motions%component(k), motions + 1:, &
+                                                         scene%motions%node(k))
+    end do
 
   contains
 

@@ -69,7 +69,11 @@ contains
             samples%x(:, before + k) = matmul(model%x(:, node), kind%sample_values(:kind%nodes, k))
           end do
         else
-          samples%x(:, before + 1) = sum(model%x(:, node), dim=2)/kind%nodes
+          samples%x(:, before + 1) = 0.0_wp
+          do k = 1, kind%nodes   ! `sum` copies them: several times as long
+            samples%x(:, before + 1) = samples%x(:, before + 1) + model%x(:, node(k))
+          end do
+          samples%x(:, before + 1) = samples%x(:, before + 1)/kind%nodes
         end if
       end associate
     end subroutine place_element

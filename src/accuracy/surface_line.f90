@@ -113,9 +113,12 @@ contains
     elements = model%around%of(node)
     if (size(elements) == 0) return
     elements = pack(elements, model%section(elements) == model%section(first_element(model, node)))
-    if (all(model%is_held([1, 2], node)) .or. &
-        all([(model%is_rigid(model%connectivity(:model%node_count(elements(i)), elements(i))), &
-              i=1, size(elements))])) elements = [integer ::]
+    if (.not. all(model%is_held([1, 2], node))) then
+      do i = 1, size(elements)
+        if (.not. model%is_rigid(model%connectivity(:model%node_count(elements(i)), elements(i)))) return
+      end do
+    end if
+    elements = [integer ::]
   end function elements_behind
 
   !> The normal stress at each pair, as a pressure: the mean of both sides', of which each has errors of its

@@ -7,10 +7,10 @@
 !> (Skeel 1979). Its largest entry is the 1-norm of D M with D = diag(|dF| |R| + |dg|): summed up where pairs
 !> are few, else estimated from a few products (Hager 1984; Higham 1988).
 module epcont_accuracy_unit_loads
+  use epcont_accuracy_body_loads, only: contact_loads
   use epcont_accuracy_joined_loads, only: contact_sensitivity, find_joined_loads
-  use epcont_accuracy_passed_loads, only: dense_loads, pass_on_loads, passed_loads
   use epcont_base_kinds, only: wp
-  use epcont_base_tolerances, only: least_difference, solved_to
+  use epcont_base_tolerances, only: least_difference, no_effect, solved_to
   use epcont_contact_basis, only: contact_basis, move_basis, renew_basis, respond
   use epcont_contact_equilibrium, only: find_rigid_start, rigid_start
   use epcont_contact_scaling, only: drop_motions, gaps_by_forces, scale_problem, scaled_problem
@@ -22,10 +22,13 @@ module epcont_accuracy_unit_loads
   use epcont_result_body_force, only: shares_of_pairs
   implicit none
   private
-  public :: closing_forces, contact_sensitivity, find_sensitivity, find_unit_loads, unit_loads
+  public :: choose_motions, contact_sensitivity, find_sensitivity, find_unit_loads, load_pairs, unit_loads
 
   !> Bodies up to which errors are estimated of what each bears: one costs as much as two load cases.
   integer, parameter, public :: most_bodies = 12
+
+  !> Rigid-body modes for which the error of the approach is estimated: the largest ones.
+  integer, parameter :: most_motions = 12
 
   !> Pairs up to which all of M is made: the estimate may stop at one of two nearly equal rows, as rounding
   !! has it.
@@ -36,14 +39,12 @@ module epcont_accuracy_unit_loads
   type :: unit_loads
     type(scaled_problem) :: problem
     type(contact_basis) :: basis              !! of the pairs in contact
-    type(passed_loads) :: passed              !! what they make the pairs bear
+    !> Sums of forces are that of all, then each resultant on a body that may be off by itself; what two
+    !! bodies exert on each other is one
+    type(contact_loads) :: contact
     type(contact_sensitivity) :: sensitivity  !! known only of joined bodies yet
-    logical, allocatable :: told(:)           !! which say something [loads]
-    !> Of pairs in the sum of all, then in each resultant on a body that may be off by itself; what two bodies
-    !! exert on each other is one [pairs, any]
-    real(wp), allocatable :: share(:, :)
-    !> There, of each component of what contact exerts on each body; 0: loads alone make it; negative: not
-    !! known [directions, bodies]
+    !> Among these sums, of each component of what contact exerts on each body; 0: loads alone make it;
+    !! negative: not known [directions, bodies]
     integer, allocatable :: column(:, :)
     !> The contacts that they are of
     logical, allocatable, private :: pressed(:), touching(:), motion_free(:)
@@ -64,29 +65,31 @@ contains
     type(unit_loads), intent(inout) :: loads     !! of the load case before; and what they do
     logical, intent(out) :: kept                 !! they are those of the case before
     type(unit_loads) :: none
+    integer, allocatable :: motion(:)            ! assessed ones
     integer :: j
 
-    kept = loads%are_of(answer) .and. .not. linear%materials%yields
+    motion = choose_motions(scene, abs(answer%contact%approach)*linear%problem%motion%sizes(), &
+                            answer%contact%motion_free)
+    kept = loads%are_of(answer, motion) .and. .not. linear%materials%yields
     if (kept) then
-      if (scene%numbering%joined) call find_joined_loads(scene, linear, answer, loads%share, loads%passed, &
-                                                         loads%probe, loads%sensitivity)
+      if (scene%numbering%joined) call find_joined_loads(scene, linear, answer, loads%contact, loads%probe, &
+                                                         loads%sensitivity)
       return
     end if
     loads = none
+    loads%contact%motion = motion
     loads%pressed = answer%contact%force > 0.0_wp
     loads%touching = answer%contact%touching
     loads%motion_free = answer%contact%motion_free
     call find_shares()
     if (scene%numbering%joined) then
-      call find_joined_loads(scene, linear, answer, loads%share, loads%passed, loads%probe, &
-                             loads%sensitivity)
+      call find_joined_loads(scene, linear, answer, loads%contact, loads%probe, loads%sensitivity)
       loads%basis%sound = .true.
     else
       call put_on_pairs()
     end if
-    loads%told = [.not. answer%contact%motion_free, spread(.true., 1, size(loads%share, 2))] .and. &
-                 loads%passed%weighed(spread(1.0_wp, 1, scene%model%pairs), magnitudes=.true.) > 0.0_wp
-    call loads%passed%ask_for(loads%told)
+    call loads%contact%ask_for([.not. answer%contact%motion_free(motion), &
+                                spread(.true., 1, size(loads%contact%share, 2))])
 
   contains
 
@@ -105,15 +108,7 @@ contains
       end if
       call move_basis(linear%basis, loads%basis)
       call renew_basis(loads%basis, loads%problem, answer%contact%force > 0.0_wp)
-      associate (known => closing_forces(loads%problem, loads%basis, loads%share))
-        if (loads%basis%sound) then
-          call pass_on_loads(loads%basis, scene%motions%count, &
-                             loads%problem%motion_size(loads%problem%kept), known, loads%passed)
-        else
-          call dense_loads(reshape([(0.0_wp, j=1, scene%model%pairs*scene%motions%count), known], &
-                                   [scene%model%pairs, scene%motions%count + size(known, 2)]), loads%passed)
-        end if
-      end associate
+      call load_pairs(loads%problem, loads%basis, loads%contact)
     end subroutine put_on_pairs
 
     !> Shares of pairs in sums of forces. Of bodies that no pair touches, though some might, nothing is known.
@@ -121,7 +116,7 @@ contains
       real(wp), dimension(scene%model%pairs) :: one, other   !! of one component, of the other
       integer :: body, c, i, k
 
-      allocate (loads%share(scene%model%pairs, 1), source=1.0_wp)
+      allocate (loads%contact%share(scene%model%pairs, 1), source=1.0_wp)
       allocate (loads%column(directions, size(answer%bodies)), &
                 source=merge(-1, 0, size(answer%bodies) > most_bodies))
       if (size(answer%bodies) > most_bodies) return
@@ -136,11 +131,12 @@ contains
             loads%column(c, i) = -1
             cycle
           end if
-          do k = 2, size(loads%share, 2)
-            if (min(maxval(abs(loads%share(:, k) - one)), &
-                    maxval(abs(loads%share(:, k) + one))) <= least_difference) exit
+          do k = 2, size(loads%contact%share, 2)
+            if (min(maxval(abs(loads%contact%share(:, k) - one)), &
+                    maxval(abs(loads%contact%share(:, k) + one))) <= least_difference) exit
           end do
-          if (k > size(loads%share, 2)) loads%share = reshape([loads%share, one], [size(one), k])
+          if (k > size(loads%contact%share, 2)) &
+            loads%contact%share = reshape([loads%contact%share, one], [size(one), k])
           loads%column(c, i) = k
         end do
       end do
@@ -165,37 +161,77 @@ contains
     end function is_free
   end subroutine find_unit_loads
 
-  !> Are these the contacts of an answer?
-  pure logical function are_of(self, answer)
+  !> The rigid-body modes with the largest motions, in ascending order. Of equal ones the mode with the least
+  !> coordinates of its SUPORT node is taken first, so that the choice does not depend on numbers.
+  pure function choose_motions(scene, extent, free) result(chosen)
+    type(planned_scene), intent(in) :: scene
+    real(wp), intent(in) :: extent(:)   !! largest change of a gap by each mode [length] [modes]
+    logical, intent(in) :: free(:)      !! undetermined, which come last [modes]
+    integer, allocatable :: chosen(:)
+    logical, dimension(size(free)) :: left, among   ! not taken yet; the largest of these
+    real(wp) :: rank(size(free)), largest
+    integer :: j, k
+
+    rank = merge(-1.0_wp, extent, free)
+    where (.not. free .and. rank <= least_difference*maxval(rank)) rank = 0.0_wp   ! rounding
+    left = .true.
+    do k = 1, min(most_motions, size(left))
+      largest = maxval(rank, mask=left)
+      among = left .and. rank >= largest - no_effect*abs(largest)
+      associate (x => scene%model%x(:, scene%motions%node), c => scene%motions%component)
+        among = among .and. x(1, :) <= minval(x(1, :), mask=among)
+        among = among .and. x(2, :) <= minval(x(2, :), mask=among)
+        left(minloc(c, dim=1, mask=among)) = .false.
+      end associate
+    end do
+    chosen = pack([(j, j=1, size(left))], .not. left)
+  end function choose_motions
+
+  !> Are these the contacts of an answer, and its assessed modes?
+  pure logical function are_of(self, answer, motion)
     class(unit_loads), intent(in) :: self
     type(answer_type), intent(in) :: answer
+    integer, intent(in) :: motion(:)
 
     are_of = allocated(self%pressed)
+    if (are_of) are_of = size(motion) == size(self%contact%motion)
     if (.not. are_of) return
-    are_of = all(self%pressed .eqv. answer%contact%force > 0.0_wp) .and. &
+    are_of = all(motion == self%contact%motion) .and. &
+             all(self%pressed .eqv. answer%contact%force > 0.0_wp) .and. &
              all(self%touching .eqv. answer%contact%touching) .and. &
              all(self%motion_free .eqv. answer%contact%motion_free)
   end function are_of
 
-  !> Contact forces when the gap of each pair shrinks by its weight; none where motions give way to that
-  !! [force/length] [pairs, any].
-  pure function closing_forces(problem, basis, weight) result(force)
+  !> Contact forces under unit loads along motions, and when the gap of each pair shrinks by its share: none
+  !> if motions close the gaps. By reciprocity a unit load along a motion changes a sum of forces by the
+  !> approach that closing the gaps causes.
+  pure subroutine load_pairs(problem, basis, loads)
     type(scaled_problem), intent(in) :: problem   !! of the contact
     type(contact_basis), intent(in) :: basis      !! of the pairs in contact
-    real(wp), intent(in) :: weight(:, :)          !! [pairs, any]
-    real(wp) :: force(size(problem%gap), size(weight, 2))
-    real(wp), allocatable :: opening(:, :), carried(:, :)
-    integer :: j
+    type(contact_loads), intent(inout) :: loads   !! motions and shares are given
+    real(wp), allocatable :: opening(:, :), load(:, :), carried(:, :), approach(:, :)
+    integer :: j, motions
 
-    force = 0.0_wp
-    if (.not. basis%sound) return
-    opening = -weight(basis%pairs, :)/problem%gap_unit
-    carried = forces_under(basis, opening)
-    do j = 1, size(weight, 2)
-      if (maxval(abs(carried(:, j))) > solved_to*maxval(abs(opening(:, j)))) &
-        force(basis%pairs, j) = carried(:, j)*problem%force_unit
-    end do
-  end function closing_forces
+    motions = size(loads%motion)
+    associate (all_loads => motions + size(loads%share, 2), unit => problem%motion_size)
+      allocate (loads%force(size(problem%gap), all_loads), loads%shared(size(unit), size(loads%share, 2)), &
+                source=0.0_wp)
+      if (.not. basis%sound) return
+      allocate (opening(size(basis%pairs), all_loads), load(basis%motions, all_loads), source=0.0_wp)
+      do j = 1, motions
+        where (basis%kept == loads%motion(j)) load(:, j) = 1.0_wp/unit(loads%motion(j))
+      end do
+      opening(:, motions + 1:) = -loads%share(basis%pairs, :)/problem%gap_unit
+      call respond(basis, opening, load, carried, approach)
+      where (abs(carried(:, :motions)) <= least_difference/maxval(unit)) carried(:, :motions) = 0.0_wp
+      loads%force(basis%pairs, :motions) = carried(:, :motions)
+      do j = motions + 1, all_loads
+        if (maxval(abs(carried(:, j))) > solved_to*maxval(abs(opening(:, j)))) &
+          loads%force(basis%pairs, j) = carried(:, j)*problem%force_unit
+        loads%shared(basis%kept, j - motions) = -approach(:, j)*problem%gap_unit/unit(basis%kept)
+      end do
+    end associate
+  end subroutine load_pairs
 
   !> Forces that keep the pairs in contact closed where their gaps would open so, nothing else driving them
   !! [pairs in contact, any].
@@ -218,6 +254,7 @@ contains
     real(wp), intent(in) :: condition    !! of the stiffness
     type(contact_sensitivity) :: found
     real(wp), allocatable :: opening(:), pressed(:), rounding(:)
+    real(wp) :: change(2)                !! by these
 
     if (.not. basis%sound .or. size(basis%pairs) == 0) return
     found%known = .true.
@@ -226,11 +263,32 @@ contains
     opening = gaps_by_forces(problem, pressed, magnitudes=.true.)
     opening = opening(basis%pairs)
     rounding = epsilon(1.0_wp)*(condition*opening + travel(basis%pairs)/problem%gap_unit)
-    found%amplification = largest_change(basis, opening)*problem%force_unit/maxval(force)
-    found%rounding = min(1.0_wp, largest_change(basis, rounding)*problem%force_unit/maxval(force))
+    change = largest_changes(basis, reshape([opening, rounding], [size(opening), 2])) &
+             *problem%force_unit/maxval(force)
+    found%amplification = change(1)
+    found%rounding = min(1.0_wp, change(2))
   end function find_sensitivity
 
-  !> 1-norm of D M.
+  !> 1-norm of D M, of each D.
+  pure function largest_changes(basis, d) result(norm)
+    type(contact_basis), intent(in) :: basis
+    real(wp), intent(in) :: d(:, :)   !! diagonals [pairs in contact, any]
+    real(wp) :: norm(size(d, 2))
+    real(wp), allocatable :: opening(:, :)
+    integer :: k
+
+    if (size(d, 1) > few_pairs) then
+      norm = [(largest_change(basis, d(:, k)), k=1, size(d, 2))]
+    else
+      allocate (opening(size(d, 1), size(d, 1)), source=0.0_wp)
+      do k = 1, size(d, 1)
+        opening(k, k) = 1.0_wp
+      end do
+      norm = maxval(matmul(transpose(d), abs(forces_under(basis, opening))), dim=2)
+    end if
+  end function largest_changes
+
+  !> 1-norm of D M, estimated.
   pure real(wp) function largest_change(basis, d) result(norm)
     type(contact_basis), intent(in) :: basis
     real(wp), intent(in) :: d(:)
@@ -238,14 +296,6 @@ contains
     integer :: k, product
 
     norm = 0.0_wp
-    if (size(d) <= few_pairs) then
-      do k = 1, size(d)
-        x = 0.0_wp
-        x(k) = 1.0_wp
-        norm = max(norm, sum(abs(d*change(x))))
-      end do
-      return
-    end if
     x = 1.0_wp/size(d)
     do product = 1, most_products
       y = d*change(x)

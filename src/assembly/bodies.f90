@@ -280,18 +280,21 @@ contains
 
   !> Displacements of nodes of one body under several fields of forces on some of its nodes, supports at zero.
   !! All fields are solved for at once: so the factor is read only twice.
-  subroutine body_displacements(self, scene, b, loads, node, u)
+  subroutine body_displacements(self, scene, b, loads, node, u, at_contact)
     class(factored_bodies), intent(inout) :: self
     type(planned_scene), intent(in) :: scene       !! with the numbers of its equations
     integer, intent(in) :: b                       !! the body
     type(force_fields), intent(in) :: loads        !! forces on it
     integer, intent(in) :: node(:)                 !! those that are asked for
     real(wp), intent(out) :: u(:, :, :)            !! [length] [directions, fields, nodes asked for]
+    logical, intent(in), optional :: at_contact    !! only what gaps depend on is wanted, the rest is zero
     real(wp), allocatable :: border(:, :), inner(:, :)
     real(wp) :: own(directions, size(u, 2))
-    integer :: c, i
+    integer :: c, first, i
 
+    first = 1
     associate (body => scene%numbering%body(b))
+      if (present(at_contact)) first = merge(body%first_contact, 1, at_contact)
       allocate (inner(body%equations, size(u, 2)), border(body%border, size(u, 2)), source=0.0_wp)
     end associate
     do i = 1, size(loads%node)
@@ -305,7 +308,8 @@ contains
       end do
     end do
     call self%body(b)%solve_lower(inner, border)
-    call self%body(b)%solve_upper(inner, border, 1)
+    call self%body(b)%solve_upper(inner, border, first)
+    inner(:first - 1, :) = 0.0_wp
     do i = 1, size(node)
       own = 0.0_wp
       do c = 1, directions

@@ -22,7 +22,7 @@ module epcont_linear_joined_contact
   use epcont_flexibility_flexibility, only: gap_opening, pair_forces, terms_of_openings
   use epcont_flexibility_motion_matrix, only: motion_matrix
   use epcont_linear_contact_ends, only: reach_ends
-  use epcont_linear_joined_springs, only: find_springs, put_on_nodes, half_plane, of_pairs
+  use epcont_linear_joined_springs, only: find_springs, frozen_response, put_on_nodes, half_plane, of_pairs
   use epcont_linear_line_search, only: has_settled, least_at
   use epcont_linear_load_line, only: load_line
   use epcont_linear_scene_state, only: scene_state
@@ -348,32 +348,31 @@ contains
     end associate
   end subroutine settle
 
-  !> Contact forces and displacements, the set of contacts frozen, under loads along the free motions and
-  !! openings of the gaps, in one solve: of what is wrong of the forces it leaves a thousandth or less.
-  subroutine respond(self, scene, bodies, load, opening, force, u)
+  !> Find forces and displacements under loads and openings in one solve; of what is wrong of forces as far as
+  !> known it leaves a thousandth or less. Springs at SUPORT freedoms bear what known displacements say.
+  subroutine respond(self, scene, bodies, found, at_contact)
     class(joined_contact), intent(in) :: self
     type(planned_scene), intent(in) :: scene
-    class(factored_bodies), intent(inout) :: bodies !! factored with that set
-    real(wp), intent(in) :: load(:, :)              !! [force] [motions, any]
-    real(wp), intent(in) :: opening(:, :)           !! [length] [pairs, any]
-    real(wp), intent(inout) :: force(:, :)          !! as far as known; then better [force] [pairs, any]
-    !> As far as known, for what springs at SUPORT freedoms bear [length] [directions, any, nodes]
-    real(wp), intent(inout) :: u(:, :, :)
+    class(factored_bodies), intent(inout) :: bodies !! factored with the set of contacts
+    type(frozen_response), intent(inout) :: found
+    logical, intent(in) :: at_contact               !! only displacements that gaps depend on are wanted
     type(force_fields) :: loads
     integer :: c, k
 
-    do k = 1, size(self%gamma)
-      if (self%closed(k)) force(k, :) = force(k, :) - self%gamma(k)*opening(k, :)
-    end do
-    call put_on_nodes(scene, self%closed, force, loads)
-    do k = 1, scene%motions%count
-      c = scene%motions%component(k)
-      loads%force(c, :, k) = load(k, :) + self%hold(k)*u(c, :, scene%motions%node(k))
-    end do
-    call bodies%body_displacements(scene, 1, loads, [(k, k=1, scene%model%nodes)], u)
-    do k = 1, size(load, 2)
-      where (self%closed) force(:, k) = force(:, k) - self%gamma*gap_opening(scene%model, u(:, k, :))
-    end do
+    associate (force => found%force, u => found%displacement)
+      do k = 1, size(self%gamma)
+        if (self%closed(k)) force(k, :) = force(k, :) - self%gamma(k)*found%opening(k, :)
+      end do
+      call put_on_nodes(scene, self%closed, force, loads)
+      do k = 1, scene%motions%count
+        c = scene%motions%component(k)
+        loads%force(c, :, k) = found%load(k, :) + self%hold(k)*u(c, :, scene%motions%node(k))
+      end do
+      call bodies%body_displacements(scene, 1, loads, [(k, k=1, scene%model%nodes)], u, at_contact)
+      do k = 1, size(force, 2)
+        where (self%closed) force(:, k) = force(:, k) - self%gamma*gap_opening(scene%model, u(:, k, :))
+      end do
+    end associate
   end subroutine respond
 
   !> Are the contact forces the only ones? Forces that open no gaps are what a solve leaves of any; of two

@@ -7,7 +7,7 @@ module epcont_linear_joined_springs
   use epcont_plan_planned_scene, only: planned_scene
   implicit none
   private
-  public :: find_springs, put_on_nodes
+  public :: frozen_response, find_springs, put_on_nodes
 
   !> Stiffness of a spring over that of the softer body at its pair. A step leaves 1E-3 of the gaps, mostly
   !! 1E-4; more would cost digits of the factor, of which steps bring back as many each.
@@ -20,6 +20,14 @@ module epcont_linear_joined_springs
   !> What a half-plane gives way by at a force on a node of its boundary, against what is a hundred sides
   !! below it (2 ln(200)/pi), over what the node's own stiffness would let it.
   real(wp), parameter, public :: half_plane = 3.4_wp
+
+  !> What joined bodies do under some loads, the set of contacts frozen.
+  type :: frozen_response
+    real(wp), allocatable :: load(:, :)      !! along the motions [force] [motions, any]
+    real(wp), allocatable :: opening(:, :)   !! of the gaps [length] [pairs, any]
+    real(wp), allocatable :: force(:, :)     !! [force] [pairs, any]
+    real(wp), allocatable :: displacement(:, :, :)   !! [length] [directions, any, nodes]
+  end type frozen_response
 
 contains
 

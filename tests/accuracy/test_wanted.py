@@ -4,11 +4,14 @@ import os
 import pathlib
 import re
 import subprocess
+import sys
 import tempfile
 import unittest
 
 PROGRAM = os.environ["EPCONT_PROGRAM"]
 INPUT = pathlib.Path(os.environ["EPCONT_SOURCE_DIR"]) / "input"
+sys.path.insert(0, str(INPUT.parent / "tools"))
+from scenes import many  # noqa: E402
 
 
 class Wanted(unittest.TestCase):
@@ -32,6 +35,16 @@ class Wanted(unittest.TestCase):
 
     def difference(self, some, others):
         return max(abs(a - b) for a, b in zip(some, others, strict=True)) / max(others)
+
+    def test_twelve_modes_have_an_error(self):
+        """Of 14 bodies that rise and turn the upper six, whose motions are largest; the same by both contact rules."""
+        found = {}
+        for rule in ("CONRY", "JOINED"):
+            run, listing, _ = self.run_text(many.stack(15, 6, 4).text(), f"RULE,{rule}")
+            self.assertEqual(0, run.returncode)
+            found[rule] = dict(re.findall(r"^ *mesh: approach of GRID (\d+) direction 2 +(\S+)", listing, re.MULTILINE))
+        self.assertEqual([str(100 * body + end) for body in range(9, 15) for end in (29, 35)], list(found["CONRY"]))
+        self.assertEqual(found["CONRY"], found["JOINED"])
 
     def test_faults(self):
         for value in ("0.0", "1.0", "-0.1"):
