@@ -64,16 +64,16 @@ contains
 
     !> From file to results, and what there is to say of it.
     subroutine solve_deck()
-      call prepare()
+      call prepare(path, watch, run, error)
       if (allocated(error)) return
       if (run%faults%errors > 0) then
         call print_error(render(run%faults, run%deck%source))
         status = status_deck
-        call say(name//'  rejected')
+        call say(arguments, name//'  rejected', status)
         return
       end if
       if (arguments%asks('--check')) then
-        call say(name//'  checked')
+        call say(arguments, name//'  checked', status)
       else
         run%plan_cases = size(run%cases%of_pattern(1))
         call run%make_plan(watch)
@@ -115,7 +115,7 @@ contains
         call solve_pattern(run, p, names, results, words, watch, error)
         written = any(words%known)
         if (allocated(error)) return
-        call say_words(words, run%cases%of_pattern(p))
+        call say_words(arguments, words, run%cases%of_pattern(p), status, watch)
         call results%add_plan(run, run%cases%of_pattern(p))
       end do
       call results%finish(run, error)
@@ -132,37 +132,26 @@ contains
       run%plan_cases = size(run%cases%of_pattern(p))
       call run%make_plan(watch)
     end subroutine take_pattern
+  end subroutine run_deck
 
-    !> Print the results of some load cases, in their order. (gfortran 12 does not free what a copy of these
-    !! words has allocated.)
-    subroutine say_words(words, cases)
-      type(case_words), intent(in) :: words(:)   !! [cases]
-      integer, intent(in) :: cases(:)
-      integer :: k
+  !> Read and check.
+  subroutine prepare(path, watch, run, error)
+    character(len=*), intent(in) :: path
+    type(progress_type), intent(inout) :: watch
+    type(run_results), intent(inout) :: run
+    type(error_type), allocatable, intent(inout) :: error
+    call read_deck(path, run%deck, run%faults, error)
+    call watch%lap(stage_reading)
+    if (allocated(error)) return
+    call build_model(run%deck, run%model, run%faults, run%cases)
+    call watch%lap(stage_model)
+    if (run%faults%errors > 0) return
+    call run%find_motions(run%faults)
+    call tell(run%deck, run%model%kinds, run%faults, 1)
+    call check_patterns()
+    call watch%lap(stage_plan)
 
-      call watch%erase()
-      do k = 1, size(cases)
-        associate (said => words(cases(k)))
-          status = max(status, said%status)
-          call print_error(said%remarks)
-          call say(said%line)
-        end associate
-      end do
-    end subroutine say_words
-
-    !> Read and check.
-    subroutine prepare()
-      call read_deck(path, run%deck, run%faults, error)
-      call watch%lap(stage_reading)
-      if (allocated(error)) return
-      call build_model(run%deck, run%model, run%faults, run%cases)
-      call watch%lap(stage_model)
-      if (run%faults%errors > 0) return
-      call run%find_motions(run%faults)
-      call tell(run%deck, run%model%kinds, run%faults, 1)
-      call check_patterns()
-      call watch%lap(stage_plan)
-    end subroutine prepare
+  contains
 
     !> What is wrong with the scene where load cases hold other freedoms than the first, and not there too.
     subroutine check_patterns()
@@ -180,12 +169,34 @@ contains
         end do
       end do
     end subroutine check_patterns
+  end subroutine prepare
 
-    !> A line on standard output.
-    subroutine say(text)
-      character(len=*), intent(in) :: text
+  !> A line on standard output.
+  subroutine say(arguments, text, status)
+    type(arguments_type), intent(in) :: arguments
+    character(len=*), intent(in) :: text
+    integer, intent(inout) :: status
 
-      if (.not. arguments%asks('--quiet')) call print_text(text, status)
-    end subroutine say
-  end subroutine run_deck
+    if (.not. arguments%asks('--quiet')) call print_text(text, status)
+  end subroutine say
+
+  !> Print the results of some load cases, in their order. (gfortran 12 does not free what a copy of these
+  !! words has allocated.)
+  subroutine say_words(arguments, words, cases, status, watch)
+    type(arguments_type), intent(in) :: arguments
+    type(case_words), intent(in) :: words(:)   !! [cases]
+    integer, intent(in) :: cases(:)
+    integer, intent(inout) :: status
+    type(progress_type), intent(inout) :: watch
+    integer :: k
+
+    call watch%erase()
+    do k = 1, size(cases)
+      associate (said => words(cases(k)))
+        status = max(status, said%status)
+        call print_error(said%remarks)
+        call say(arguments, said%line, status)
+      end associate
+    end do
+  end subroutine say_words
 end module epcont_app_driver

@@ -87,9 +87,9 @@ contains
       call check_body_loads(model, cases%body%given, faults)
       call finish_model(model, faults)
     end if
-    call note_without_effect()
+    call note_without_effect(deck, model, cases, faults)
     if (present(all_cases)) all_cases = cases
-    call find_card_of_contact()
+    call find_card_of_contact(deck, chosen, faults)
     call tell(deck, model%kinds, faults)
 
   contains
@@ -147,30 +147,36 @@ contains
       model%held = held(:directions, :)
       model%platen%held = held(angle, model%platen%leader)
     end subroutine hold
+  end subroutine build_model
 
-    !> Note the cards that nothing uses: no other card, or no load case.
-    subroutine note_without_effect()
-      integer, allocatable :: sections(:)
-      integer :: c
+  !> Note the cards that nothing uses: no other card, or no load case.
+  subroutine note_without_effect(deck, model, cases, faults)
+    type(deck_type), intent(in) :: deck
+    type(model_type), intent(in) :: model
+    type(load_cases), intent(in) :: cases
+    type(diagnostics), intent(inout) :: faults
+    integer, allocatable :: sections(:)
+    integer :: c
 
-      associate (elements => element_cards(deck, model%kinds), cid => deck%card(card_cgap)%column('CID'))
-        sections = [(ids(elements(c), 2), c=1, size(elements))]
-        call note_unnamed(deck, card_pshell, 1, sections, 'element', faults)
-        call note_unnamed(deck, card_psolid, 1, sections, 'element', faults)
-        call note_unnamed(deck, card_mat1, 1, [ids(card_pshell, 2), ids(card_psolid, 2)], &
-                          'PSHELL or PSOLID', faults)
-        call note_unnamed(deck, card_tables1, 1, ids(card_mats1, 2), 'MATS1', faults)
-        call note_unnamed(deck, card_pgap, 1, ids(card_cgap, 2), 'CGAP', faults)
-        call note_unnamed(deck, card_cord2r, 1, ids(card_cgap, cid), 'CGAP', faults)
-        call note_unnamed(deck, card_pelas, 1, ids(card_celas1, 2), 'CELAS1', faults)
-        call note_unnamed(deck, card_pelas, 5, ids(card_celas1, 2), 'CELAS1', faults)
-      end associate
-      if (all(cases%case%contact /= contact_all)) &
-        call note_unnamed(deck, card_bconp, 1, cases%case%contact, 'BCONTACT', faults)
-      if (all(cases%case%contact == contact_none) .and. deck%card(card_cgap)%count > 0) &
-        call faults%add_note(card_cgap, 1, 1, &
-          ': BCONTACT is NONE in all load cases'//and_more(deck%card(card_cgap)%count, ' (', ' more CGAPs)'))
-    end subroutine note_without_effect
+    associate (elements => element_cards(deck, model%kinds), cid => deck%card(card_cgap)%column('CID'))
+      sections = [(ids(elements(c), 2), c=1, size(elements))]
+      call note_unnamed(deck, card_pshell, 1, sections, 'element', faults)
+      call note_unnamed(deck, card_psolid, 1, sections, 'element', faults)
+      call note_unnamed(deck, card_mat1, 1, [ids(card_pshell, 2), ids(card_psolid, 2)], &
+                        'PSHELL or PSOLID', faults)
+      call note_unnamed(deck, card_tables1, 1, ids(card_mats1, 2), 'MATS1', faults)
+      call note_unnamed(deck, card_pgap, 1, ids(card_cgap, 2), 'CGAP', faults)
+      call note_unnamed(deck, card_cord2r, 1, ids(card_cgap, cid), 'CGAP', faults)
+      call note_unnamed(deck, card_pelas, 1, ids(card_celas1, 2), 'CELAS1', faults)
+      call note_unnamed(deck, card_pelas, 5, ids(card_celas1, 2), 'CELAS1', faults)
+    end associate
+    if (all(cases%case%contact /= contact_all)) &
+      call note_unnamed(deck, card_bconp, 1, cases%case%contact, 'BCONTACT', faults)
+    if (all(cases%case%contact == contact_none) .and. deck%card(card_cgap)%count > 0) &
+      call faults%add_note(card_cgap, 1, 1, &
+        ': BCONTACT is NONE in all load cases'//and_more(deck%card(card_cgap)%count, ' (', ' more CGAPs)'))
+
+  contains
 
     !> The ids in a column of a table.
     pure function ids(card, column)
@@ -179,18 +185,21 @@ contains
 
       ids = nint(deck%card(card)%value(column, :))
     end function ids
+  end subroutine note_without_effect
 
-    !> Of contacts the only one is chosen: what is found of it is of its card.
-    subroutine find_card_of_contact()
-      integer :: i
+  !> Of contacts the only one is chosen: what is found of it is of its card.
+  subroutine find_card_of_contact(deck, chosen, faults)
+    type(deck_type), intent(in) :: deck
+    integer, intent(in) :: chosen
+    type(diagnostics), intent(inout) :: faults
+    integer :: i
 
-      if (chosen <= 0) return
-      do i = 1, faults%count
-        if (faults%list(i)%of == of_couple) &
-          faults%list(i)%which = findloc(nint(deck%card(card_bconp)%value(1, :)), chosen, dim=1)
-      end do
-    end subroutine find_card_of_contact
-  end subroutine build_model
+    if (chosen <= 0) return
+    do i = 1, faults%count
+      if (faults%list(i)%of == of_couple) &
+        faults%list(i)%which = findloc(nint(deck%card(card_bconp)%value(1, :)), chosen, dim=1)
+    end do
+  end subroutine find_card_of_contact
 
   !> Put the names of their cards before what was found of the scene, with the places of these.
   subroutine tell(deck, kinds, faults, case)

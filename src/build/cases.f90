@@ -59,11 +59,11 @@ contains
     call note_unused(deck, [card_load], loads, found)
     call find_platens(deck, nodes, supports, used, model, found)
     call find_moments(deck, nodes, used, model, cases%moment, found)
-    call add_forces()
-    call add_pressures()
+    call add_forces(deck, nodes, used, cases, found)
+    call add_pressures(deck, nodes, model, used, cases, found)
     call build_mass_loads(deck, nodes, model, used, cases%body, found)
-    call add_displacements(card_spc, supports, cases%held_at)
-    call add_displacements(card_spcd, used, cases%moved)
+    call add_displacements(deck, nodes, model, card_spc, supports, cases%held_at, found)
+    call add_displacements(deck, nodes, model, card_spcd, used, cases%moved, found)
 
   contains
 
@@ -123,43 +123,50 @@ contains
           ': NLPARM says the number of load steps, too', 'one of the two')
       end associate
     end subroutine choose_load_steps
+  end subroutine build_cases
 
-    !> FORCE.
-    subroutine add_forces()
-      integer :: i, node(deck%card(card_force)%count)
-      real(wp) :: direction(2), factor, largest
-      logical :: idle(size(node))
+  !> FORCE.
+  subroutine add_forces(deck, nodes, used, cases, found)
+    type(deck_type), intent(in) :: deck
+    type(card_index), intent(in) :: nodes
+    integer, intent(in) :: used(:)
+    type(load_cases), intent(inout) :: cases
+    type(findings), intent(inout) :: found
+    integer :: i, node(deck%card(card_force)%count)
+    real(wp) :: direction(2), factor, largest
+    logical :: idle(size(node))
 
-      idle = .false.
-      call resolve(deck, card_force, 2, nodes, found, node)
-      associate (force => deck%card(card_force))
-        node = merge(node, 0, [(any(used == nint(force%value(1, i))), i=1, size(node))])
-        allocate (cases%force(count(node > 0)))
-        cases%force%set = pack(nint(force%value(1, :)), node > 0)
-        cases%force%node = pack(node, node > 0)
-        do i = 1, force%count
-          if (node(i) == 0) cycle
-          factor = force%number('F', i)
-          direction = [force%number('N1', i), force%number('N2', i)]
-          largest = maxval(abs(direction))
-          idle(i) = all(direction == 0.0_wp)
-          if (force%number('N3', i) /= 0.0_wp) &
-            call found%add_error(card_force, i, force%column('N3'), ': field 8 (N3) points off the plane', &
-                                 '0.0: scenes lie in the x-y plane')
-          ! Not zero, but of a size that no field may give it.
-          if (factor /= 0.0_wp .and. largest > 0.0_wp .and. &
-              (abs(factor)*largest < least_cause .or. abs(factor)*largest > farthest)) &
-            call found%add_error(card_force, i, force%column('F'), &
-                                 ': field 5 (F) times the vector of N1 and N2 is too far from 1.0', &
-                                 'other units: forces from '//short_real(least_cause)//' to '// &
-                                 short_real(farthest)//', or 0.0')
-          ! What rounding has left of a right angle, such as the cosine of 90 degrees, is no direction.
-          where (abs(direction) < epsilon(1.0_wp)*largest) direction = 0.0_wp
-          cases%force(count(node(:i) > 0))%force = factor*direction
-        end do
-      end associate
-      call report_idle(idle)
-    end subroutine add_forces
+    idle = .false.
+    call resolve(deck, card_force, 2, nodes, found, node)
+    associate (force => deck%card(card_force))
+      node = merge(node, 0, [(any(used == nint(force%value(1, i))), i=1, size(node))])
+      allocate (cases%force(count(node > 0)))
+      cases%force%set = pack(nint(force%value(1, :)), node > 0)
+      cases%force%node = pack(node, node > 0)
+      do i = 1, force%count
+        if (node(i) == 0) cycle
+        factor = force%number('F', i)
+        direction = [force%number('N1', i), force%number('N2', i)]
+        largest = maxval(abs(direction))
+        idle(i) = all(direction == 0.0_wp)
+        if (force%number('N3', i) /= 0.0_wp) &
+          call found%add_error(card_force, i, force%column('N3'), ': field 8 (N3) points off the plane', &
+                               '0.0: scenes lie in the x-y plane')
+        ! Not zero, but of a size that no field may give it.
+        if (factor /= 0.0_wp .and. largest > 0.0_wp .and. &
+            (abs(factor)*largest < least_cause .or. abs(factor)*largest > farthest)) &
+          call found%add_error(card_force, i, force%column('F'), &
+                               ': field 5 (F) times the vector of N1 and N2 is too far from 1.0', &
+                               'other units: forces from '//short_real(least_cause)//' to '// &
+                               short_real(farthest)//', or 0.0')
+        ! What rounding has left of a right angle, such as the cosine of 90 degrees, is no direction.
+        where (abs(direction) < epsilon(1.0_wp)*largest) direction = 0.0_wp
+        cases%force(count(node(:i) > 0))%force = factor*direction
+      end do
+    end associate
+    call report_idle(idle)
+
+  contains
 
     !> A FORCE without a direction is an error. Vectors of zeros are no forces, which is noted once.
     subroutine report_idle(idle)
@@ -178,78 +185,88 @@ contains
       if (i > 0) call found%add_note(card_force, i, n1, &
         ': N1 and N2 are 0.0: no force'//and_more(count(idle .and. .not. blank), '; so with ', ' more'))
     end subroutine report_idle
+  end subroutine add_forces
 
-    !> PLOADX1; one warning for all that press inside a body.
-    subroutine add_pressures()
-      integer, dimension(deck%card(card_ploadx1)%count) :: a, b, behind, element
-      type(card_index) :: elements
-      type(set_pressure) :: all_of_them(size(a))
-      logical :: acts(size(a))
-      integer :: ends(3), ga, i
+  !> PLOADX1; one warning for all that press inside a body.
+  subroutine add_pressures(deck, nodes, model, used, cases, found)
+    type(deck_type), intent(in) :: deck
+    type(card_index), intent(in) :: nodes
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: used(:)
+    type(load_cases), intent(inout) :: cases
+    type(findings), intent(inout) :: found
+    integer, dimension(deck%card(card_ploadx1)%count) :: a, b, behind, element
+    type(card_index) :: elements
+    type(set_pressure) :: all_of_them(size(a))
+    logical :: acts(size(a))
+    integer :: ends(3), ga, i
 
-      elements = card_index(new_id_index(model%element_id), 'element', found%errors == 0)
-      behind = 0
-      acts = .false.
-      associate (pressure => deck%card(card_ploadx1))
-        ga = pressure%column('GA')
-        call resolve(deck, card_ploadx1, 2, elements, found, element)
-        call resolve(deck, card_ploadx1, ga, nodes, found, a)
-        call resolve(deck, card_ploadx1, ga + 1, nodes, found, b)
-        do i = 1, pressure%count
-          if (element(i) == 0 .or. a(i) == 0 .or. b(i) == 0) cycle
-          if (all(used /= nint(pressure%value(1, i)))) cycle
-          if (any(model%connectivity(:model%node_count(element(i)), element(i)) == 0)) cycle
-          all_of_them(i)%set = nint(pressure%value(1, i))
-          all_of_them(i)%given = side_pressure(element(i), [a(i), b(i)], pressure%value(3:4, i), &
-                                               pressure%number('THETA', i))
-          call find_side(model, all_of_them(i)%given, ends, behind(i))
-          acts(i) = model%section(element(i)) > 0
-          if (ends(1) == 0) &
-            call found%add_error(card_ploadx1, i, ga, ': GA and GB are not the ends of a side of '// &
-                                 model%name_of(of_element, element(i)), &
-                                 'two neighbouring corners of the element')
-        end do
-      end associate
-      cases%pressure = pack(all_of_them, acts)
-      if (all(behind == 0)) return
-      i = findloc(behind > 0, .true., dim=1)
-      call found%add_warning(card_ploadx1, i, ga, ': presses inside a body, between '// &
-                             model%name_of(of_element, element(i))//' and '// &
-                             model%name_of(of_element, behind(i))// &
-                             and_more(count(behind > 0), '; so do ', ' more'), &
-                             'a side that one element alone has')
-    end subroutine add_pressures
-
-    !> SPC and SPCD: nodes, directions and displacements, of the sets that are used.
-    subroutine add_displacements(card, sets, displacements)
-      integer, intent(in) :: card, sets(:)
-      type(set_displacement), allocatable, intent(out) :: displacements(:)
-      type(findings) :: unheard   ! of SPC all is told by the supports
-      integer :: c, i, k, last, node(deck%card(card)%count), platen
-
-      last = 0
-      allocate (displacements(6*size(node)))   ! two nodes a card, in two directions, or an angle
-      do k = 2, 5, 3
-        if (card == card_spc) call resolve(deck, card, k, nodes, unheard, node)
-        if (card == card_spcd) call resolve(deck, card, k, nodes, found, node)
-        do i = 1, size(node)
-          associate (value => deck%card(card)%value(:, i))
-            if (node(i) == 0 .or. all(sets /= nint(value(1)))) cycle
-            if (value(k + 2) /= 0.0_wp) &
-              call check_directions(model, node(i), value(k + 1), [card, i, k + 1], found)
-            do c = 1, 2
-              if (all(mod(nint(value(k + 1))/10**[0, 1, 2, 3, 4, 5], 10) /= c)) cycle
-              last = last + 1
-              displacements(last) = set_displacement(nint(value(1)), c, node(i), value(k + 2), i, k)
-            end do
-            platen = findloc(model%platen%leader, node(i), dim=1)
-            if (platen == 0 .or. .not. names(value(k + 1), turn)) cycle
-            last = last + 1
-            displacements(last) = set_displacement(nint(value(1)), angle, platen, value(k + 2), i, k)
-          end associate
-        end do
+    elements = card_index(new_id_index(model%element_id), 'element', found%errors == 0)
+    behind = 0
+    acts = .false.
+    associate (pressure => deck%card(card_ploadx1))
+      ga = pressure%column('GA')
+      call resolve(deck, card_ploadx1, 2, elements, found, element)
+      call resolve(deck, card_ploadx1, ga, nodes, found, a)
+      call resolve(deck, card_ploadx1, ga + 1, nodes, found, b)
+      do i = 1, pressure%count
+        if (element(i) == 0 .or. a(i) == 0 .or. b(i) == 0) cycle
+        if (all(used /= nint(pressure%value(1, i)))) cycle
+        if (any(model%connectivity(:model%node_count(element(i)), element(i)) == 0)) cycle
+        all_of_them(i)%set = nint(pressure%value(1, i))
+        all_of_them(i)%given = side_pressure(element(i), [a(i), b(i)], pressure%value(3:4, i), &
+                                             pressure%number('THETA', i))
+        call find_side(model, all_of_them(i)%given, ends, behind(i))
+        acts(i) = model%section(element(i)) > 0
+        if (ends(1) == 0) &
+          call found%add_error(card_ploadx1, i, ga, ': GA and GB are not the ends of a side of '// &
+                               model%name_of(of_element, element(i)), &
+                               'two neighbouring corners of the element')
       end do
-      displacements = displacements(:last)
-    end subroutine add_displacements
-  end subroutine build_cases
+    end associate
+    cases%pressure = pack(all_of_them, acts)
+    if (all(behind == 0)) return
+    i = findloc(behind > 0, .true., dim=1)
+    call found%add_warning(card_ploadx1, i, ga, ': presses inside a body, between '// &
+                           model%name_of(of_element, element(i))//' and '// &
+                           model%name_of(of_element, behind(i))// &
+                           and_more(count(behind > 0), '; so do ', ' more'), &
+                           'a side that one element alone has')
+  end subroutine add_pressures
+
+  !> SPC and SPCD: nodes, directions and displacements, of the sets that are used.
+  subroutine add_displacements(deck, nodes, model, card, sets, displacements, found)
+    type(deck_type), intent(in) :: deck
+    type(card_index), intent(in) :: nodes
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: card, sets(:)
+    type(set_displacement), allocatable, intent(out) :: displacements(:)
+    type(findings), intent(inout) :: found
+    type(findings) :: unheard   ! of SPC all is told by the supports
+    integer :: c, i, k, last, node(deck%card(card)%count), platen
+
+    last = 0
+    allocate (displacements(6*size(node)))   ! two nodes a card, in two directions, or an angle
+    do k = 2, 5, 3
+      if (card == card_spc) call resolve(deck, card, k, nodes, unheard, node)
+      if (card == card_spcd) call resolve(deck, card, k, nodes, found, node)
+      do i = 1, size(node)
+        associate (value => deck%card(card)%value(:, i))
+          if (node(i) == 0 .or. all(sets /= nint(value(1)))) cycle
+          if (value(k + 2) /= 0.0_wp) &
+            call check_directions(model, node(i), value(k + 1), [card, i, k + 1], found)
+          do c = 1, 2
+            if (all(mod(nint(value(k + 1))/10**[0, 1, 2, 3, 4, 5], 10) /= c)) cycle
+            last = last + 1
+            displacements(last) = set_displacement(nint(value(1)), c, node(i), value(k + 2), i, k)
+          end do
+          platen = findloc(model%platen%leader, node(i), dim=1)
+          if (platen == 0 .or. .not. names(value(k + 1), turn)) cycle
+          last = last + 1
+          displacements(last) = set_displacement(nint(value(1)), angle, platen, value(k + 2), i, k)
+        end associate
+      end do
+    end do
+    displacements = displacements(:last)
+  end subroutine add_displacements
 end module epcont_build_cases

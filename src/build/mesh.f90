@@ -51,13 +51,13 @@ contains
       associate (z => grid%value(grid%column('X3'), :))
         do i = 1, grid%count
           if (z(i) /= 0.0_wp) &
-            call refuse(card_grid, i, 'X3', ': field 6 (X3) is '//short_real(z(i))//', off the plane', &
-                        '0.0: scenes lie in the x-y plane')
+            call refuse(deck, card_grid, i, 'X3', ': field 6 (X3) is '//short_real(z(i))//', off the plane', &
+                        '0.0: scenes lie in the x-y plane', found)
         end do
       end associate
     end associate
-    call read_materials()
-    call read_sections()
+    call read_materials(deck, found, material)
+    call read_sections(deck, material, model, found)
     cards = element_cards(deck, model%kinds)
     do i = 1, size(cards)
       call read_elements(cards(i))
@@ -68,24 +68,71 @@ contains
 
   contains
 
-    !> One material a MAT1, with its curve.
-    subroutine read_materials()
-      integer, dimension(deck%card(card_mats1)%count) :: m, table    ! the MAT1, the TABLES1; 0: none
-      integer :: i
-
-      associate (mat1 => deck%card(card_mat1), mats1 => deck%card(card_mats1))
-        allocate (material(mat1%count))
-        do i = 1, mat1%count
-          if (mat1%sound(i)) call read_elasticity(i)
-        end do
-        call resolve(deck, card_mats1, 1, index_of(deck, card_mat1), found, m)
-        call resolve(deck, card_mats1, mats1%column('TID'), index_of(deck, card_tables1), found, table)
-        do i = 1, mats1%count
-          if (m(i) == 0 .or. .not. mats1%sound(i)) cycle
-          if (material(m(i))%young > 0.0_wp) call read_yielding(i, table(i), material(m(i)))
-        end do
+    !> Ids are those of the cards.
+    subroutine take_ids()
+      model%node_id = int(deck%card(card_grid)%value(1, :))
+      model%element_id = [(int(deck%card(cards(i))%value(1, :)), i=1, size(cards))]
+      associate (shell => deck%card(card_pshell), solid => deck%card(card_psolid))
+        model%property_id = nint([shell%value(1, :), solid%value(1, :)])
+        model%material_id = nint([shell%value(shell%column('MID1'), :), solid%value(solid%column('MID'), :)])
       end associate
-    end subroutine read_materials
+    end subroutine take_ids
+
+    !> The elements of a table.
+    subroutine read_elements(card)
+      integer, intent(in) :: card
+      integer :: k, n
+      integer, allocatable :: node(:, :), section(:)
+      logical :: ring
+
+      associate (table => deck%card(card))
+        ring = any(model%kinds%ring_card == table%entry%name)
+        n = size(table%entry%field) - 2   ! without id and section
+        allocate (node(n, table%count), section(table%count))
+        call resolve(deck, card, 2, index_of(deck, merge(card_psolid, card_pshell, ring)), found, section)
+        if (ring) where (section > 0) section = section + deck%card(card_pshell)%count
+        do k = 1, n
+          call resolve(deck, card, 2 + k, nodes, found, node(k, :))
+        end do
+        ! In their order along the boundary
+        if (ring .and. n > 4) node = node([(k, k=1, n, 2), (k, k=2, n, 2)], :)
+        call add_elements(model%scene_type, table%entry%name, node, section)
+      end associate
+    end subroutine read_elements
+  end subroutine build_mesh
+
+  !> A field is at fault.
+  subroutine refuse(deck, card, i, name, what, remedy, found)
+    type(deck_type), intent(in) :: deck
+    integer, intent(in) :: card, i
+    character(len=*), intent(in) :: name, what, remedy   !! of the field; is wrong; would be right
+    type(findings), intent(inout) :: found
+
+    call found%add_error(card, i, deck%card(card)%column(name), what, remedy)
+  end subroutine refuse
+
+  !> One material a MAT1, with its curve.
+  subroutine read_materials(deck, found, material)
+    type(deck_type), intent(in) :: deck
+    type(findings), intent(inout) :: found
+    type(material_card), allocatable, intent(inout) :: material(:)
+    integer, dimension(deck%card(card_mats1)%count) :: m, table    ! the MAT1, the TABLES1; 0: none
+    integer :: i
+
+    associate (mat1 => deck%card(card_mat1), mats1 => deck%card(card_mats1))
+      allocate (material(mat1%count))
+      do i = 1, mat1%count
+        if (mat1%sound(i)) call read_elasticity(i)
+      end do
+      call resolve(deck, card_mats1, 1, index_of(deck, card_mat1), found, m)
+      call resolve(deck, card_mats1, mats1%column('TID'), index_of(deck, card_tables1), found, table)
+      do i = 1, mats1%count
+        if (m(i) == 0 .or. .not. mats1%sound(i)) cycle
+        if (material(m(i))%young > 0.0_wp) call read_yielding(deck, i, table(i), material(m(i)), found)
+      end do
+    end associate
+
+  contains
 
     !> MAT1: E and NU from two of E, G, NU.
     subroutine read_elasticity(i)
@@ -103,44 +150,47 @@ contains
             material(i)%expansion == 0.0_wp) call found%add_note(card_mat1, i, mat1%column('TREF'), &
                                                                  ': field 8 (TREF) has no effect without A')
         if (count([mat1%has('E', i), mat1%has('G', i), mat1%has('NU', i)]) < 2) then
-          call refuse(card_mat1, i, 'E', ': of E, G and NU two are needed', 'E and NU, say')
+          call refuse(deck, card_mat1, i, 'E', ': of E, G and NU two are needed', 'E and NU, say', found)
         else if (.not. mat1%has('NU', i)) then
           poisson = young/(2.0_wp*shear) - 1.0_wp
           if (poisson < 0.0_wp .or. poisson >= 0.5_wp) &
-            call refuse(card_mat1, i, 'G', ': E and G give NU = '//short_real(poisson), &
-                        '0 <= NU < 0.5: G above E/3, up to E/2')
+            call refuse(deck, card_mat1, i, 'G', ': E and G give NU = '//short_real(poisson), &
+                        '0 <= NU < 0.5: G above E/3, up to E/2', found)
         else if (.not. mat1%has('E', i)) then
           young = 2.0_wp*shear*(1.0_wp + poisson)
-        else if (mat1%has('G', i) .and. &
-                 abs(2.0_wp*shear*(1.0_wp + poisson) - young) > same_moduli*young) then
-          call refuse(card_mat1, i, 'G', ': G is not E/(2(1 + NU))', 'a blank G')
+        else if (mat1%has('G', i) .and. abs(2.0_wp*shear*(1.0_wp + poisson) - young) > same_moduli*young) then
+          call refuse(deck, card_mat1, i, 'G', ': G is not E/(2(1 + NU))', 'a blank G', found)
         end if
       end associate
     end subroutine read_elasticity
+  end subroutine read_materials
 
-    !> MATS1: the curve of its table, or the bilinear one of LIMIT1 and H.
-    subroutine read_yielding(i, table, material)
-      integer, intent(in) :: i, table   !! the MATS1, the TABLES1
-      type(material_card), intent(inout) :: material
+  !> MATS1: the curve of its table, or the bilinear one of LIMIT1 and H.
+  subroutine read_yielding(deck, i, table, material, found)
+    type(deck_type), intent(in) :: deck
+    integer, intent(in) :: i, table   !! the MATS1, the TABLES1
+    type(material_card), intent(inout) :: material
+    type(findings), intent(inout) :: found
 
-      associate (mats1 => deck%card(card_mats1))
-        if (.not. mats1%has('TID', i)) then
-          if (mats1%has('LIMIT1', i)) then
-            material%curve = bilinear_curve(material%young, mats1%number('LIMIT1', i), mats1%number('H', i))
-          else
-            call refuse(card_mats1, i, 'LIMIT1', ': neither a table nor a yield stress', &
-                        'TID, or LIMIT1 and H')
-          end if
-          return
+    associate (mats1 => deck%card(card_mats1))
+      if (.not. mats1%has('TID', i)) then
+        if (mats1%has('LIMIT1', i)) then
+          material%curve = bilinear_curve(material%young, mats1%number('LIMIT1', i), mats1%number('H', i))
+        else
+          call refuse(deck, card_mats1, i, 'LIMIT1', ': neither a table nor a yield stress', &
+                      'TID, or LIMIT1 and H', found)
         end if
-        if (mats1%has('H', i)) call refuse(card_mats1, i, 'H', ': field 5 (H) is given beside a table', &
-            'a blank H, or a blank TID')
-        if (.not. mats1%has('LIMIT1', i) .and. mats1%word(mats1%column('TYPE'), i) == 'PLASTIC') &
-          call refuse(card_mats1, i, 'LIMIT1', ': field 8 (LIMIT1) is blank', &
-                      'the yield stress: the second stress of the table')
-      end associate
-      if (table > 0) call read_table(i, table, material%young, material%curve)
-    end subroutine read_yielding
+        return
+      end if
+      if (mats1%has('H', i)) call refuse(deck, card_mats1, i, 'H', ': field 5 (H) is given beside a table', &
+          'a blank H, or a blank TID', found)
+      if (.not. mats1%has('LIMIT1', i) .and. mats1%word(mats1%column('TYPE'), i) == 'PLASTIC') &
+        call refuse(deck, card_mats1, i, 'LIMIT1', ': field 8 (LIMIT1) is blank', &
+                    'the yield stress: the second stress of the table', found)
+    end associate
+    if (table > 0) call read_table(i, table, material%young, material%curve)
+
+  contains
 
     !> TABLES1. Its yield stress is kept and its yield strain replaced by that over E, so that the elastic
     !! part is MAT1's.
@@ -165,63 +215,51 @@ contains
         limit = deck%card(card_mats1)%number('LIMIT1', i)
         associate (stress => curve%stress(2))
           if (deck%card(card_mats1)%has('LIMIT1', i) .and. abs(limit - stress) > same_stress*stress) &
-            call refuse(card_mats1, i, 'LIMIT1', ': field 8 (LIMIT1) is '//short_real(limit)// &
+            call refuse(deck, card_mats1, i, 'LIMIT1', ': field 8 (LIMIT1) is '//short_real(limit)// &
                         ', the second stress of '//tables1%identity(t)//' '//short_real(stress), &
-                        'the same stress in both')
+                        'the same stress in both', found)
         end associate
       end associate
     end subroutine read_table
+  end subroutine read_yielding
 
-    !> A field is at fault.
-    subroutine refuse(card, i, name, what, remedy)
-      integer, intent(in) :: card, i
-      character(len=*), intent(in) :: name, what, remedy   !! of the field; is wrong; would be right
+  !> PSHELL, then PSOLID.
+  subroutine read_sections(deck, material, model, found)
+    type(deck_type), intent(in) :: deck
+    type(material_card), intent(in) :: material(:)
+    type(model_type), intent(inout) :: model
+    type(findings), intent(inout) :: found
+    type(material_card) :: section(deck%card(card_pshell)%count + deck%card(card_psolid)%count)
+    type(card_index) :: materials
+    integer, dimension(size(section)) :: kinematics, named
+    integer :: s
 
-      call found%add_error(card, i, deck%card(card)%column(name), what, remedy)
-    end subroutine refuse
+    materials = index_of(deck, card_mat1)
+    associate (shell => deck%card(card_pshell), solid => deck%card(card_psolid))
+      call resolve(deck, card_pshell, shell%column('MID1'), materials, found, named(:shell%count))
+      call resolve(deck, card_psolid, solid%column('MID'), materials, found, named(shell%count + 1:))
+      kinematics = axisymmetric
+      do s = 1, size(named)
+        if (named(s) > 0) section(s) = material(named(s))
+        if (s <= shell%count) call choose_kinematics(s, kinematics(s))
+      end do
+      if (deck%parameter_word('PLANE') == 'STRESS' .and. all(kinematics /= plane_stress) .and. &
+          shell%count > 0) &
+        call found%add_note(card_param, deck%parameter_row('PLANE'), 2, &
+                            ': no PSHELL leaves the choice to it')
+      call set_sections(model%scene_type, section%young, section%poisson, kinematics)
+      model%curve = section%curve
+      model%expansion = section%expansion
+      model%reference_temperature = section%reference_temperature
+      model%thickness(:shell%count) = shell%value(shell%column('T'), :)
+      model%density = section%density
+      where (model%thickness(:shell%count) > 0.0_wp) &
+        model%density(:shell%count) = model%density(:shell%count) + &
+                                      shell%value(shell%column('NSM'), :)/model%thickness(:shell%count)
+      model%density = deck%parameter_value('WTMASS', 1.0_wp)*model%density
+    end associate
 
-    !> PSHELL, then PSOLID.
-    subroutine read_sections()
-      type(material_card) :: section(deck%card(card_pshell)%count + deck%card(card_psolid)%count)
-      type(card_index) :: materials
-      integer, dimension(size(section)) :: kinematics, named
-      integer :: s
-
-      materials = index_of(deck, card_mat1)
-      associate (shell => deck%card(card_pshell), solid => deck%card(card_psolid))
-        call resolve(deck, card_pshell, shell%column('MID1'), materials, found, named(:shell%count))
-        call resolve(deck, card_psolid, solid%column('MID'), materials, found, named(shell%count + 1:))
-        kinematics = axisymmetric
-        do s = 1, size(named)
-          if (named(s) > 0) section(s) = material(named(s))
-          if (s <= shell%count) call choose_kinematics(s, kinematics(s))
-        end do
-        if (deck%parameter_word('PLANE') == 'STRESS' .and. all(kinematics /= plane_stress) .and. &
-            shell%count > 0) &
-          call found%add_note(card_param, deck%parameter_row('PLANE'), 2, &
-                              ': no PSHELL leaves the choice to it')
-        call set_sections(model%scene_type, section%young, section%poisson, kinematics)
-        model%curve = section%curve
-        model%expansion = section%expansion
-        model%reference_temperature = section%reference_temperature
-        model%thickness(:shell%count) = shell%value(shell%column('T'), :)
-        model%density = section%density
-        where (model%thickness(:shell%count) > 0.0_wp) &
-          model%density(:shell%count) = model%density(:shell%count) + &
-                                        shell%value(shell%column('NSM'), :)/model%thickness(:shell%count)
-        model%density = deck%parameter_value('WTMASS', 1.0_wp)*model%density
-      end associate
-    end subroutine read_sections
-
-    !> Ids are those of the cards.
-    subroutine take_ids()
-      model%node_id = int(deck%card(card_grid)%value(1, :))
-      model%element_id = [(int(deck%card(cards(i))%value(1, :)), i=1, size(cards))]
-      associate (shell => deck%card(card_pshell), solid => deck%card(card_psolid))
-        model%property_id = nint([shell%value(1, :), solid%value(1, :)])
-        model%material_id = nint([shell%value(shell%column('MID1'), :), solid%value(solid%column('MID'), :)])
-      end associate
-    end subroutine take_ids
+  contains
 
     !> Plane strain or plane stress of a PSHELL: it says plane strain, or PARAM PLANE chooses.
     subroutine choose_kinematics(i, kinematics)
@@ -236,34 +274,12 @@ contains
         if (strain) then
           kinematics = plane_strain
         else if (deck%parameter_row('PLANE') == 0) then
-          call refuse(card_pshell, i, 'MID2', ': neither plane strain nor plane stress is chosen', &
-                      '-1 here for plane strain, or PARAM,PLANE,STRAIN or PARAM,PLANE,STRESS')
+          call refuse(deck, card_pshell, i, 'MID2', ': neither plane strain nor plane stress is chosen', &
+                      '-1 here for plane strain, or PARAM,PLANE,STRAIN or PARAM,PLANE,STRESS', found)
         end if
       end associate
     end subroutine choose_kinematics
-
-    !> The elements of a table.
-    subroutine read_elements(card)
-      integer, intent(in) :: card
-      integer :: k, n
-      integer, allocatable :: node(:, :), section(:)
-      logical :: ring
-
-      associate (table => deck%card(card))
-        ring = any(model%kinds%ring_card == table%entry%name)
-        n = size(table%entry%field) - 2   ! without id and section
-        allocate (node(n, table%count), section(table%count))
-        call resolve(deck, card, 2, index_of(deck, merge(card_psolid, card_pshell, ring)), found, section)
-        if (ring) where (section > 0) section = section + deck%card(card_pshell)%count
-        do k = 1, n
-          call resolve(deck, card, 2 + k, nodes, found, node(k, :))
-        end do
-        ! In their order along the boundary
-        if (ring .and. n > 4) node = node([(k, k=1, n, 2), (k, k=2, n, 2)], :)
-        call add_elements(model%scene_type, table%entry%name, node, section)
-      end associate
-    end subroutine read_elements
-  end subroutine build_mesh
+  end subroutine read_sections
 
   !> The cards of elements, in the order in which they are read: those that the table of elements names.
   pure function element_cards(deck, kinds) result(cards)

@@ -110,39 +110,42 @@ contains
 
       first = findloc(deck%subcase%temperature%id, set, dim=1)
       if (default_by > 0 .or. any(named_by > 0)) then
-        call check_nodes(set)
+        call check_nodes(model, named_by, default_by, set, found)
       else if (deck%whole .and. all(deck%card(card_temp)%sound) .and. all(deck%card(card_tempd)%sound)) then
         call found%add_error(deck%subcase(first)%temperature%place, 'TEMPERATURE = '//text_of(set)// &
                              ': the deck has no such set', 'the set of TEMP or TEMPD cards in the deck')
       end if
     end subroutine check
-
-    !> Nodes of elements that expand have temperatures, and those alone.
-    subroutine check_nodes(set)
-      integer, intent(in) :: set
-      logical :: expands(model%nodes), unnamed(model%nodes), vain(model%nodes)
-      integer :: k
-
-      expands = expanding_nodes(model)
-      unnamed = expands .and. named_by(1, :) == 0
-      k = findloc(unnamed, .true., dim=1)
-      if (k > 0 .and. default_by == 0) call found%add_error(of_node, k, 1, &
-        ': has no temperature in set '//text_of(set)//and_more(count(unnamed), '; nor have ', ' more'), &
-        'TEMP or TEMPD')
-      if (default_by > 0 .and. .not. any(unnamed) .and. any(expands)) &
-        call found%add_note(card_tempd, default_by, 1, ': all nodes have a TEMP in set '//text_of(set))
-      if (found%errors > 0) return   ! it may be what could not be read
-      vain = named_by(1, :) > 0 .and. .not. expands
-      k = findloc(vain, .true., dim=1)
-      if (k > 0) then
-        call found%add_warning(card_temp, named_by(1, k), named_by(2, k), ': no material expands at '// &
-                               model%name_of(of_node, k)//and_more(count(vain), ', nor at ', ' more nodes'), &
-                               'A on its MAT1')
-      else if (.not. any(expands)) then
-        call found%add_warning(card_tempd, default_by, 1, ': no material expands', 'A on MAT1')
-      end if
-    end subroutine check_nodes
   end subroutine build_temperatures
+
+  !> Nodes of elements that expand have temperatures, and those alone.
+  subroutine check_nodes(model, named_by, default_by, set, found)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: named_by(:, :), default_by
+    integer, intent(in) :: set
+    type(findings), intent(inout) :: found
+    logical :: expands(model%nodes), unnamed(model%nodes), vain(model%nodes)
+    integer :: k
+
+    expands = expanding_nodes(model)
+    unnamed = expands .and. named_by(1, :) == 0
+    k = findloc(unnamed, .true., dim=1)
+    if (k > 0 .and. default_by == 0) call found%add_error(of_node, k, 1, &
+      ': has no temperature in set '//text_of(set)//and_more(count(unnamed), '; nor have ', ' more'), &
+      'TEMP or TEMPD')
+    if (default_by > 0 .and. .not. any(unnamed) .and. any(expands)) &
+      call found%add_note(card_tempd, default_by, 1, ': all nodes have a TEMP in set '//text_of(set))
+    if (found%errors > 0) return   ! it may be what could not be read
+    vain = named_by(1, :) > 0 .and. .not. expands
+    k = findloc(vain, .true., dim=1)
+    if (k > 0) then
+      call found%add_warning(card_temp, named_by(1, k), named_by(2, k), ': no material expands at '// &
+                             model%name_of(of_node, k)//and_more(count(vain), ', nor at ', ' more nodes'), &
+                             'A on its MAT1')
+    else if (.not. any(expands)) then
+      call found%add_warning(card_tempd, default_by, 1, ': no material expands', 'A on MAT1')
+    end if
+  end subroutine check_nodes
 
   !> Which nodes have elements whose material expands? [nodes]
   pure function expanding_nodes(model) result(expands)

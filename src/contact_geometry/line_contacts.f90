@@ -59,8 +59,8 @@ contains
     if (found%errors == 0) call join_couples()
     allocate (model%line_contact(contacts))
     do c = 1, contacts
-      contact = new_contact(pack([(i, i=1, size(number))], number == c))
-      call find_pairs()
+      contact = new_contact(model, pack([(i, i=1, size(number))], number == c))
+      call find_pairs(model, found, contact, faces)
       model%line_contact(c) = contact
     end do
     if (contacts > 0) call end_pairs(model)
@@ -134,26 +134,29 @@ contains
       end do
       call sets%numbers(number, contacts)
     end subroutine join_couples
+  end subroutine find_contacts
 
-    !> The contact of some couples, without its pairs.
-    pure type(line_contact) function new_contact(couples) result(contact)
-      integer, intent(in) :: couples(:)
-      integer :: k
+  !> The contact of some couples, without its pairs.
+  pure type(line_contact) function new_contact(model, couples) result(contact)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: couples(:)
+    integer :: k
 
-      contact%couple = couples
-      associate (couple => model%couple(couples))
-        contact%bconp = couple%id
-        contact%slave_id = model%line(once(couple%line(1)))%id
-        contact%master_id = model%line(once(couple%line(2)))%id
-        contact%slave = sides_of(couple%line(1))
-        contact%master = sides_of(couple%line(2))
-      end associate
-      contact%search = model%controls%search
-      if (contact%search == 0.0_wp) contact%search = default_search* &
-        maxval([(contact%slave%chord_length(k), k=1, size(contact%slave%element)), &
-                (contact%master%chord_length(k), k=1, size(contact%master%element))])
-      allocate (contact%came_near(0))
-    end function new_contact
+    contact%couple = couples
+    associate (couple => model%couple(couples))
+      contact%bconp = couple%id
+      contact%slave_id = model%line(once(couple%line(1)))%id
+      contact%master_id = model%line(once(couple%line(2)))%id
+      contact%slave = sides_of(couple%line(1))
+      contact%master = sides_of(couple%line(2))
+    end associate
+    contact%search = model%controls%search
+    if (contact%search == 0.0_wp) contact%search = default_search* &
+      maxval([(contact%slave%chord_length(k), k=1, size(contact%slave%element)), &
+              (contact%master%chord_length(k), k=1, size(contact%master%element))])
+    allocate (contact%came_near(0))
+
+  contains
 
     !> Sides of some lines, each once.
     pure type(boundary_line) function sides_of(lines)
@@ -162,23 +165,29 @@ contains
 
       sides_of = model%boundary%pick(once([(model%line(lines(k))%side, k=1, size(lines))]))
     end function sides_of
+  end function new_contact
 
-    !> The pairs of a contact, looked for ever farther until there is one; and the warnings.
-    subroutine find_pairs()
-      real(wp) :: extent   ! of the elements [length]
+  !> The pairs of a contact, looked for ever farther until there is one; and the warnings.
+  subroutine find_pairs(model, found, contact, faces)
+    type(model_type), intent(inout) :: model
+    type(findings), intent(inout) :: found
+    type(line_contact), intent(inout) :: contact
+    type(faces_type), intent(inout) :: faces
+    real(wp) :: extent   ! of the elements [length]
 
-      extent = sum(extent_of(model%x(:, model%around%members())))
-      do
-        call add_pairs(model, contact, faces)
-        if (contact%last >= contact%first) exit
-        if (contact%search > extent) then
-          call add_nothing_faced()
-          return
-        end if
-        contact%search = widening*contact%search
-      end do
-      call warn_of_contact(model, contact, faces, found)
-    end subroutine find_pairs
+    extent = sum(extent_of(model%x(:, model%around%members())))
+    do
+      call add_pairs(model, contact, faces)
+      if (contact%last >= contact%first) exit
+      if (contact%search > extent) then
+        call add_nothing_faced()
+        return
+      end if
+      contact%search = widening*contact%search
+    end do
+    call warn_of_contact(model, contact, faces, found)
+
+  contains
 
     subroutine add_nothing_faced()
       character(len=:), allocatable :: remedy, what
@@ -192,7 +201,7 @@ contains
       end if
       call found%add_error(of_couple, contact%couple(1), 1, what, remedy)
     end subroutine add_nothing_faced
-  end subroutine find_contacts
+  end subroutine find_pairs
 
   !> Is a number, from 1 on, in both lists?
   pure logical function have_common(a, b)

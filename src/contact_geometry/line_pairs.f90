@@ -39,8 +39,8 @@ contains
         k=1, size(contact%came_near))])
     contact%first = model%pairs + 1
     contact%first_of_master = contact%first + size(faces%row)
-    call append_pairs(faces%row, rows(:size(faces%row)))
-    call append_pairs(tips, rows_of_tips())
+    call append_pairs(faces%row, rows(:size(faces%row)), model)
+    call append_pairs(tips, rows_of_tips(), model)
     contact%last = model%pairs
     associate (side => contact%left_out(1, :), which => contact%left_out(2, :))
       contact%nodes_left_out = count_others([(contact%slave%segment(which(k), side(k)), k=1, size(side))], &
@@ -125,35 +125,36 @@ contains
         end associate
       end do
     end function rows_of_tips
-
-    !> Pairs behind those that count so far. In their rows of N node B has weight 1, the others have theirs,
-    !! less than zero; of these the largest is A.
-    subroutine append_pairs(b, row)
-      type(node_face), intent(in) :: b(:)      !! and what it faces [rows]
-      type(mortar_row), intent(in) :: row(:)
-      integer :: entries, i, k, pairs
-
-      pairs = model%pairs + size(b)
-      entries = model%row_start(model%pairs + 1) - 1 + sum([(size(row(i)%node) + 1, i=1, size(b))])
-      if (pairs > size(model%pair_id) .or. entries > size(model%row_node)) &
-        call set_room(model, 2*pairs, 2*entries)   ! or many contacts would copy all before them
-      do i = 1, size(b)
-        k = model%pairs + i
-        associate (first => model%row_start(k), node => row(i)%node)
-          associate (last => first + size(node))
-            model%row_node(first:last) = [b(i)%node, node]
-            model%row_weight(first:last) = [1.0_wp, -row(i)%weight]
-            model%row_start(k + 1) = last + 1
-          end associate
-          model%pair_node(:, k) = [node(maxloc(row(i)%weight, dim=1, mask=node /= b(i)%node)), b(i)%node]
-        end associate
-        model%pair_id(k) = model%node_id(b(i)%node)
-        model%normal(:, k) = b(i)%normal
-        model%initial_gap(k) = b(i)%gap
-      end do
-      model%pairs = pairs
-    end subroutine append_pairs
   end subroutine add_pairs
+
+  !> Pairs behind those that count so far. In their rows of N node B has weight 1, the others have theirs,
+  !! less than zero; of these the largest is A.
+  subroutine append_pairs(b, row, model)
+    type(node_face), intent(in) :: b(:)      !! and what it faces [rows]
+    type(mortar_row), intent(in) :: row(:)
+    type(model_type), intent(inout) :: model
+    integer :: entries, i, k, pairs
+
+    pairs = model%pairs + size(b)
+    entries = model%row_start(model%pairs + 1) - 1 + sum([(size(row(i)%node) + 1, i=1, size(b))])
+    if (pairs > size(model%pair_id) .or. entries > size(model%row_node)) &
+      call set_room(model, 2*pairs, 2*entries)   ! or many contacts would copy all before them
+    do i = 1, size(b)
+      k = model%pairs + i
+      associate (first => model%row_start(k), node => row(i)%node)
+        associate (last => first + size(node))
+          model%row_node(first:last) = [b(i)%node, node]
+          model%row_weight(first:last) = [1.0_wp, -row(i)%weight]
+          model%row_start(k + 1) = last + 1
+        end associate
+        model%pair_node(:, k) = [node(maxloc(row(i)%weight, dim=1, mask=node /= b(i)%node)), b(i)%node]
+      end associate
+      model%pair_id(k) = model%node_id(b(i)%node)
+      model%normal(:, k) = b(i)%normal
+      model%initial_gap(k) = b(i)%gap
+    end do
+    model%pairs = pairs
+  end subroutine append_pairs
 
   !> How many nodes of a list are not in another.
   pure integer function count_others(node, known) result(many)

@@ -47,20 +47,6 @@ contains
 
   contains
 
-    !> Where a line comes to a node that it has passed; 0: nowhere. But a closed line ends with its first
-    !! node.
-    pure integer function first_passed_twice(node) result(k)
-      integer, intent(in) :: node(:)
-      logical :: met(minval(node):maxval(node))
-
-      met = .false.
-      do k = 1, size(node)
-        if (met(node(k)) .and. .not. (k == size(node) .and. node(k) == node(1) .and. k > 3)) return
-        met(node(k)) = .true.
-      end do
-      k = 0
-    end function first_passed_twice
-
     !> The sides between consecutive nodes, none where one is missing; a middle node between two corners may
     !! be listed or left out.
     subroutine walk(node)
@@ -80,7 +66,7 @@ contains
           end if
         end if
         if (size(element) /= 1) then
-          call add_no_side(element, k, node(k:k + 1))
+          call add_no_side(model, i, element, k, node(k:k + 1), found)
           return
         end if
         sides = sides + 1
@@ -109,24 +95,6 @@ contains
       if (size(element) > 0) edge = model%edge_between(element(1), a, b)
     end subroutine find_between
 
-    !> No side, or no free one, between the k-th and the next node of a line.
-    subroutine add_no_side(element, k, node)
-      integer, intent(in) :: element(:)    !! that have a side there
-      integer, intent(in) :: k, node(2)
-      character(len=:), allocatable :: ends
-
-      ends = model%name_of(of_node, node(1))//' and '//text_of(model%node_id(node(2)))
-      if (size(element) == 0) then
-        call found%add_error(of_line, i, -k - 1, ': '//ends//' are not the ends of a side of an element', &
-                             'nodes in the order of the boundary, from corner to corner')
-      else
-        call found%add_error(of_line, i, -k - 1, ': the side between '//ends// &
-                             ' lies inside a body, between '//model%name_of(of_element, element(1))// &
-                             ' and '//model%name_of(of_element, element(size(element))), &
-                             'sides that one element has')
-      end if
-    end subroutine add_no_side
-
     !> The side of the outline that an element has, walked with the body to the left.
     pure integer function side_of_outline(element, edge) result(k)
       integer, intent(in) :: element, edge(3)
@@ -139,6 +107,41 @@ contains
       end associate
     end function side_of_outline
   end subroutine find_line_sides
+
+  !> Where a line comes to a node that it has passed; 0: nowhere. But a closed line ends with its first
+  !! node.
+  pure integer function first_passed_twice(node) result(k)
+    integer, intent(in) :: node(:)
+    logical :: met(minval(node):maxval(node))
+
+    met = .false.
+    do k = 1, size(node)
+      if (met(node(k)) .and. .not. (k == size(node) .and. node(k) == node(1) .and. k > 3)) return
+      met(node(k)) = .true.
+    end do
+    k = 0
+  end function first_passed_twice
+
+  !> No side, or no free one, between the k-th and the next node of a line.
+  subroutine add_no_side(model, i, element, k, node, found)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: i
+    integer, intent(in) :: element(:)    !! that have a side there
+    integer, intent(in) :: k, node(2)
+    type(findings), intent(inout) :: found
+    character(len=:), allocatable :: ends
+
+    ends = model%name_of(of_node, node(1))//' and '//text_of(model%node_id(node(2)))
+    if (size(element) == 0) then
+      call found%add_error(of_line, i, -k - 1, ': '//ends//' are not the ends of a side of an element', &
+                           'nodes in the order of the boundary, from corner to corner')
+    else
+      call found%add_error(of_line, i, -k - 1, ': the side between '//ends// &
+                           ' lies inside a body, between '//model%name_of(of_element, element(1))// &
+                           ' and '//model%name_of(of_element, element(size(element))), &
+                           'sides that one element has')
+    end if
+  end subroutine add_no_side
 
   !> All sides of the bodies, numbered as those of the outlines.
   type(boundary_line) function find_boundary(model) result(line)

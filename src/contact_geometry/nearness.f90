@@ -17,6 +17,13 @@ module epcont_contact_geometry_nearness
   private
   public :: find_nodes_that_came_near, pair_nodes_that_came_near
 
+  !> What displacements do to the elements.
+  type :: moved_bodies
+    real(wp) :: extent, travel                    !! size, largest displacement [length]
+    real(wp), allocatable :: displacement(:, :)   !! [length] [2, nodes]
+    logical, allocatable :: holds(:)              !! nodes that stand on the other line [0:nodes]; 0 is none
+  end type moved_bodies
+
   real(wp), parameter :: &
     !> A node between those of the other line that stand on its own may pass through by so many times what
     !! chords of curves and of bent sides make.
@@ -40,9 +47,8 @@ contains
     logical, allocatable, intent(in) :: touching(:)           !! [pairs]
     type(line_contact), allocatable, intent(out) :: contacts(:)   !! those of the model, with these nodes
     logical, intent(out) :: found                             !! are there some?
-    real(wp) :: extent, travel             ! of the elements: size, largest displacement [length]
+    type(moved_bodies) :: moved
     integer, allocatable :: node(:)        ! of the elements
-    logical :: holds(0:model%nodes)        ! nodes that stand on the other line; 0 is none
     type(line_contact) :: contact
     integer :: c
 
@@ -50,11 +56,12 @@ contains
     contacts = model%line_contact
     if (size(contacts) == 0) return
     node = model%around%members()
-    extent = sum(extent_of(model%x(:, node)))
+    moved%extent = sum(extent_of(model%x(:, node)))
     if (allocated(displacement)) then
-      travel = maxval(norm2(displacement(:, node), dim=1))
-      holds = .false.
-      holds(pack(model%pair_node(2, :), touching)) = .true.
+      moved%displacement = displacement
+      moved%travel = maxval(norm2(displacement(:, node), dim=1))
+      allocate (moved%holds(0:model%nodes), source=.false.)
+      moved%holds(pack(model%pair_node(2, :), touching)) = .true.
     end if
     do c = 1, size(contacts)
       contact = contacts(c)
@@ -91,17 +98,17 @@ contains
     subroutine look_from_slave(side, which)
       integer, intent(in) :: side, which
       type(facing_type) :: face(2)
-      real(wp) :: moved(2)
+      real(wp) :: gap(2)
 
       if (.not. allocated(displacement)) then
-        contact%search = max(contact%search, extent)
+        contact%search = max(contact%search, moved%extent)
         return
       end if
       associate (node => contact%slave%segment(:, side))
-        face = find_facing(contact%master, model%boundary, node_of(contact%slave, side, which), extent)
+        face = find_facing(contact%master, model%boundary, node_of(contact%slave, side, which), moved%extent)
         if (.not. face(1)%found) return
-        moved = gap_and_slip(node(which), contact%master, face(1))
-        if (moved(1) < -same_place*extent .or. any(holds(node))) &
+        gap = gap_and_slip(displacement, node(which), contact%master, face(1))
+        if (gap(1) < -same_place*moved%extent .or. any(moved%holds(node))) &
           contact%search = max(contact%search, further*abs(face(1)%gap))
       end associate
     end subroutine look_from_slave
@@ -112,54 +119,136 @@ contains
       integer, intent(in) :: side, which
       type(facing_type) :: face(2)
       type(looking_point) :: from
-      real(wp) :: moved(2)
+      real(wp) :: gap(2)
       integer :: k
 
       from = node_of(contact%master, side, which)
       if (from%node == 0 .or. any(contact%came_near == from%node)) return
-      face = find_facing(contact%slave, model%boundary, from, extent)
+      face = find_facing(contact%slave, model%boundary, from, moved%extent)
       do k = 1, 2
         if (.not. face(k)%found .or. from%at_tip .and. abs(face(k)%gap) <= contact%search) cycle
-        moved = gap_and_slip(from%node, contact%slave, face(k))
-        if (moved(1) >= -left_open(side, which, face(k), moved(2))) cycle
+        gap = gap_and_slip(displacement, from%node, contact%slave, face(k))
+        if (gap(1) >= -left_open(moved, contact, side, which, face(k), gap(2))) cycle
         contact%came_near = [contact%came_near, from%node]
         contact%search = max(contact%search, further*abs(face(k)%gap))
         found = .true.
         return
       end do
     end subroutine look_from_master
+  end subroutine find_nodes_that_came_near
 
-    !> How far a node of the master may pass through a side of the slave [length].
-    pure real(wp) function left_open(side, which, face, slip)
-      integer, intent(in) :: side, which       !! the node of the master
-      type(facing_type), intent(in) :: face    !! and what it faces
-      real(wp), intent(in) :: slip             !! how far it has slid there [length]
-      logical :: smooth
-      real(wp) :: angle
-      integer :: beside
+  !> How far a straight line, as long as a side or as `over` if that is more, is from the curve into which
+  !! the boundary bends from that side on [length].
+  pure real(wp) function bend(displacement, line, side, over)
+    real(wp), intent(in) :: displacement(:, :)
+    type(boundary_line), intent(in) :: line
+    integer, intent(in) :: side
+    real(wp), intent(in) :: over
+    real(wp) :: covered, theta, turn
+    integer :: end, i
 
-      left_open = same_place*extent
-      associate (slave => contact%slave, master => contact%master, s => face%segment)
-        smooth = which == 3 .or. .not. master%corner(min(which, 2), side)
-        if (smooth .and. all(holds(slave%segment(:, s)) .or. slave%segment(:, s) == 0)) then
-          ! It is where the mesh has it; a pair of its own would be one too many.
-          left_open = most*travel
-        else if (is_held_off(s)) then
-          ! Over a side of the slave gaps are closed in the mean, however short the master's are.
-          beside = 0
-          if (which < 3) beside = master%neighbour(which, side)
-          left_open = left_open + allowance*(openness(slave, [s], 0.0_wp) + &
-              openness(master, [side, beside], slave%chord_length(s)))
-        else
-          left_open = left_open + bend(slave, s, 0.0_wp)
-        end if
-        if (smooth) then
-          angle = norm2(face%normal + master%normal(:, which, side))
-          left_open = left_open + askew*angle*(slip + 0.5_wp*angle*abs(face%gap))
-        end if
+    theta = 0.0_wp
+    do end = 1, 2
+      i = side
+      turn = 0.0_wp
+      covered = 0.0_wp
+      do
+        covered = covered + line%chord_length(i)
+        if (line%neighbour(end, i) == 0 .or. line%corner(end, i)) exit
+        i = line%neighbour(end, i)
+        turn = max(turn, abs(rotation(line, i) - rotation(line, side)))
+        if (covered + line%chord_length(i) > over) exit
+      end do
+      theta = max(theta, turn)   ! as in the certificate
+    end do
+    bend = max(line%chord_length(side), over)*theta/8.0_wp
+
+  contains
+
+    !> By how much displacements turn a side.
+    pure real(wp) function rotation(line, side)
+      type(boundary_line), intent(in) :: line
+      integer, intent(in) :: side
+
+      associate (turned => displacement(:, line%segment(2, side)) - displacement(:, line%segment(1, side)))
+        rotation = -dot_product(line%own_normal(side, 0.5_wp), turned)/line%chord_length(side)
       end associate
-      left_open = min(left_open, most*travel)
-    end function left_open
+    end function rotation
+  end function bend
+
+  !> How far sides are, at most, from the curve that their boundary means: as the undeformed curve rises
+  !! above them, and as it bends [length].
+  pure real(wp) function openness(displacement, line, sides, over)
+    real(wp), intent(in) :: displacement(:, :)
+    type(boundary_line), intent(in) :: line
+    integer, intent(in) :: sides(:)   !! 0: none
+    real(wp), intent(in) :: over
+    real(wp) :: rise
+    integer :: end, k
+
+    openness = 0.0_wp
+    do k = 1, size(sides)
+      if (sides(k) == 0) cycle
+      associate (normal => line%normal(:, :, sides(k)))
+        rise = line%chord_length(sides(k))/4.0_wp* &
+               maxval([(norm2(normal(:, end) - line%own_normal(sides(k), real(end - 1, wp))), end=1, 2)])
+      end associate
+      openness = max(openness, rise + bend(displacement, line, sides(k), over))
+    end do
+  end function openness
+
+  !> The gap that displacements have made of that between a node and what it faces of a line, and how far
+  !! the node has slid along the line [length].
+  pure function gap_and_slip(displacement, node, line, face)
+    real(wp), intent(in) :: displacement(:, :)
+    integer, intent(in) :: node
+    type(boundary_line), intent(in) :: line
+    type(facing_type), intent(in) :: face
+    real(wp) :: apart(2), gap_and_slip(2)
+    integer :: k
+
+    apart = displacement(:, node)
+    do k = 1, 3
+      if (face%share(k) /= 0.0_wp) &
+        apart = apart - face%share(k)*displacement(:, line%segment(k, face%segment))
+    end do
+    gap_and_slip = [face%gap + dot_product(face%normal, apart), abs(cross_product(face%normal, apart))]
+  end function gap_and_slip
+
+  !> How far a node of the master may pass through a side of the slave [length].
+  pure real(wp) function left_open(moved, contact, side, which, face, slip)
+    type(moved_bodies), intent(in) :: moved
+    type(line_contact), intent(in) :: contact
+    integer, intent(in) :: side, which       !! the node of the master
+    type(facing_type), intent(in) :: face    !! and what it faces
+    real(wp), intent(in) :: slip             !! how far it has slid there [length]
+    logical :: smooth
+    real(wp) :: angle
+    integer :: beside
+
+    left_open = same_place*moved%extent
+    associate (slave => contact%slave, master => contact%master, s => face%segment)
+      smooth = which == 3 .or. .not. master%corner(min(which, 2), side)
+      if (smooth .and. all(moved%holds(slave%segment(:, s)) .or. slave%segment(:, s) == 0)) then
+        ! It is where the mesh has it; a pair of its own would be one too many.
+        left_open = most*moved%travel
+      else if (is_held_off(s)) then
+        ! Over a side of the slave gaps are closed in the mean, however short the master's are.
+        beside = 0
+        if (which < 3) beside = master%neighbour(which, side)
+        left_open = left_open + allowance*(openness(moved%displacement, slave, [s], 0.0_wp) + &
+            openness(moved%displacement, master, [side, beside], slave%chord_length(s)))
+      else
+        left_open = left_open + bend(moved%displacement, slave, s, 0.0_wp)
+      end if
+      if (smooth) then
+        angle = norm2(face%normal + master%normal(:, which, side))
+        left_open = left_open + askew*angle*(slip + 0.5_wp*angle*abs(face%gap))
+      end if
+    end associate
+    left_open = min(left_open, most*moved%travel)
+
+  contains
 
     !> Does a node of a side of the slave, or of those beside it, stand on the other line? Then contact ends
     !! near by, between nodes.
@@ -167,83 +256,10 @@ contains
       integer, intent(in) :: side
 
       associate (beside => contact%slave%neighbour(:, side))
-        is_held_off = any(holds([contact%slave%segment(:, [side, pack(beside, beside > 0)])]))
+        is_held_off = any(moved%holds([contact%slave%segment(:, [side, pack(beside, beside > 0)])]))
       end associate
     end function is_held_off
-
-    !> The gap that displacements have made of that between a node and what it faces of a line, and how far
-    !! the node has slid along the line [length].
-    pure function gap_and_slip(node, line, face)
-      integer, intent(in) :: node
-      type(boundary_line), intent(in) :: line
-      type(facing_type), intent(in) :: face
-      real(wp) :: apart(2), gap_and_slip(2)
-      integer :: k
-
-      apart = displacement(:, node)
-      do k = 1, 3
-        if (face%share(k) /= 0.0_wp) &
-          apart = apart - face%share(k)*displacement(:, line%segment(k, face%segment))
-      end do
-      gap_and_slip = [face%gap + dot_product(face%normal, apart), abs(cross_product(face%normal, apart))]
-    end function gap_and_slip
-
-    !> How far sides are, at most, from the curve that their boundary means: as the undeformed curve rises
-    !! above them, and as it bends [length].
-    pure real(wp) function openness(line, sides, over)
-      type(boundary_line), intent(in) :: line
-      integer, intent(in) :: sides(:)   !! 0: none
-      real(wp), intent(in) :: over
-      real(wp) :: rise
-      integer :: end, k
-
-      openness = 0.0_wp
-      do k = 1, size(sides)
-        if (sides(k) == 0) cycle
-        associate (normal => line%normal(:, :, sides(k)))
-          rise = line%chord_length(sides(k))/4.0_wp* &
-                 maxval([(norm2(normal(:, end) - line%own_normal(sides(k), real(end - 1, wp))), end=1, 2)])
-        end associate
-        openness = max(openness, rise + bend(line, sides(k), over))
-      end do
-    end function openness
-
-    !> How far a straight line, as long as a side or as `over` if that is more, is from the curve into which
-    !! the boundary bends from that side on [length].
-    pure real(wp) function bend(line, side, over)
-      type(boundary_line), intent(in) :: line
-      integer, intent(in) :: side
-      real(wp), intent(in) :: over
-      real(wp) :: covered, theta, turn
-      integer :: end, i
-
-      theta = 0.0_wp
-      do end = 1, 2
-        i = side
-        turn = 0.0_wp
-        covered = 0.0_wp
-        do
-          covered = covered + line%chord_length(i)
-          if (line%neighbour(end, i) == 0 .or. line%corner(end, i)) exit
-          i = line%neighbour(end, i)
-          turn = max(turn, abs(rotation(line, i) - rotation(line, side)))
-          if (covered + line%chord_length(i) > over) exit
-        end do
-        theta = max(theta, turn)   ! as in the certificate
-      end do
-      bend = max(line%chord_length(side), over)*theta/8.0_wp
-    end function bend
-
-    !> By how much displacements turn a side.
-    pure real(wp) function rotation(line, side)
-      type(boundary_line), intent(in) :: line
-      integer, intent(in) :: side
-
-      associate (moved => displacement(:, line%segment(2, side)) - displacement(:, line%segment(1, side)))
-        rotation = -dot_product(line%own_normal(side, 0.5_wp), moved)/line%chord_length(side)
-      end associate
-    end function rotation
-  end subroutine find_nodes_that_came_near
+  end function left_open
 
   !> Give pairs to the nodes that came near.
   subroutine pair_nodes_that_came_near(model, contacts, paired)

@@ -28,7 +28,7 @@ contains
   subroutine check_pairs(model, found)
     type(model_type), intent(in) :: model   !! the scene
     type(findings), intent(inout) :: found   !! what is wrong with it is added
-    type(incidence) :: around, lines   ! CGAPs at each node; pairs of lines in which it stands on sides
+    type(incidence) :: around          ! CGAPs at each node
     logical :: on_line(0:model%nodes)  ! nodes of lines in contact
     !> Of each node: the longest side there [length]; outward normal of the boundary, zero where there is none
     real(wp) :: longest(model%nodes), outward(2, model%nodes)
@@ -38,45 +38,90 @@ contains
     cgaps = model%single_pairs()
     if (cgaps > 0) then
       around = new_incidence(model%pair_node(:, :cgaps), model%nodes)
-      call refuse_pairs_twice()
-      call look_around_nodes()
+      call refuse_pairs_twice(model, around, cgaps, found)
+      call look_around_nodes(model, longest, outward)
       call warn_of_wrong_ways()
       call warn_of_sideways()
-      call warn_of_held(1, cgaps, 0)
+      call warn_of_held(model, 1, cgaps, 0, found)
     end if
     on_line = .false.
     do c = 1, size(model%line_contact)
       associate (contact => model%line_contact(c))
         on_line([contact%slave%segment, contact%master%segment]) = .true.
-        call warn_of_held(contact%first, contact%last, contact%couple(1))
+        call warn_of_held(model, contact%first, contact%last, contact%couple(1), found)
       end associate
     end do
-    if (cgaps > 0) call warn_of_half_sides()
+    if (cgaps > 0) call warn_of_half_sides(model, around, on_line, found)
 
   contains
 
-    !> Of two pairs at one place each would bear a part of the force, and the pressure would be that of a
-    !! part: CGAPs at the place of another, and at the place of a pair of lines.
-    subroutine refuse_pairs_twice()
-      integer, dimension(cgaps) :: cgap, line   ! like each pair; 0: none
-      integer :: k
+    !> Normals that go into the body of node A, or out of that of node B; but not where the other node says
+    !! that they are right.
+    subroutine warn_of_wrong_ways()
+      real(wp) :: along(2)   ! the normal, along those of the two boundaries
+      integer :: i, k
 
-      lines = new_incidence(reshape(model%row_node(model%row_start(cgaps + 1:model%pairs)), &
-          [1, model%pairs - cgaps]), model%nodes)
-      cgap = [(cgap_like(k), k=1, cgaps)]
-      line = [(line_pair_like(k), k=1, cgaps)]
-      k = findloc(cgap > 0, .true., dim=1)
-      if (k > 0) call found%add_error(of_pair, k, 1, ': joins the nodes of '// &
-          model%name_of(of_pair, cgap(k))//' along the same normal, with the '// &
-          'same gap'//like_this(cgap), &
-          'one CGAP for two nodes and a normal')
-      k = findloc(line > 0, .true., dim=1)
-      if (k == 0) return
-      c = findloc(model%line_contact%last >= line(k), .true., dim=1)
-      call found%add_error(of_pair, k, 1, ': joins nodes that '// &
-                           model%name_of(of_couple, model%line_contact(c)%couple(1))// &
-                           ' joins along the same normal'//like_this(line), 'either CGAPs or a BCONP')
-    end subroutine refuse_pairs_twice
+      do k = 1, cgaps
+        along = [(dot_product(outward(:, model%pair_node(i, k)), model%normal(:, k)), i=1, 2)]
+        if (along(1) >= same_way .or. along(2) <= -same_way) cycle
+        if (along(1) <= -same_way .or. along(2) >= same_way) &
+          call found%add_warning(of_pair, k, 1, ': its normal points the wrong way: into the body of GA, '// &
+                                 'or out of that of GB', &
+                                 'GA and GB exchanged, or the x-axis of CID turned round')
+      end do
+    end subroutine warn_of_wrong_ways
+
+    !> One warning for all CGAPs whose two nodes, both of bodies, lie farther apart across the normal than a
+    !! side there is long.
+    subroutine warn_of_sideways()
+      real(wp) :: sideways(cgaps)
+      integer :: far, k
+
+      do k = 1, cgaps
+        associate (node => model%pair_node(:, k))
+          sideways(k) = abs(cross_product(model%x(:, node(2)) - model%x(:, node(1)), model%normal(:, k)))
+          if (any(longest(node) == 0.0_wp) .or. sideways(k) <= maxval(longest(node))) sideways(k) = 0.0_wp
+        end associate
+      end do
+      if (all(sideways == 0.0_wp)) return
+      far = maxloc(sideways, dim=1)
+      call found%add_warning(of_pair, far, 4, ': GA and GB lie '//short_real(sideways(far))// &
+                             ' apart along the contact, more than a side there ('// &
+                             short_real(maxval(longest(model%pair_node(:, far))))//')'// &
+                             and_more(count(sideways > 0.0_wp), '; so do ', ' more'), &
+                             'nodes that lie opposite each other, or BLSEG lines with a BCONP between them')
+    end subroutine warn_of_sideways
+  end subroutine check_pairs
+
+  !> Of two pairs at one place each would bear a part of the force, and the pressure would be that of a
+  !! part: CGAPs at the place of another, and at the place of a pair of lines.
+  subroutine refuse_pairs_twice(model, around, cgaps, found)
+    type(model_type), intent(in) :: model
+    type(incidence), intent(in) :: around
+    integer, intent(in) :: cgaps
+    type(findings), intent(inout) :: found
+    integer :: c
+    type(incidence) :: lines   ! pairs of lines in which each node stands on sides
+    integer, dimension(cgaps) :: cgap, line   ! like each pair; 0: none
+    integer :: k
+
+    lines = new_incidence(reshape(model%row_node(model%row_start(cgaps + 1:model%pairs)), &
+        [1, model%pairs - cgaps]), model%nodes)
+    cgap = [(cgap_like(k), k=1, cgaps)]
+    line = [(line_pair_like(k), k=1, cgaps)]
+    k = findloc(cgap > 0, .true., dim=1)
+    if (k > 0) call found%add_error(of_pair, k, 1, ': joins the nodes of '// &
+        model%name_of(of_pair, cgap(k))//' along the same normal, with the '// &
+        'same gap'//like_this(cgap), &
+        'one CGAP for two nodes and a normal')
+    k = findloc(line > 0, .true., dim=1)
+    if (k == 0) return
+    c = findloc(model%line_contact%last >= line(k), .true., dim=1)
+    call found%add_error(of_pair, k, 1, ': joins nodes that '// &
+                         model%name_of(of_couple, model%line_contact(c)%couple(1))// &
+                         ' joins along the same normal'//like_this(line), 'either CGAPs or a BCONP')
+
+  contains
 
     !> The first CGAP before pair k that is between its nodes, along its normal, with its gap; 0: none.
     pure integer function cgap_like(k) result(other)
@@ -118,84 +163,53 @@ contains
       end do
       pair = 0
     end function line_pair_like
+  end subroutine refuse_pairs_twice
 
-    subroutine look_around_nodes()
-      real(wp) :: chord(2), length(model%nodes)   ! of all sides around each node
-      integer :: k, s
+  subroutine look_around_nodes(model, longest, outward)
+    type(model_type), intent(in) :: model
+    real(wp), intent(inout) :: longest(:), outward(:, :)
+    real(wp) :: chord(2), length(model%nodes)   ! of all sides around each node
+    integer :: k, s
 
-      longest = 0.0_wp
-      length = 0.0_wp
-      outward = 0.0_wp
-      do s = 1, model%body_outline%sides
-        associate (node => model%body_outline%node(:, s))
-          chord = model%x(:, node(2)) - model%x(:, node(1))
-          do k = 1, merge(3, 2, node(3) > 0)
-            longest(node(k)) = max(longest(node(k)), norm2(chord))
-            length(node(k)) = length(node(k)) + norm2(chord)
-            outward(:, node(k)) = outward(:, node(k)) + right_of(chord)
-          end do
-        end associate
-      end do
-      do k = 1, model%nodes   ! sides all round a node cancel
-        if (norm2(outward(:, k)) <= no_effect*length(k)) outward(:, k) = 0.0_wp
-        outward(:, k) = unit(outward(:, k))
-      end do
-    end subroutine look_around_nodes
+    longest = 0.0_wp
+    length = 0.0_wp
+    outward = 0.0_wp
+    do s = 1, model%body_outline%sides
+      associate (node => model%body_outline%node(:, s))
+        chord = model%x(:, node(2)) - model%x(:, node(1))
+        do k = 1, merge(3, 2, node(3) > 0)
+          longest(node(k)) = max(longest(node(k)), norm2(chord))
+          length(node(k)) = length(node(k)) + norm2(chord)
+          outward(:, node(k)) = outward(:, node(k)) + right_of(chord)
+        end do
+      end associate
+    end do
+    do k = 1, model%nodes   ! sides all round a node cancel
+      if (norm2(outward(:, k)) <= no_effect*length(k)) outward(:, k) = 0.0_wp
+      outward(:, k) = unit(outward(:, k))
+    end do
+  end subroutine look_around_nodes
 
-    !> Normals that go into the body of node A, or out of that of node B; but not where the other node says
-    !! that they are right.
-    subroutine warn_of_wrong_ways()
-      real(wp) :: along(2)   ! the normal, along those of the two boundaries
-      integer :: i, k
+  !> One warning for all pairs of a range whose nodes are held along the normal. A held overlap is no
+  !! warning: the run will end with it.
+  subroutine warn_of_held(model, first, last, couple, found)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: first, last       !! the range
+    integer, intent(in) :: couple            !! of lines that the pairs are of; 0: given one by one
+    type(findings), intent(inout) :: found
+    integer, allocatable :: held(:)
+    character(len=:), allocatable :: which
+    integer :: k
 
-      do k = 1, cgaps
-        along = [(dot_product(outward(:, model%pair_node(i, k)), model%normal(:, k)), i=1, 2)]
-        if (along(1) >= same_way .or. along(2) <= -same_way) cycle
-        if (along(1) <= -same_way .or. along(2) >= same_way) &
-          call found%add_warning(of_pair, k, 1, ': its normal points the wrong way: into the body of GA, '// &
-                                 'or out of that of GB', &
-                                 'GA and GB exchanged, or the x-axis of CID turned round')
-      end do
-    end subroutine warn_of_wrong_ways
+    held = pack([(k, k=first, last)], [(is_held(k), k=first, last)])
+    if (size(held) == 0) return
+    which = and_more(size(held), ', and ', ' more')
+    if (couple > 0) which = ': '//model%name_of(of_node, model%pair_node(2, held(1)))//which
+    call found%add_warning(merge(of_couple, of_pair, couple > 0), merge(couple, held(1), couple > 0), 1, &
+                           which//': can neither open nor close: the nodes on both sides are held '// &
+                           'along the normal', 'a free node on one side, or no pair')
 
-    !> One warning for all CGAPs whose two nodes, both of bodies, lie farther apart across the normal than a
-    !! side there is long.
-    subroutine warn_of_sideways()
-      real(wp) :: sideways(cgaps)
-      integer :: far, k
-
-      do k = 1, cgaps
-        associate (node => model%pair_node(:, k))
-          sideways(k) = abs(cross_product(model%x(:, node(2)) - model%x(:, node(1)), model%normal(:, k)))
-          if (any(longest(node) == 0.0_wp) .or. sideways(k) <= maxval(longest(node))) sideways(k) = 0.0_wp
-        end associate
-      end do
-      if (all(sideways == 0.0_wp)) return
-      far = maxloc(sideways, dim=1)
-      call found%add_warning(of_pair, far, 4, ': GA and GB lie '//short_real(sideways(far))// &
-                             ' apart along the contact, more than a side there ('// &
-                             short_real(maxval(longest(model%pair_node(:, far))))//')'// &
-                             and_more(count(sideways > 0.0_wp), '; so do ', ' more'), &
-                             'nodes that lie opposite each other, or BLSEG lines with a BCONP between them')
-    end subroutine warn_of_sideways
-
-    !> One warning for all pairs of a range whose nodes are held along the normal. A held overlap is no
-    !! warning: the run will end with it.
-    subroutine warn_of_held(first, last, couple)
-      integer, intent(in) :: first, last       !! the range
-      integer, intent(in) :: couple            !! of lines that the pairs are of; 0: given one by one
-      integer, allocatable :: held(:)
-      character(len=:), allocatable :: which
-      integer :: k
-
-      held = pack([(k, k=first, last)], [(is_held(k), k=first, last)])
-      if (size(held) == 0) return
-      which = and_more(size(held), ', and ', ' more')
-      if (couple > 0) which = ': '//model%name_of(of_node, model%pair_node(2, held(1)))//which
-      call found%add_warning(merge(of_couple, of_pair, couple > 0), merge(couple, held(1), couple > 0), 1, &
-                             which//': can neither open nor close: the nodes on both sides are held '// &
-                             'along the normal', 'a free node on one side, or no pair')
-    end subroutine warn_of_held
+  contains
 
     !> Are all nodes of a pair held along its normal, and do they not overlap?
     pure logical function is_held(pair)
@@ -216,29 +230,35 @@ contains
       end do
       is_held = gap >= 0.0_wp
     end function is_held
+  end subroutine warn_of_held
 
-    !> A six-node side presses by its middle, with two thirds of the force, and its ends: where some of these
-    !! have no pair, the side passes through what the others touch. A middle alone may be a point of support;
-    !! two beside each other are none.
-    subroutine warn_of_half_sides()
-      integer, allocatable :: half(:)
-      character(len=:), allocatable :: what
-      logical :: at(3)
-      integer :: s
+  !> A six-node side presses by its middle, with two thirds of the force, and its ends: where some of these
+  !! have no pair, the side passes through what the others touch. A middle alone may be a point of support;
+  !! two beside each other are none.
+  subroutine warn_of_half_sides(model, around, on_line, found)
+    type(model_type), intent(in) :: model
+    type(incidence), intent(in) :: around
+    logical, intent(in) :: on_line(0:)
+    type(findings), intent(inout) :: found
+    integer, allocatable :: half(:)
+    character(len=:), allocatable :: what
+    logical :: at(3)
+    integer :: s
 
-      half = pack([(s, s=1, model%body_outline%sides)], [(is_half(s), s=1, model%body_outline%sides)])
-      if (size(half) == 0) return
-      associate (node => model%body_outline%node(:, half(1)), element => model%body_outline%element(half(1)))
-        at = has_pair(node)
-        what = ' at both ends and none at its middle, '//model%name_of(of_node, node(3))
-        if (at(3)) what = ' at its middle, '//model%name_of(of_node, node(3))//', and none at its ends'
-        call found%add_warning(of_pair, around%group(around%start(node(merge(3, 1, at(3))))), 1, &
-                               ': a side of '//model%name_of(of_element, element)//' has CGAPs'//what// &
-                               ': it will pass through what it touches, and the pressures are wrong'// &
-                               and_more(size(half), '; so it is with ', ' more'), &
-                               'CGAPs at all three nodes of the sides, or BLSEG and BCONP')
-      end associate
-    end subroutine warn_of_half_sides
+    half = pack([(s, s=1, model%body_outline%sides)], [(is_half(s), s=1, model%body_outline%sides)])
+    if (size(half) == 0) return
+    associate (node => model%body_outline%node(:, half(1)), element => model%body_outline%element(half(1)))
+      at = has_pair(node)
+      what = ' at both ends and none at its middle, '//model%name_of(of_node, node(3))
+      if (at(3)) what = ' at its middle, '//model%name_of(of_node, node(3))//', and none at its ends'
+      call found%add_warning(of_pair, around%group(around%start(node(merge(3, 1, at(3))))), 1, &
+                             ': a side of '//model%name_of(of_element, element)//' has CGAPs'//what// &
+                             ': it will pass through what it touches, and the pressures are wrong'// &
+                             and_more(size(half), '; so it is with ', ' more'), &
+                             'CGAPs at all three nodes of the sides, or BLSEG and BCONP')
+    end associate
+
+  contains
 
     !> Has a six-node side that can bend, of no line, pairs at its ends alone, or, beside another such side,
     !! at its middle alone?
@@ -274,7 +294,7 @@ contains
         end associate
       end do
     end function has_pair
-  end subroutine check_pairs
+  end subroutine warn_of_half_sides
 
   !> Why a pair is refused, and how many more CGAPs there are with such a pair than the one that is named.
   pure function like_this(pair) result(text)

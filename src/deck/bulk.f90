@@ -50,14 +50,14 @@ contains
     end associate
     names = entry%name
     parameter_entry = parameters()
-    call find_kinds()
+    call find_kinds(lines, first, names, kind)
     begun = new_incidence(kind, unknown_card)
     call note_without_cards(parameter_entry)
     allocate (table(card_kinds))
     do k = 1, card_kinds
       call note_without_cards(entry(k)%field)
       call table(k)%begin(entry(k), begun%of(k))
-      if (k /= card_param .and. entry(k)%list_slot == huge(1)) call read_plain(table(k))
+      if (k /= card_param .and. entry(k)%list_slot == huge(1)) call read_plain(lines, table(k))
     end do
     next = 1
     do line = first, lines%count
@@ -65,14 +65,14 @@ contains
       if (k == no_card) cycle
       if (k == unknown_card) then
         call gather(lines, line, card, faults)
-        if (card%sound) call refuse_name()
+        if (card%sound) call refuse_name(first, card, names, faults)
         cycle
       end if
       if (.not. table(k)%sound(next(k))) call read_in_turn(table(k), next(k))
       next(k) = next(k) + 1
     end do
     do k = 1, card_kinds
-      call note_fields(table(k))
+      call note_fields(lines, table(k), faults)
     end do
 
   contains
@@ -89,17 +89,36 @@ contains
       end do
     end subroutine note_without_cards
 
-    !> Read cards without lists, but those that are at fault, by as many threads as are granted.
-    subroutine read_plain(cards)
+    !> Read a card that has a list, is a PARAM, or is at fault: faults are told in the order of lines.
+    subroutine read_in_turn(cards, i)
       type(card_table), intent(inout) :: cards
-      integer :: i
+      integer, intent(in) :: i
+      integer :: errors
 
-      !$omp parallel do num_threads(threads_over(cards%count)) schedule(dynamic)
-      do i = 1, cards%count, at_once
-        call read_cards(cards, i, min(i + at_once - 1, cards%count))
-      end do
-      !$omp end parallel do
-    end subroutine read_plain
+      errors = faults%errors
+      call gather(lines, cards%line(i), card, faults)
+      call cards%clear(i)
+      call cards%begin_list(i)
+      if (k == card_param .and. card%sound) call choose_parameter(card, parameter_entry, &
+                                                                  cards%entry%field(2), faults)
+      if (faults%errors == errors) call read_card(card, cards, i, faults)
+      cards%sound(i) = faults%errors == errors
+    end subroutine read_in_turn
+  end subroutine read_bulk
+
+  !> Read cards without lists, but those that are at fault, by as many threads as are granted.
+  subroutine read_plain(lines, cards)
+    type(source), intent(in) :: lines
+    type(card_table), intent(inout) :: cards
+    integer :: i
+
+    !$omp parallel do num_threads(threads_over(cards%count)) schedule(dynamic)
+    do i = 1, cards%count, at_once
+      call read_cards(cards, i, min(i + at_once - 1, cards%count))
+    end do
+    !$omp end parallel do
+
+  contains
 
     subroutine read_cards(cards, first, last)
       type(card_table), intent(inout) :: cards
@@ -116,51 +135,42 @@ contains
         cards%sound(i) = unheard%errors == errors
       end do
     end subroutine read_cards
+  end subroutine read_plain
 
-    !> Read a card that has a list, is a PARAM, or is at fault: faults are told in the order of lines.
-    subroutine read_in_turn(cards, i)
-      type(card_table), intent(inout) :: cards
-      integer, intent(in) :: i
-      integer :: errors
+  !> The kind of the card that begins on each line. Cards of one name mostly follow each other.
+  subroutine find_kinds(lines, first, names, kind)
+    type(source), intent(in) :: lines
+    integer, intent(in) :: first
+    character(len=*), intent(in) :: names(:)
+    integer, allocatable, intent(inout) :: kind(:, :)
+    character(len=8) :: text, before
+    logical :: is_first
+    integer :: i, found
 
-      errors = faults%errors
-      call gather(lines, cards%line(i), card, faults)
-      call cards%clear(i)
-      call cards%begin_list(i)
-      if (k == card_param .and. card%sound) call choose_parameter(cards%entry%field(2))
-      if (faults%errors == errors) call read_card(card, cards, i, faults)
-      cards%sound(i) = faults%errors == errors
-    end subroutine read_in_turn
+    allocate (kind(1, lines%count), source=no_card)
+    is_first = .true.
+    before = ''
+    found = unknown_card   ! a card without a name
+    do i = first, lines%count
+      associate (line => lines%line(i))
+        if (line%last < line%first) cycle
+        if (.not. is_first) then
+          if (continues(lines%text(line%first:line%last))) cycle
+        end if
+        is_first = .false.
+        text = lines%text(line%first:min(line%last, line%first + 7))
+        if (line%special <= line%last) then   ! with a comma the name may be longer
+          found = kind_of(lines%text(line%first:line%last))
+          before = ''
+        else if (text /= before) then
+          found = kind_of(text)
+          before = text
+        end if
+        kind(1, i) = found
+      end associate
+    end do
 
-    !> The kind of the card that begins on each line. Cards of one name mostly follow each other.
-    subroutine find_kinds()
-      character(len=8) :: text, before
-      logical :: is_first
-      integer :: i, found
-
-      allocate (kind(1, lines%count), source=no_card)
-      is_first = .true.
-      before = ''
-      found = unknown_card   ! a card without a name
-      do i = first, lines%count
-        associate (line => lines%line(i))
-          if (line%last < line%first) cycle
-          if (.not. is_first) then
-            if (continues(lines%text(line%first:line%last))) cycle
-          end if
-          is_first = .false.
-          text = lines%text(line%first:min(line%last, line%first + 7))
-          if (line%special <= line%last) then   ! with a comma the name may be longer
-            found = kind_of(lines%text(line%first:line%last))
-            before = ''
-          else if (text /= before) then
-            found = kind_of(text)
-            before = text
-          end if
-          kind(1, i) = found
-        end associate
-      end do
-    end subroutine find_kinds
+  contains
 
     !> The kind of the card that a line begins.
     pure integer function kind_of(text)
@@ -174,62 +184,71 @@ contains
       kind_of = findloc(names == name, .true., dim=1)
       if (kind_of == 0) kind_of = unknown_card
     end function kind_of
+  end subroutine find_kinds
 
-    !> The card has a name that is not in the catalogue.
-    subroutine refuse_name()
-      character(len=:), allocatable :: name, remedy, why, word
+  !> The card has a name that is not in the catalogue.
+  subroutine refuse_name(first, card, names, faults)
+    integer, intent(in) :: first
+    type(card_fields), intent(in) :: card
+    character(len=*), intent(in) :: names(:)
+    type(diagnostics), intent(inout) :: faults
+    character(len=:), allocatable :: name, remedy, why, word
 
-      name = upper(card%text(card%name_first:card%name_last))
-      if (scan(card%text(1:1), '+*') > 0 .or. name == '') then
-        call faults%add_error(card%place(0), 'a continuation line without a card before it', &
-                              'the name of a card')
-        return
-      end if
-      word = name(:scan(name//' ', ' =(;') - 1)
-      call refused_card(name, why, remedy)
-      if (len(why) > 0) then
-        call faults%add_error(card%place(0), name//' is not here:'//why, remedy)
-        return
-      end if
-      remedy = suggestion(name, names, 'epcont --cards lists the cards that are read')
-      if (name == 'CQUAD9' .or. name == 'CQUAD') remedy = 'CTRIA6, CQUAD4 or CQUAD8'
-      if (name == 'MATT1' .or. index(name, 'TABLEM') == 1) &
-        remedy = 'moduli on MAT1: they do not depend on temperature'
-      if (any(names == word)) remedy = 'fields of 8 columns, or commas'
-      if (first == 1 .and. any(keyword == word) .or. word == 'BEGIN') &
-        remedy = 'one line BEGIN BULK behind case control'
-      call faults%add_error(card%place(0), 'unknown card '//name, remedy)
-    end subroutine refuse_name
+    name = upper(card%text(card%name_first:card%name_last))
+    if (scan(card%text(1:1), '+*') > 0 .or. name == '') then
+      call faults%add_error(card%place(0), 'a continuation line without a card before it', &
+                            'the name of a card')
+      return
+    end if
+    word = name(:scan(name//' ', ' =(;') - 1)
+    call refused_card(name, why, remedy)
+    if (len(why) > 0) then
+      call faults%add_error(card%place(0), name//' is not here:'//why, remedy)
+      return
+    end if
+    remedy = suggestion(name, names, 'epcont --cards lists the cards that are read')
+    if (name == 'CQUAD9' .or. name == 'CQUAD') remedy = 'CTRIA6, CQUAD4 or CQUAD8'
+    if (name == 'MATT1' .or. index(name, 'TABLEM') == 1) &
+      remedy = 'moduli on MAT1: they do not depend on temperature'
+    if (any(names == word)) remedy = 'fields of 8 columns, or commas'
+    if (first == 1 .and. any(keyword == word) .or. word == 'BEGIN') &
+      remedy = 'one line BEGIN BULK behind case control'
+    call faults%add_error(card%place(0), 'unknown card '//name, remedy)
+  end subroutine refuse_name
 
-    !> Which PARAM it is, and so what its value may be: any word where the name is none, and a fault where it
-    !! is unknown.
-    subroutine choose_parameter(value_entry)
-      type(field_entry), intent(out) :: value_entry
-      character(len=8) :: word
-      integer :: outcome, i
-      logical :: is_former
+  !> Which PARAM it is, and so what its value may be: any word where the name is none, and a fault where it
+  !! is unknown.
+  subroutine choose_parameter(card, parameter_entry, value_entry, faults)
+    type(card_fields), intent(in) :: card
+    type(field_entry), intent(in) :: parameter_entry(:)
+    type(field_entry), intent(out) :: value_entry
+    type(diagnostics), intent(inout) :: faults
+    character(len=8) :: word
+    integer :: outcome, i
+    logical :: is_former
 
-      value_entry = field_entry('VALUE', kind_word, required=.true.)
-      if (.not. card%filled(1)) return
-      call scan_word(card%text(card%slot(1)%first:card%slot(1)%last), word, outcome)
-      if (outcome /= scan_sound) return
-      call report_former(card, trim(word), faults, is_former)
-      if (is_former) value_entry = field_entry('VALUE', kind_any)
-      if (is_former) return
-      i = findloc(parameter_entry%name == word, .true., dim=1)
-      if (i > 0) then
-        value_entry = parameter_entry(i)
-        value_entry%name = 'VALUE'
-        value_entry%used = .true.
-        if (.not. parameter_entry(i)%used) &
-          call faults%add_note(card%place(1), &
-                               'PARAM '//trim(word)//' has no effect'//without(parameter_entry(i)))
-      else
-        call faults%add_error(card%place(1), 'unknown parameter '//trim(word), &
-                              suggestion(word, parameter_entry%name, &
-                                         'epcont --cards PARAM lists the parameters'))
-      end if
-    end subroutine choose_parameter
+    value_entry = field_entry('VALUE', kind_word, required=.true.)
+    if (.not. card%filled(1)) return
+    call scan_word(card%text(card%slot(1)%first:card%slot(1)%last), word, outcome)
+    if (outcome /= scan_sound) return
+    call report_former(card, trim(word), faults, is_former)
+    if (is_former) value_entry = field_entry('VALUE', kind_any)
+    if (is_former) return
+    i = findloc(parameter_entry%name == word, .true., dim=1)
+    if (i > 0) then
+      value_entry = parameter_entry(i)
+      value_entry%name = 'VALUE'
+      value_entry%used = .true.
+      if (.not. parameter_entry(i)%used) &
+        call faults%add_note(card%place(1), &
+                             'PARAM '//trim(word)//' has no effect'//without(parameter_entry(i)))
+    else
+      call faults%add_error(card%place(1), 'unknown parameter '//trim(word), &
+                            suggestion(word, parameter_entry%name, &
+                                       'epcont --cards PARAM lists the parameters'))
+    end if
+
+  contains
 
     !> ` without GRAV or RFORCE`: cards without which a field has no effect; empty if they do not matter.
     pure function without(field) result(text)
@@ -245,25 +264,28 @@ contains
       end do
       text = ' without '//listed(text)
     end function without
+  end subroutine choose_parameter
 
-    !> List once each field that was filled and has no effect.
-    subroutine note_fields(cards)
-      type(card_table), intent(in) :: cards
-      type(diagnostics) :: unheard
-      logical, allocatable :: noted(:)
-      integer :: slot
+  !> List once each field that was filled and has no effect.
+  subroutine note_fields(lines, cards, faults)
+    type(source), intent(in) :: lines
+    type(card_table), intent(in) :: cards
+    type(diagnostics), intent(inout) :: faults
+    type(card_fields) :: card
+    type(diagnostics) :: unheard
+    logical, allocatable :: noted(:)
+    integer :: slot
 
-      do slot = 1, size(cards%given, 1)
-        associate (field => cards%entry%field(slot))
-          if (field%used .and. field%heard_to == huge(1.0_wp)) cycle
-          noted = cards%given(slot, :) .and. (.not. field%used .or. cards%value(slot, :) > field%heard_to)
-        end associate
-        if (.not. any(noted)) cycle
-        call gather(lines, cards%line(findloc(noted, .true., dim=1)), card, unheard)
-        call faults%add_note(card%place(slot), trim(cards%entry%name)//': '// &
-                             cards%entry%field_text(slot)//' has no effect (cards with it: '// &
-                             text_of(count(noted))//')')
-      end do
-    end subroutine note_fields
-  end subroutine read_bulk
+    do slot = 1, size(cards%given, 1)
+      associate (field => cards%entry%field(slot))
+        if (field%used .and. field%heard_to == huge(1.0_wp)) cycle
+        noted = cards%given(slot, :) .and. (.not. field%used .or. cards%value(slot, :) > field%heard_to)
+      end associate
+      if (.not. any(noted)) cycle
+      call gather(lines, cards%line(findloc(noted, .true., dim=1)), card, unheard)
+      call faults%add_note(card%place(slot), trim(cards%entry%name)//': '// &
+                           cards%entry%field_text(slot)//' has no effect (cards with it: '// &
+                           text_of(count(noted))//')')
+    end do
+  end subroutine note_fields
 end module epcont_deck_bulk

@@ -42,6 +42,16 @@ module epcont_deck_card
     procedure :: place
   end type card_fields
 
+  !> The line of a card that is being cut.
+  type :: line_state
+    integer :: at                      !! which line
+    integer :: before = 0, length = 0  !! characters of the card's text before it, and of it
+    integer :: comma                   !! column of its first comma; 0: fields of fixed width
+    integer :: first_slot, fields      !! slots on it, 8 or 4
+    logical :: half_open = .false.     !! the last line was the first half of a large-field row
+    integer :: mark          !! in the text: behind the fields of the last line, where its `+A` has the A
+  end type line_state
+
 contains
 
   !> Collect the card that begins at `line`, which is not blank, with its continuations.
@@ -50,162 +60,179 @@ contains
     integer, intent(in) :: line   !! where it begins
     type(card_fields), intent(inout) :: card   !! its arrays are used again
     type(diagnostics), intent(inout) :: faults   !! of form; they are added
-    integer :: at                  ! one of its lines
-    integer :: before, length      ! characters of the card's text before it, and of it
-    integer :: comma               ! column of its first comma; 0: fields of fixed width
-    integer :: first_slot, fields  ! slots on it, 8 or 4
-    logical :: half_open           ! the last line was the first half of a large-field row
-    integer :: mark                ! in the text: behind the fields of the last line, where its `+A` has the A
+    type(line_state) :: now
+    integer :: at
 
     if (.not. allocated(card%slot)) then
       allocate (card%slot(64))
       card%text = repeat(' ', longest_free)
     end if
-    length = 0
-    before = 0
     card%count = 0
     card%sound = .true.
-    half_open = .false.
     do at = line, lines%count
       associate (next => lines%line(at))
         if (next%last < next%first) cycle
         if (at > line .and. .not. continues(lines%text(next%first:next%last))) exit
       end associate
-      call add_line()
+      now%at = at
+      call add_line(lines, at == line, card, now, faults)
     end do
-
-  contains
-
-    !> Add the fields of one line.
-    subroutine add_line()
-      logical :: large
-      character(len=width) :: own   ! mark, without its `+`
-
-      associate (text => lines%line(at))
-        before = before + length
-        length = text%last - text%first + 1
-        do while (len(card%text) < before + length)
-          card%text = card%text//card%text
-        end do
-        card%text(before + 1:before + length) = lines%text(text%first:text%last)
-      end associate
-      call inspect()
-      if (at == line) then
-        call find_name(card%text(:length), comma, card%name_first, card%name_last, large)
-        card%name_place = place_type(line, card%name_first, max(card%name_first, card%name_last))
-      else
-        large = card%text(before + 1:before + 1) == '*'
-        if (mark <= before) then   ! decks may be sorted
-          own = card%text(before + 2:before + min(merge(comma - 1, width, comma > 0), length))
-          if (own /= '' .and. own /= card%text(mark:before)) &
-            call refuse(1, width, 'continues '//trim(own)//', not '//card%text(mark:before)// &
-                        ' of the line before', 'the lines of a card together')
-        end if
-      end if
-      mark = before + merge(longest_fixed - width + 2, length + 1, comma == 0)
-      if (.not. card%sound) return
-      call open_slots(large)
-      if (comma > 0) then
-        call cut_free()
-      else
-        call cut_fixed()
-      end if
-    end subroutine add_line
-
-    !> Look through a line: its first comma, and what may not be there.
-    subroutine inspect()
-      integer :: code, column, k, longest
-
-      comma = 0
-      if (lines%line(at)%special <= lines%line(at)%last) &
-        comma = index(card%text(before + 1:before + length), ',')
-      do k = lines%line(at)%special, lines%line(at)%last
-        code = iachar(lines%text(k:k))
-        column = k - lines%line(at)%first + 1
-        if (code == 9) then
-          if (comma > 0) cycle   ! as a blank: columns do not count
-          call refuse(column, column, 'a tab in column '//text_of(column), &
-                      'blanks: a tab has no width in columns; or commas')
-          return
-        else if (code < 32 .or. code > 126) then
-          call refuse(column, column, 'a character that is not printable ASCII (code '//text_of(code)//')', &
-                      'only comments and titles may hold such')
-          return
-        end if
-      end do
-      longest = merge(longest_free, longest_fixed, comma > 0)
-      if (length > longest) &
-        call refuse(longest + 1, length, 'the line goes on beyond column '//text_of(longest), 'nothing here')
-    end subroutine inspect
-
-    !> The line cannot be cut into fields.
-    subroutine refuse(first, last, what, remedy)
-      integer, intent(in) :: first, last   !! columns
-      character(len=*), intent(in) :: what, remedy
-
-      card%sound = .false.
-      call faults%add_error(place_type(at, first, last), what, remedy)
-    end subroutine refuse
-
-    !> Slots for the fields of a line: a new row of eight, or the second half of a large-field row. They are
-    !! blank, and stand behind the line's end until it is cut.
-    subroutine open_slots(large)
-      logical, intent(in) :: large
-
-      fields = merge(fields_a_line/2, fields_a_line, large)
-      first_slot = card%count + 1
-      half_open = large .and. .not. half_open
-      if (large .and. .not. half_open) then
-        first_slot = first_slot - fields
-      else
-        card%count = card%count + fields_a_line
-      end if
-      if (card%count >= size(card%slot)) card%slot = [card%slot, card%slot]
-      if (half_open .or. comma > 0) &   ! all other slots are cut, be it behind the line's end
-        card%slot(first_slot:card%count) = card_slot(place=place_type(at, length + 1, length + 1))
-      card%slot(card%count + 1)%last = 0
-    end subroutine open_slots
-
-    !> Cut a line of fields of fixed width.
-    subroutine cut_fixed()
-      integer :: slot, step, left, from, to
-
-      step = width*fields_a_line/fields
-      left = width
-      do slot = first_slot, first_slot + fields - 1
-        from = before + left + 1
-        to = min(from + step - 1, before + length)
-        if (from <= to) call trim_blanks(card%text, from, to)
-        card%slot(slot) = card_slot(from, to, place_type(at, left + 1, left + step))
-        left = left + step
-      end do
-    end subroutine cut_fixed
-
-    !> Cut a line at its commas. Behind the data fields only a continuation mark may stand.
-    subroutine cut_free()
-      integer :: slot, from, to, left, right
-
-      slot = first_slot
-      left = comma + 1
-      do while (left <= length)
-        right = left - 2 + index(card%text(before + left:before + length), ',')
-        if (right < left - 1) right = length
-        from = before + left
-        to = before + right
-        call trim_blanks(card%text, from, to)
-        if (slot < first_slot + fields) then
-          card%slot(slot) = card_slot(from, to, place_type(at, left, max(left, right)))
-        else if (from <= to .and. &
-                 (slot > first_slot + fields .or. scan(card%text(from:max(from, to)), '+*') /= 1)) then
-          call refuse(from - before, length, 'more than '//text_of(fields)//' data fields on a line', &
-                      'a continuation line for the rest')
-          return
-        end if
-        slot = slot + 1
-        left = right + 2
-      end do
-    end subroutine cut_free
   end subroutine gather
+
+  !> Add the fields of one line.
+  subroutine add_line(lines, is_first, card, now, faults)
+    type(source), intent(in) :: lines
+    logical, intent(in) :: is_first   !! of the card
+    type(card_fields), intent(inout) :: card
+    type(line_state), intent(inout) :: now
+    type(diagnostics), intent(inout) :: faults
+    logical :: large
+    character(len=width) :: own   ! mark, without its `+`
+
+    associate (text => lines%line(now%at))
+      now%before = now%before + now%length
+      now%length = text%last - text%first + 1
+      do while (len(card%text) < now%before + now%length)
+        card%text = card%text//card%text
+      end do
+      card%text(now%before + 1:now%before + now%length) = lines%text(text%first:text%last)
+    end associate
+    call inspect(lines, card, now, faults)
+    if (is_first) then
+      call find_name(card%text(:now%length), now%comma, card%name_first, card%name_last, large)
+      card%name_place = place_type(now%at, card%name_first, max(card%name_first, card%name_last))
+    else
+      large = card%text(now%before + 1:now%before + 1) == '*'
+      if (now%mark <= now%before) then   ! decks may be sorted
+        own = card%text(now%before + 2:now%before + min(merge(now%comma - 1, width, now%comma > 0), &
+                                                        now%length))
+        if (own /= '' .and. own /= card%text(now%mark:now%before)) &
+          call refuse(card, now%at, 1, width, &
+                      'continues '//trim(own)//', not '//card%text(now%mark:now%before)// &
+                      ' of the line before', 'the lines of a card together', faults)
+      end if
+    end if
+    now%mark = now%before + merge(longest_fixed - width + 2, now%length + 1, now%comma == 0)
+    if (.not. card%sound) return
+    call open_slots(large, card, now)
+    if (now%comma > 0) then
+      call cut_free(now, card, faults)
+    else
+      call cut_fixed(now, card)
+    end if
+  end subroutine add_line
+
+  !> Look through a line: its first comma, and what may not be there.
+  subroutine inspect(lines, card, now, faults)
+    type(source), intent(in) :: lines
+    type(card_fields), intent(inout) :: card
+    type(line_state), intent(inout) :: now
+    type(diagnostics), intent(inout) :: faults
+    integer :: code, column, k, longest
+
+    now%comma = 0
+    if (lines%line(now%at)%special <= lines%line(now%at)%last) &
+      now%comma = index(card%text(now%before + 1:now%before + now%length), ',')
+    do k = lines%line(now%at)%special, lines%line(now%at)%last
+      code = iachar(lines%text(k:k))
+      column = k - lines%line(now%at)%first + 1
+      if (code == 9) then
+        if (now%comma > 0) cycle   ! as a blank: columns do not count
+        call refuse(card, now%at, column, column, 'a tab in column '//text_of(column), &
+                    'blanks: a tab has no width in columns; or commas', faults)
+        return
+      else if (code < 32 .or. code > 126) then
+        call refuse(card, now%at, column, column, &
+                    'a character that is not printable ASCII (code '//text_of(code)//')', &
+                    'only comments and titles may hold such', faults)
+        return
+      end if
+    end do
+    longest = merge(longest_free, longest_fixed, now%comma > 0)
+    if (now%length > longest) &
+      call refuse(card, now%at, longest + 1, now%length, &
+                  'the line goes on beyond column '//text_of(longest), 'nothing here', faults)
+  end subroutine inspect
+
+  !> The line cannot be cut into fields.
+  subroutine refuse(card, at, first, last, what, remedy, faults)
+    type(card_fields), intent(inout) :: card
+    integer, intent(in) :: at            !! the line
+    integer, intent(in) :: first, last   !! columns
+    character(len=*), intent(in) :: what, remedy
+    type(diagnostics), intent(inout) :: faults
+
+    card%sound = .false.
+    call faults%add_error(place_type(at, first, last), what, remedy)
+  end subroutine refuse
+
+  !> Slots for the fields of a line: a new row of eight, or the second half of a large-field row. They are
+  !! blank, and stand behind the line's end until it is cut.
+  subroutine open_slots(large, card, now)
+    logical, intent(in) :: large
+    type(card_fields), intent(inout) :: card
+    type(line_state), intent(inout) :: now
+
+    now%fields = merge(fields_a_line/2, fields_a_line, large)
+    now%first_slot = card%count + 1
+    now%half_open = large .and. .not. now%half_open
+    if (large .and. .not. now%half_open) then
+      now%first_slot = now%first_slot - now%fields
+    else
+      card%count = card%count + fields_a_line
+    end if
+    if (card%count >= size(card%slot)) card%slot = [card%slot, card%slot]
+    if (now%half_open .or. now%comma > 0) &   ! all other slots are cut, be it behind the line's end
+      card%slot(now%first_slot:card%count) = card_slot(place=place_type(now%at, now%length + 1, &
+                                                                        now%length + 1))
+    card%slot(card%count + 1)%last = 0
+  end subroutine open_slots
+
+  !> Cut a line of fields of fixed width.
+  subroutine cut_fixed(now, card)
+    type(line_state), intent(in) :: now
+    type(card_fields), intent(inout) :: card
+    integer :: slot, step, left, from, to
+
+    step = width*fields_a_line/now%fields
+    left = width
+    do slot = now%first_slot, now%first_slot + now%fields - 1
+      from = now%before + left + 1
+      to = min(from + step - 1, now%before + now%length)
+      if (from <= to) call trim_blanks(card%text, from, to)
+      card%slot(slot) = card_slot(from, to, place_type(now%at, left + 1, left + step))
+      left = left + step
+    end do
+  end subroutine cut_fixed
+
+  !> Cut a line at its commas. Behind the data fields only a continuation mark may stand.
+  subroutine cut_free(now, card, faults)
+    type(line_state), intent(in) :: now
+    type(card_fields), intent(inout) :: card
+    type(diagnostics), intent(inout) :: faults
+    integer :: slot, from, to, left, right
+
+    slot = now%first_slot
+    left = now%comma + 1
+    do while (left <= now%length)
+      right = left - 2 + index(card%text(now%before + left:now%before + now%length), ',')
+      if (right < left - 1) right = now%length
+      from = now%before + left
+      to = now%before + right
+      call trim_blanks(card%text, from, to)
+      if (slot < now%first_slot + now%fields) then
+        card%slot(slot) = card_slot(from, to, place_type(now%at, left, max(left, right)))
+      else if (from <= to .and. &
+               (slot > now%first_slot + now%fields .or. scan(card%text(from:max(from, to)), '+*') /= 1)) then
+        call refuse(card, now%at, from - now%before, now%length, &
+                    'more than '//text_of(now%fields)//' data fields on a line', &
+                    'a continuation line for the rest', faults)
+        return
+      end if
+      slot = slot + 1
+      left = right + 2
+    end do
+  end subroutine cut_free
 
   !> Is the line a continuation: its first field blank, `+...` or `*...`?
   pure logical function continues(text)

@@ -53,9 +53,9 @@ contains
       end associate
     end do
     if (allocated(table%entry%record)) then
-      call read_records()
+      call read_records(card, row, table, faults)
     else if (allocated(table%entry%list_name)) then
-      call read_ids()
+      call read_ids(card, row, table, faults)
     else
       do slot = size(table%entry%field) + 1, card%count
         if (card%filled(slot)) call refuse_surplus()
@@ -64,15 +64,6 @@ contains
 
   contains
 
-    !> A field is at fault: `GRID 17: field 4 (X1) is ...`.
-    subroutine refuse(slot, what, remedy)
-      integer, intent(in) :: slot
-      character(len=*), intent(in) :: what, remedy
-
-      call faults%add_error(card%place(slot), table%identity(row)//': '// &
-                            table%entry%field_text(slot)//' '//what, remedy)
-    end subroutine refuse
-
     !> A field that the catalogue does not know must be blank.
     subroutine refuse_surplus()
       character(len=:), allocatable :: remedy
@@ -80,7 +71,7 @@ contains
       remedy = 'blank'
       if (table%entry%list_slot == huge(1)) remedy = 'blank; '//trim(table%entry%name)// &
         ' ends with field '//text_of(number_of(size(table%entry%field)))
-      call refuse(slot, 'must be blank', remedy)
+      call refuse(card, table, row, slot, 'must be blank', remedy, faults)
     end subroutine refuse_surplus
 
     !> A blank field has its default, or the value of another; some may not be blank.
@@ -90,7 +81,7 @@ contains
         table%value(slot, row) = field%default
         if (field%same_as /= 0) table%value(slot, row) = table%value(slot + field%same_as, row)
         if (field%required .or. card%filled(slot + field%with(1)) .or. card%filled(slot + field%with(2))) &
-          call refuse(slot, 'is blank', field%allowed())
+          call refuse(card, table, row, slot, 'is blank', field%allowed(), faults)
       end associate
     end subroutine take_blank
 
@@ -98,124 +89,119 @@ contains
     subroutine take_value()
       type(field_value) :: value
 
-      call read_slot(slot, table%entry%field(slot), value)
+      call read_slot(card, table, row, slot, table%entry%field(slot), value, faults)
       if (value%outcome /= scan_sound) return
       table%value(slot, row) = value%number
       if (table%entry%field(slot)%kind == kind_word) table%word(slot, row) = value%word
       table%given(slot, row) = .true.
     end subroutine take_value
+  end subroutine read_card
 
-    !> Read a field; where it is blank, or cannot be taken, say why.
-    subroutine read_slot(slot, entry, value)
-      integer, intent(in) :: slot
-      type(field_entry), intent(in) :: entry    !! what it may hold
-      type(field_value), intent(out) :: value
-      character(len=:), allocatable :: text, what, remedy
-      integer :: last
+  !> A field is at fault: `GRID 17: field 4 (X1) is ...`.
+  subroutine refuse(card, table, row, slot, what, remedy, faults)
+    type(card_fields), intent(in) :: card
+    type(card_table), intent(in) :: table
+    integer, intent(in) :: row
+    integer, intent(in) :: slot
+    character(len=*), intent(in) :: what, remedy
+    type(diagnostics), intent(inout) :: faults
 
-      call read_value(slot, entry, value)
-      if (value%outcome == scan_sound) return
-      text = card%text(card%slot(slot)%first:card%slot(slot)%last)
-      remedy = entry%allowed()
-      select case (value%outcome)
-      case (scan_no_point)
-        what = 'is not a real number'
-        last = verify(text(2:)//'.', '0123456789')   ! of its digits
-        remedy = 'a real needs a decimal point: '//text(:last)//'.'//text(last + 1:)
-        if (last == len(text)) remedy = remedy//'0'
-      case (scan_too_large)
-        what = 'is too large for a number'
-        if (entry%kind == kind_real) remedy = 'at most 1.0E+30'
-      case (scan_too_small)
-        what = 'is too small for a number'
-        remedy = '0.0, or at least 2.226E-308'
-      case (out_of_reach)
-        what = 'is too far from 1.0'
-        remedy = 'other units: sizes'
-        if (entry%least > 0.0_wp) remedy = remedy//' from '//short_real(entry%least)
-        remedy = remedy//' to '//short_real(farthest)
-        if (entry%least > 0.0_wp .and. .not. entry%above_lowest) remedy = remedy//', or 0.0'
-      case (scan_too_long)
-        what = 'has more than 8 characters'
-      case (scan_malformed)
-        what = 'is not '//trim(noun(entry%kind))
-        if (len(text) == 0) what = 'is blank'
-      case default
-        what = 'is out of range'
-        if (entry%kind == kind_word) what = 'is not a word known here'
-        if (entry%instead /= '' .and. value%number == entry%highest) then
-          what = 'is '//text//', '//trim(entry%reason)
-          remedy = 'less, such as '//trim(entry%instead)
-        end if
+    call faults%add_error(card%place(slot), table%identity(row)//': '// &
+                          table%entry%field_text(slot)//' '//what, remedy)
+  end subroutine refuse
+
+  !> The value of a field; a blank one is malformed.
+  pure subroutine read_value(card, slot, entry, value)
+    type(card_fields), intent(in) :: card
+    integer, intent(in) :: slot               !! which field
+    type(field_entry), intent(in) :: entry    !! what it may hold
+    type(field_value), intent(out) :: value   !! what it says
+    integer(i8) :: whole
+
+    value%outcome = scan_sound
+    value%number = 0.0_wp
+    value%word = ''
+    associate (first => card%slot(slot)%first, last => card%slot(slot)%last)
+      select case (entry%kind)
+      case (kind_integer)
+        call scan_integer(card%text(first:last), whole, value%outcome)
+        value%number = real(whole, wp)
+      case (kind_real)
+        call scan_real(card%text(first:last), value%number, value%outcome)
+      case (kind_components)
+        call scan_components(card%text(first:last), whole, value%outcome)
+        value%number = real(whole, wp)
+      case (kind_word)
+        call scan_word(card%text(first:last), value%word, value%outcome)
       end select
-      call refuse(slot, what, remedy)
-    end subroutine read_slot
-
-    !> The value of a field; a blank one is malformed.
-    pure subroutine read_value(slot, entry, value)
-      integer, intent(in) :: slot               !! which field
-      type(field_entry), intent(in) :: entry    !! what it may hold
-      type(field_value), intent(out) :: value   !! what it says
-      integer(i8) :: whole
-
-      value%outcome = scan_sound
-      value%number = 0.0_wp
-      value%word = ''
-      associate (first => card%slot(slot)%first, last => card%slot(slot)%last)
-        select case (entry%kind)
-        case (kind_integer)
-          call scan_integer(card%text(first:last), whole, value%outcome)
-          value%number = real(whole, wp)
-        case (kind_real)
-          call scan_real(card%text(first:last), value%number, value%outcome)
-        case (kind_components)
-          call scan_components(card%text(first:last), whole, value%outcome)
-          value%number = real(whole, wp)
-        case (kind_word)
-          call scan_word(card%text(first:last), value%word, value%outcome)
-        end select
-      end associate
-      if (value%outcome == scan_no_point .and. entry%point_optional) then
-        if (card%is_large(slot)) value%outcome = scan_sound
-      end if
-      if (value%outcome /= scan_sound) return
-      associate (number => value%number)
-        if (entry%kind == kind_word) then
-          if (entry%choices /= '' .and. index(' '//entry%choices//' ', ' '//trim(value%word)//' ') == 0) &
-            value%outcome = out_of_range
-        else if (number < entry%lowest .or. (entry%above_lowest .and. number <= entry%lowest) .or. &
-                 number > entry%highest .or. (entry%below_highest .and. number >= entry%highest)) then
+    end associate
+    if (value%outcome == scan_no_point .and. entry%point_optional) then
+      if (card%is_large(slot)) value%outcome = scan_sound
+    end if
+    if (value%outcome /= scan_sound) return
+    associate (number => value%number)
+      if (entry%kind == kind_word) then
+        if (entry%choices /= '' .and. index(' '//entry%choices//' ', ' '//trim(value%word)//' ') == 0) &
           value%outcome = out_of_range
-        else if (entry%kind == kind_real .and. entry%used) then   ! whole numbers are always within reach
-          if (abs(number) > farthest .or. (number /= 0.0_wp .and. abs(number) < entry%least)) &
-            value%outcome = out_of_reach
-        end if
-      end associate
-    end subroutine read_value
+      else if (number < entry%lowest .or. (entry%above_lowest .and. number <= entry%lowest) .or. &
+               number > entry%highest .or. (entry%below_highest .and. number >= entry%highest)) then
+        value%outcome = out_of_range
+      else if (entry%kind == kind_real .and. entry%used) then   ! whole numbers are always within reach
+        if (abs(number) > farthest .or. (number /= 0.0_wp .and. abs(number) < entry%least)) &
+          value%outcome = out_of_reach
+      end if
+    end associate
+  end subroutine read_value
 
-    !> Does a slot hold this word?
-    logical function is_word(slot, word)
-      integer, intent(in) :: slot
-      character(len=*), intent(in) :: word     !! in capitals
+  !> Does a slot hold this word?
+  logical function is_word(card, slot, word)
+    type(card_fields), intent(in) :: card
+    integer, intent(in) :: slot
+    character(len=*), intent(in) :: word     !! in capitals
 
-      is_word = .false.
-      if (.not. card%filled(slot)) return
-      associate (at => card%slot(slot))
-        is_word = upper(card%text(at%first:at%last)) == word
-      end associate
-    end function is_word
+    is_word = .false.
+    if (.not. card%filled(slot)) return
+    associate (at => card%slot(slot))
+      is_word = upper(card%text(at%first:at%last)) == word
+    end associate
+  end function is_word
 
-    !> The ids at the end of a card, one at least.
-    subroutine read_ids()
-      integer :: k, slot
+  !> Read a field; where it is blank, or cannot be taken, say why.
+  subroutine read_slot(card, table, row, slot, entry, value, faults)
+    type(card_fields), intent(in) :: card
+    type(card_table), intent(in) :: table
+    integer, intent(in) :: row
+    integer, intent(in) :: slot
+    type(field_entry), intent(in) :: entry    !! what it may hold
+    type(field_value), intent(out) :: value
+    type(diagnostics), intent(inout) :: faults
+    character(len=:), allocatable :: what, remedy
 
-      slot = table%entry%list_slot
-      if (.not. any([(card%filled(k), k=slot, card%count)])) call refuse(slot, 'is blank', id%allowed())
-      do while (slot <= card%count)
-        if (card%filled(slot)) call read_range(slot)
-        slot = slot + 1
-      end do
-    end subroutine read_ids
+    call read_value(card, slot, entry, value)
+    if (value%outcome == scan_sound) return
+    associate (at => card%slot(slot))
+      call explain(entry, value, card%text(at%first:at%last), what, remedy)
+    end associate
+    call refuse(card, table, row, slot, what, remedy, faults)
+  end subroutine read_slot
+
+  !> The ids at the end of a card, one at least.
+  subroutine read_ids(card, row, table, faults)
+    type(card_fields), intent(in) :: card
+    integer, intent(in) :: row
+    type(card_table), intent(inout) :: table
+    type(diagnostics), intent(inout) :: faults
+    integer :: k, slot
+
+    slot = table%entry%list_slot
+    if (.not. any([(card%filled(k), k=slot, card%count)])) call refuse(card, table, row, slot, 'is blank', &
+                                                                       id%allowed(), faults)
+    do while (slot <= card%count)
+      if (card%filled(slot)) call read_range(slot)
+      slot = slot + 1
+    end do
+
+  contains
 
     !> One id, or a range of them.
     subroutine read_range(slot)
@@ -225,20 +211,21 @@ contains
       logical :: is_range
 
       item%place = card%place(slot)
-      call read_slot(slot, id, value)
+      call read_slot(card, table, row, slot, id, value, faults)
       if (value%outcome /= scan_sound) return
       item%from = nint(value%number)
-      is_range = table%entry%has_ranges .and. is_word(slot + 1, 'THRU')
+      is_range = table%entry%has_ranges .and. is_word(card, slot + 1, 'THRU')
       if (is_range) then
         slot = slot + 2
-        call read_slot(slot, id, value)
+        call read_slot(card, table, row, slot, id, value, faults)
         if (value%outcome /= scan_sound) return
       end if
       item%to = nint(value%number)
       if (is_range .and. table%entry%has_steps) then
         call read_step(slot, item)
       else if (item%to < item%from) then
-        call refuse(slot, 'is less than the id before THRU', 'an id of at least '//text_of(item%from))
+        call refuse(card, table, row, slot, 'is less than the id before THRU', &
+                    'an id of at least '//text_of(item%from), faults)
         return
       end if
       call table%add_item(row, item)
@@ -253,50 +240,60 @@ contains
 
       length = item%to - item%from
       item%step = merge(1, -1, length >= 0)
-      if (.not. is_word(slot + 1, 'BY')) return
+      if (.not. is_word(card, slot + 1, 'BY')) return
       slot = slot + 2
       most = item%step*max(1, abs(length))
-      call read_slot(slot, field_entry(kind=kind_integer, lowest=real(min(item%step, most), wp), &
-          highest=real(max(item%step, most), wp)), value)
+      call read_slot(card, table, row, slot, &
+                     field_entry(kind=kind_integer, lowest=real(min(item%step, most), wp), &
+          highest=real(max(item%step, most), wp)), value, faults)
       if (value%outcome /= scan_sound) return
       if (mod(length, nint(value%number)) == 0) then
         item%step = nint(value%number)
       else
-        call refuse(slot, 'does not lead from '//text_of(item%from)//' to '//text_of(item%to), &
-                    'a step that divides '//text_of(length))
+        call refuse(card, table, row, slot, &
+                    'does not lead from '//text_of(item%from)//' to '//text_of(item%to), &
+                    'a step that divides '//text_of(length), faults)
       end if
     end subroutine read_step
+  end subroutine read_ids
 
-    !> Records, one at least. A fault in one of them ends the list: what follows it would be taken for the
-    !! wrong field.
-    subroutine read_records()
-      type(list_item) :: item
-      integer :: first, k, record
-      logical :: sound
+  !> Records, one at least. A fault in one of them ends the list: what follows it would be taken for the
+  !! wrong field.
+  subroutine read_records(card, row, table, faults)
+    type(card_fields), intent(in) :: card
+    integer, intent(in) :: row
+    type(card_table), intent(inout) :: table
+    type(diagnostics), intent(inout) :: faults
+    integer :: slot
+    type(list_item) :: item
+    integer :: first, k, record
+    logical :: sound
 
-      record = 1
-      first = table%entry%list_slot
-      do while (.not. at_end(first))
-        item%place = card%place(first)
-        do k = 1, size(table%entry%record)
-          call read_part(first + k - 1, table%entry%record(k), item%number(k), sound)
-          if (.not. sound) return
-        end do
-        call table%add_item(row, item)
-        record = record + 1
-        do k = first + size(table%entry%record), table%entry%record_slot(record) - 1
-          if (card%filled(k)) call refuse(k, 'must be blank', 'blank: the next follows on the next line')
-        end do
-        first = table%entry%record_slot(record)
+    record = 1
+    first = table%entry%list_slot
+    do while (.not. at_end(first))
+      item%place = card%place(first)
+      do k = 1, size(table%entry%record)
+        call read_part(first + k - 1, table%entry%record(k), item%number(k), sound)
+        if (.not. sound) return
       end do
-      if (table%entry%end_word == '') return
-      do slot = first + 1, card%count
-        if (card%filled(slot)) &
-          call faults%add_error(card%place(slot), table%identity(row)//': field '// &
-                                text_of(number_of(slot))//' must be blank', &
-                                'blank: '//table%entry%end_word//' ends the card')
+      call table%add_item(row, item)
+      record = record + 1
+      do k = first + size(table%entry%record), table%entry%record_slot(record) - 1
+        if (card%filled(k)) call refuse(card, table, row, k, 'must be blank', &
+                                        'blank: the next follows on the next line', faults)
       end do
-    end subroutine read_records
+      first = table%entry%record_slot(record)
+    end do
+    if (table%entry%end_word == '') return
+    do slot = first + 1, card%count
+      if (card%filled(slot)) &
+        call faults%add_error(card%place(slot), table%identity(row)//': field '// &
+                              text_of(number_of(slot))//' must be blank', &
+                              'blank: '//table%entry%end_word//' ends the card')
+    end do
+
+  contains
 
     !> Does no record begin at a slot?
     logical function at_end(slot)
@@ -304,7 +301,7 @@ contains
       integer :: k
 
       if (table%entry%end_word /= '') then
-        at_end = is_word(slot, table%entry%end_word)
+        at_end = is_word(card, slot, table%entry%end_word)
       else
         at_end = slot > table%entry%list_slot .and. .not. any([(card%filled(k), k=slot, card%count)])
       end if
@@ -322,15 +319,57 @@ contains
       number = entry%default
       sound = card%filled(slot) .or. .not. entry%required
       if (card%filled(slot)) then
-        call read_slot(slot, entry, value)
+        call read_slot(card, table, row, slot, entry, value, faults)
         number = value%number
         sound = value%outcome == scan_sound
       else if (entry%required) then
         remedy = entry%allowed()
         if (table%entry%end_word /= '') &
           remedy = 'a real, or '//table%entry%end_word//' behind the last point'
-        call refuse(slot, 'is blank', remedy)
+        call refuse(card, table, row, slot, 'is blank', remedy, faults)
       end if
     end subroutine read_part
-  end subroutine read_card
+  end subroutine read_records
+
+  !> Say why a value cannot be taken, and which would be right.
+  subroutine explain(entry, value, text, what, remedy)
+    type(field_entry), intent(in) :: entry    !! what the field may hold
+    type(field_value), intent(in) :: value
+    character(len=*), intent(in) :: text      !! of the field
+    character(len=:), allocatable, intent(out) :: what, remedy
+    integer :: last
+
+    remedy = entry%allowed()
+    select case (value%outcome)
+    case (scan_no_point)
+      what = 'is not a real number'
+      last = verify(text(2:)//'.', '0123456789')   ! of its digits
+      remedy = 'a real needs a decimal point: '//text(:last)//'.'//text(last + 1:)
+      if (last == len(text)) remedy = remedy//'0'
+    case (scan_too_large)
+      what = 'is too large for a number'
+      if (entry%kind == kind_real) remedy = 'at most 1.0E+30'
+    case (scan_too_small)
+      what = 'is too small for a number'
+      remedy = '0.0, or at least 2.226E-308'
+    case (out_of_reach)
+      what = 'is too far from 1.0'
+      remedy = 'other units: sizes'
+      if (entry%least > 0.0_wp) remedy = remedy//' from '//short_real(entry%least)
+      remedy = remedy//' to '//short_real(farthest)
+      if (entry%least > 0.0_wp .and. .not. entry%above_lowest) remedy = remedy//', or 0.0'
+    case (scan_too_long)
+      what = 'has more than 8 characters'
+    case (scan_malformed)
+      what = 'is not '//trim(noun(entry%kind))
+      if (len(text) == 0) what = 'is blank'
+    case default
+      what = 'is out of range'
+      if (entry%kind == kind_word) what = 'is not a word known here'
+      if (entry%instead /= '' .and. value%number == entry%highest) then
+        what = 'is '//text//', '//trim(entry%reason)
+        remedy = 'less, such as '//trim(entry%instead)
+      end if
+    end select
+  end subroutine explain
 end module epcont_deck_card_reader

@@ -70,7 +70,7 @@ contains
     integer :: cases, line
 
     bulk = behind_begin_bulk(lines)
-    allocate (control%subcase(max(1, count([(is_subcase(line), line=1, bulk - 2)]))))
+    allocate (control%subcase(max(1, count([(is_subcase(lines, line), line=1, bulk - 2)]))))
     control%title = ''
     now%subtitle = ''
     now%label = ''
@@ -79,7 +79,7 @@ contains
     do line = 1, bulk - 2
       if (lines%blank(line)) cycle
       parts = cut(lines%text_of_line(line), line)
-      call check_word()
+      call check_word(now, faults, stated, parts)
       call take_statement()
     end do
     control%subcase(max(1, cases)) = now
@@ -88,26 +88,6 @@ contains
       'CNTNLSUB = NO: each from the unloaded state')
 
   contains
-
-    !> A statement must be known, and stand once; its options have no effect.
-    subroutine check_word()
-      integer :: k
-
-      k = findloc(keyword == parts%word, .true., dim=1)
-      if (k == 0 .and. len(parts%word) > 3) k = findloc(index(keyword, parts%word) == 1, .true., dim=1)
-      if (k == 0) then
-        call faults%add_error(parts%word_place, 'unknown case control statement '//parts%word, &
-          suggestion(parts%word, keyword, listed(all_keywords())))
-        return
-      end if
-      if (stated(k)) &
-        call faults%add_error(parts%word_place, parts%word//' is stated twice', 'one '//parts%word// &
-                              trim(merge(' a SUBCASE', '          ', now%id > 0 .and. k >= first_own)))
-      stated(k) = keyword(k) /= 'SUBCASE'
-      parts%word = trim(keyword(k))
-      if (parts%option_place%line > 0 .and. parts%word /= 'TEMPERATURE') &
-        call faults%add_note(parts%option_place, parts%word//': options have no effect')
-    end subroutine check_word
 
     !> Take one statement.
     subroutine take_statement()
@@ -128,7 +108,8 @@ contains
         if (len(parts%value) == 0 .or. upper(parts%value) == 'YES') then
           sequence = parts%word_place
         else if (upper(parts%value) /= 'NO') then
-          call refuse('a word', ' known here', 'NO or YES: the SUBCASEs of a list (SID) are not here')
+          call refuse(parts, 'a word', ' known here', &
+                      'NO or YES: the SUBCASEs of a list (SID) are not here', faults)
         end if
       case ('SUBCASE')
         call begin_subcase()
@@ -139,20 +120,20 @@ contains
       case ('LABEL')
         now%label = parts%value
       case ('SPC')
-        call take_set(now%spc)
+        call take_set(parts, now%spc, faults)
       case ('LOAD')
-        call take_set(now%load)
+        call take_set(parts, now%load, faults)
       case ('TEMPERATURE')
         if (any(parts%option == [character(len=6) :: '', '(LOAD)', '(BOTH)'])) then
-          call take_set(now%temperature)
+          call take_set(parts, now%temperature, faults)
         else
-          call refuse_option()
+          call refuse_option(parts, faults)
         end if
       case ('MPC')
-        call take_set(now%mpc)
+        call take_set(parts, now%mpc, faults)
       case ('BCONTACT')
         now%contact%place = parts%value_place
-        if (all(upper(parts%value) /= ['ALL ', 'NONE'])) call take_set(now%contact)
+        if (all(upper(parts%value) /= ['ALL ', 'NONE'])) call take_set(parts, now%contact, faults)
         if (upper(parts%value) == 'ALL') now%contact%id = 0
         if (upper(parts%value) == 'NONE') now%contact%id = -1
       case ('ECHO')
@@ -163,25 +144,15 @@ contains
         if (all(words /= [' UNSORT', ' SORT  ', ' BOTH  ', ' NONE  '])) &
           call faults%add_note(parts%value_place, 'ECHO: only UNSORT, SORT and BOTH have an effect')
       case ('DISPLACEMENT')
-        now%displacement = says_all()
+        now%displacement = says_all(parts, faults)
       case ('STRESS')
-        now%stress = says_all()
+        now%stress = says_all(parts, faults)
       case ('SPCFORCES')
-        now%spcforces = says_all()
+        now%spcforces = says_all(parts, faults)
       case ('NLPARM')
-        call take_set(now%nlparm)
+        call take_set(parts, now%nlparm, faults)
       end select
     end subroutine take_statement
-
-    !> Does a load case begin on a line?
-    logical function is_subcase(line)
-      integer, intent(in) :: line
-
-      is_subcase = .false.
-      if (lines%blank(line)) return
-      parts = cut(lines%text_of_line(line), line)
-      is_subcase = len(parts%word) > 3 .and. index('SUBCASE', parts%word) == 1
-    end function is_subcase
 
     !> A load case: what was said before the first of all holds for it, too.
     subroutine begin_subcase()
@@ -189,63 +160,110 @@ contains
       if (cases > 0) control%subcase(cases) = now
       now = common
       cases = cases + 1
-      call take_number(now%id)
+      call take_number(parts, now%id, faults)
       now%place = parts%word_place
       if (now%id > 0 .and. any(control%subcase(:cases - 1)%id == now%id)) call faults%add_error( &
         parts%value_place, 'SUBCASE '//text_of(now%id)//' is there twice', 'a number of its own')
       stated(first_own:) = .false.
     end subroutine begin_subcase
-
-    !> Temperatures that are no load.
-    subroutine refuse_option()
-      character(len=:), allocatable :: remedy
-
-      remedy = 'TEMPERATURE(LOAD)'
-      if (index(parts%option, '(INI') == 1) remedy = 'TREF of MAT1: bodies are at it before they are loaded'
-      if (index(parts%option, '(MAT') == 1) remedy = 'moduli on MAT1: they do not depend on temperature'
-      call faults%add_error(parts%option_place, 'TEMPERATURE'//parts%option//' is not known here', remedy)
-    end subroutine refuse_option
-
-    !> The set of a statement such as `SPC = 1`.
-    subroutine take_set(set)
-      type(set_choice), intent(inout) :: set
-
-      set%place = parts%value_place
-      call take_number(set%id)
-    end subroutine take_set
-
-    !> The number that a statement says.
-    subroutine take_number(number)
-      integer, intent(inout) :: number
-      integer(i8) :: value
-      integer :: outcome
-
-      call scan_integer(parts%value, value, outcome)
-      if (outcome == scan_sound .and. value > 0 .and. value <= largest_id) then
-        number = int(value)
-      else
-        call refuse('a number', ' that can be used', 'a whole number from 1 to '//text_of(largest_id))
-      end if
-    end subroutine take_number
-
-    !> Does a statement say ALL? Else it must say NONE.
-    logical function says_all()
-      says_all = upper(parts%value) == 'ALL'
-      if (.not. says_all .and. upper(parts%value) /= 'NONE') &
-        call refuse('a word', ' known here', 'ALL or NONE')
-    end function says_all
-
-    !> A value that is missing, or cannot be taken.
-    subroutine refuse(needed, which, remedy)
-      character(len=*), intent(in) :: needed, which, remedy
-
-      if (len(parts%value) == 0) then
-        call faults%add_error(parts%word_place, parts%word//' needs '//needed, remedy)
-      else
-        call faults%add_error(parts%value_place, parts%word//': not '//needed//which, remedy)
-      end if
-    end subroutine refuse
   end subroutine read_case_control
+
+  !> A value that is missing, or cannot be taken.
+  subroutine refuse(parts, needed, which, remedy, faults)
+    type(statement), intent(in) :: parts
+    character(len=*), intent(in) :: needed, which, remedy
+    type(diagnostics), intent(inout) :: faults
+
+    if (len(parts%value) == 0) then
+      call faults%add_error(parts%word_place, parts%word//' needs '//needed, remedy)
+    else
+      call faults%add_error(parts%value_place, parts%word//': not '//needed//which, remedy)
+    end if
+  end subroutine refuse
+
+  !> The number that a statement says.
+  subroutine take_number(parts, number, faults)
+    type(statement), intent(in) :: parts
+    integer, intent(inout) :: number
+    type(diagnostics), intent(inout) :: faults
+    integer(i8) :: value
+    integer :: outcome
+
+    call scan_integer(parts%value, value, outcome)
+    if (outcome == scan_sound .and. value > 0 .and. value <= largest_id) then
+      number = int(value)
+    else
+      call refuse(parts, 'a number', ' that can be used', 'a whole number from 1 to '//text_of(largest_id), &
+                  faults)
+    end if
+  end subroutine take_number
+
+  !> The set of a statement such as `SPC = 1`.
+  subroutine take_set(parts, set, faults)
+    type(statement), intent(in) :: parts
+    type(set_choice), intent(inout) :: set
+    type(diagnostics), intent(inout) :: faults
+
+    set%place = parts%value_place
+    call take_number(parts, set%id, faults)
+  end subroutine take_set
+
+  !> Does a statement say ALL? Else it must say NONE.
+  logical function says_all(parts, faults)
+    type(statement), intent(in) :: parts
+    type(diagnostics), intent(inout) :: faults
+    says_all = upper(parts%value) == 'ALL'
+    if (.not. says_all .and. upper(parts%value) /= 'NONE') &
+      call refuse(parts, 'a word', ' known here', 'ALL or NONE', faults)
+  end function says_all
+
+  !> Temperatures that are no load.
+  subroutine refuse_option(parts, faults)
+    type(statement), intent(in) :: parts
+    type(diagnostics), intent(inout) :: faults
+    character(len=:), allocatable :: remedy
+
+    remedy = 'TEMPERATURE(LOAD)'
+    if (index(parts%option, '(INI') == 1) remedy = 'TREF of MAT1: bodies are at it before they are loaded'
+    if (index(parts%option, '(MAT') == 1) remedy = 'moduli on MAT1: they do not depend on temperature'
+    call faults%add_error(parts%option_place, 'TEMPERATURE'//parts%option//' is not known here', remedy)
+  end subroutine refuse_option
+
+  !> A statement must be known, and stand once; its options have no effect.
+  subroutine check_word(now, faults, stated, parts)
+    type(subcase_control), intent(in) :: now
+    type(diagnostics), intent(inout) :: faults
+    logical, intent(inout) :: stated(:)
+    type(statement), intent(inout) :: parts
+    integer :: k
+
+    k = findloc(keyword == parts%word, .true., dim=1)
+    if (k == 0 .and. len(parts%word) > 3) k = findloc(index(keyword, parts%word) == 1, .true., dim=1)
+    if (k == 0) then
+      call faults%add_error(parts%word_place, 'unknown case control statement '//parts%word, &
+        suggestion(parts%word, keyword, listed(all_keywords())))
+      return
+    end if
+    if (stated(k)) &
+      call faults%add_error(parts%word_place, parts%word//' is stated twice', 'one '//parts%word// &
+                            trim(merge(' a SUBCASE', '          ', now%id > 0 .and. k >= first_own)))
+    stated(k) = keyword(k) /= 'SUBCASE'
+    parts%word = trim(keyword(k))
+    if (parts%option_place%line > 0 .and. parts%word /= 'TEMPERATURE') &
+      call faults%add_note(parts%option_place, parts%word//': options have no effect')
+  end subroutine check_word
+
+  !> Does a load case begin on a line?
+  logical function is_subcase(lines, line)
+    type(source), intent(in) :: lines
+    integer, intent(in) :: line
+    type(statement) :: parts
+
+    is_subcase = .false.
+    if (lines%blank(line)) return
+    parts = cut(lines%text_of_line(line), line)
+    is_subcase = len(parts%word) > 3 .and. index('SUBCASE', parts%word) == 1
+  end function is_subcase
 
   !> All keywords, with a blank between two of them.
   pure function all_keywords() result(words)

@@ -67,7 +67,7 @@ contains
 
     allocate (lines%files(0))
     lines%text = ''
-    call load(path, 0, trouble)
+    call load(path, 0, trouble, lines)
     if (allocated(trouble)) then
       call raise(error, status_usage, path//': '//trouble)
       return
@@ -76,55 +76,6 @@ contains
     call cut(1, lines%ended)
 
   contains
-
-    !> Append the bytes of a file to the buffer; `trouble` says why that cannot be done.
-    subroutine load(path, parent, trouble)
-      character(len=*), intent(in) :: path
-      integer, intent(in) :: parent
-      character(len=:), allocatable, intent(out) :: trouble
-      character(len=:), allocatable :: longer
-      integer(i8) :: bytes
-      integer :: first, last, status, unit
-      logical :: exists, is_directory
-
-      inquire (file=path, exist=exists)
-      inquire (file=path//'/.', exist=is_directory)
-      if (.not. exists) then
-        trouble = 'no such file'
-      else if (is_directory) then
-        trouble = 'a directory, not a file'
-      else
-        open (newunit=unit, file=path, access='stream', form='unformatted', action='read', status='old', &
-              iostat=status)
-        if (status /= 0) trouble = 'cannot be opened for reading'
-      end if
-      if (allocated(trouble)) return
-      inquire (unit=unit, size=bytes)
-      if (bytes < 0) then
-        trouble = 'not a file that can be read'
-      else if (lines%used + bytes >= huge(1) - 1) then   ! behind come a newline and the place of a next line
-        trouble = 'the deck is larger than 2 GiB'
-      else
-        first = lines%used + 1
-        last = lines%used + int(bytes)
-        if (last >= len(lines%text)) then   ! the first file gets just its size; included ones make it double
-          allocate (character(len=max(last + 1, int(min(2_i8*len(lines%text), int(huge(1), i8))))) :: longer)
-          longer(:lines%used) = lines%text(:lines%used)
-          call move_alloc(longer, lines%text)
-        end if
-        read (unit, iostat=status) lines%text(first:max(last, first))
-        if (bytes > 0 .and. status /= 0) trouble = 'cannot be read'
-        if (bytes == 0 .and. status == 0) trouble = 'a pipe or a device, not a file of known size'
-        ! The mark that editors put before UTF-8 says nothing.
-        if (lines%text(first:min(first + 2, last)) == char(239)//char(187)//char(191)) first = first + 3
-      end if
-      close (unit, iostat=status)
-      if (allocated(trouble)) return
-      lines%files = [lines%files, source_file(parent=parent, first=first, last=last)]
-      lines%files(size(lines%files))%name = path
-      lines%used = last + 1
-      lines%text(lines%used:lines%used) = newline
-    end subroutine load
 
     !> Cut a file into lines and, where it includes another, that one too. `ended`: it had its ENDDATA.
     recursive subroutine cut(file, ended)
@@ -180,7 +131,7 @@ contains
         trouble = 'more than '//text_of(most_files)//' files'
         remedy = 'fewer files'
       else
-        call load(name, parent, trouble)
+        call load(name, parent, trouble, lines)
         if (allocated(trouble)) trouble = shown(name)//': '//trouble
         remedy = 'a name relative to the file of this line'
       end if
@@ -207,6 +158,56 @@ contains
       if (at > 0) files = 0
     end function files_above
   end subroutine read_source
+
+  !> Append the bytes of a file to the buffer; `trouble` says why that cannot be done.
+  subroutine load(path, parent, trouble, lines)
+    character(len=*), intent(in) :: path
+    integer, intent(in) :: parent
+    character(len=:), allocatable, intent(out) :: trouble
+    type(source), intent(inout) :: lines
+    character(len=:), allocatable :: longer
+    integer(i8) :: bytes
+    integer :: first, last, status, unit
+    logical :: exists, is_directory
+
+    inquire (file=path, exist=exists)
+    inquire (file=path//'/.', exist=is_directory)
+    if (.not. exists) then
+      trouble = 'no such file'
+    else if (is_directory) then
+      trouble = 'a directory, not a file'
+    else
+      open (newunit=unit, file=path, access='stream', form='unformatted', action='read', status='old', &
+            iostat=status)
+      if (status /= 0) trouble = 'cannot be opened for reading'
+    end if
+    if (allocated(trouble)) return
+    inquire (unit=unit, size=bytes)
+    if (bytes < 0) then
+      trouble = 'not a file that can be read'
+    else if (lines%used + bytes >= huge(1) - 1) then   ! behind come a newline and the place of a next line
+      trouble = 'the deck is larger than 2 GiB'
+    else
+      first = lines%used + 1
+      last = lines%used + int(bytes)
+      if (last >= len(lines%text)) then   ! the first file gets just its size; included ones make it double
+        allocate (character(len=max(last + 1, int(min(2_i8*len(lines%text), int(huge(1), i8))))) :: longer)
+        longer(:lines%used) = lines%text(:lines%used)
+        call move_alloc(longer, lines%text)
+      end if
+      read (unit, iostat=status) lines%text(first:max(last, first))
+      if (bytes > 0 .and. status /= 0) trouble = 'cannot be read'
+      if (bytes == 0 .and. status == 0) trouble = 'a pipe or a device, not a file of known size'
+      ! The mark that editors put before UTF-8 says nothing.
+      if (lines%text(first:min(first + 2, last)) == char(239)//char(187)//char(191)) first = first + 3
+    end if
+    close (unit, iostat=status)
+    if (allocated(trouble)) return
+    lines%files = [lines%files, source_file(parent=parent, first=first, last=last)]
+    lines%files(size(lines%files))%name = path
+    lines%used = last + 1
+    lines%text(lines%used:lines%used) = newline
+  end subroutine load
 
   !> The end of the line that begins at `first`: its last character that is no comment and no blank (or
   !! control character: tabs, page ends, the mark of DOS that ends a file), and

@@ -64,10 +64,10 @@ contains
     if (angle > 0.0_wp) then
       line%corner = ends_there .or. abs(turn(:, 1:)) > angle*degree + rounding
     else
-      line%corner = ends_there .or. .not. (abs(turn(:, 1:)) < always_smooth .or. is_on_curve())
+      line%corner = ends_there .or. .not. (abs(turn(:, 1:)) < always_smooth .or. is_on_curve(line, turn, n))
     end if
     line%tip = line%corner .and. (turn(:, 1:) > 0.0_wp .or. ends_there) .and. .not. line%mirrored
-    call set_normals()
+    call set_normals(own, n, line)
     call line%set_boxes()
 
   contains
@@ -99,33 +99,38 @@ contains
         turn(end, i) = merge(-1.0_wp, 1.0_wp, end == 1)*angle_between(normal, mirrored)
       end associate
     end subroutine reflect
+  end subroutine find_normals
 
-    !> Is the end of a side within a curve (those on both sides turn as it does, and are no corners), or the
-    !! first or the last node of one (beside a node within it, and they turn like that)?
-    pure function is_on_curve() result(on)
-      logical :: alike_beside(2, 2, n), inner(2, 0:n), on(2, n)
-      real(wp) :: beside(2)
-      integer :: at(2), end, i
+  !> Is the end of a side within a curve (those on both sides turn as it does, and are no corners), or the
+  !! first or the last node of one (beside a node within it, and they turn like that)?
+  pure function is_on_curve(line, turn, n) result(on)
+    type(boundary_line), intent(in) :: line
+    real(wp), intent(in) :: turn(:, 0:)
+    integer, intent(in) :: n
+    logical :: alike_beside(2, 2, n), inner(2, 0:n), on(2, n)
+    real(wp) :: beside(2)
+    integer :: at(2), end, i
 
-      inner = .false.
-      do i = 1, n
-        do end = 1, 2
-          at = beyond(end, i)
-          beside = sign(1.0_wp, turn(end, i))*[turn(3 - end, i), turn(at(1), at(2))]
-          alike_beside(:, end, i) = alike*beside > abs(turn(end, i))
-          inner(end, i) = abs(turn(end, i)) < always_corner .and. &
-                          all(alike_beside(:, end, i) .and. beside < always_corner)
-        end do
+    inner = .false.
+    do i = 1, n
+      do end = 1, 2
+        at = beyond(end, i)
+        beside = sign(1.0_wp, turn(end, i))*[turn(3 - end, i), turn(at(1), at(2))]
+        alike_beside(:, end, i) = alike*beside > abs(turn(end, i))
+        inner(end, i) = abs(turn(end, i)) < always_corner .and. &
+                        all(alike_beside(:, end, i) .and. beside < always_corner)
       end do
-      do i = 1, n
-        do end = 1, 2
-          at = beyond(end, i)
-          on(end, i) = abs(turn(end, i)) < always_corner .and. &
-                       (inner(end, i) .or. &
-                        any([inner(3 - end, i), inner(at(1), at(2))] .and. alike_beside(:, end, i)))
-        end do
+    end do
+    do i = 1, n
+      do end = 1, 2
+        at = beyond(end, i)
+        on(end, i) = abs(turn(end, i)) < always_corner .and. &
+                     (inner(end, i) .or. &
+                      any([inner(3 - end, i), inner(at(1), at(2))] .and. alike_beside(:, end, i)))
       end do
-    end function is_on_curve
+    end do
+
+  contains
 
     !> The end of a side, and that side, beyond the end of another: of itself where it is mirrored.
     pure function beyond(end, side)
@@ -134,49 +139,54 @@ contains
 
       beyond = merge([3 - end, side], [end, line%neighbour(end, side)], line%mirrored(end, side))
     end function beyond
+  end function is_on_curve
 
-    !> Normals from the sides that meet, or from the other end of the side. By how much those at its ends are
-    !! not its own counts along it, too.
-    subroutine set_normals()
-      real(wp) :: arc(2, 3, n), chord(2)
-      integer :: end, i
+  !> Normals from the sides that meet, or from the other end of the side. By how much those at its ends are
+  !! not its own counts along it, too.
+  subroutine set_normals(own, n, line)
+    real(wp), intent(in) :: own(:, :, :)
+    integer, intent(in) :: n
+    type(boundary_line), intent(inout) :: line
+    real(wp) :: arc(2, 3, n), chord(2)
+    integer :: end, i
 
-      arc = reshape([(arc_normals(i), i=1, n)], [2, 3, n])
-      line%normal(:, :2, :) = line%end_normal
-      do i = 1, n
-        if (line%corner(2, i) .or. line%mirrored(2, i)) cycle
-        associate (next => line%neighbour(2, i))
-          line%normal(:, 2, i) = unit(line%chord_length(next)*arc(:, 2, i) + &
-                                      line%chord_length(i)*arc(:, 1, next))
-          line%normal(:, 1, next) = line%normal(:, 2, i)
-        end associate
+    arc = reshape([(arc_normals(line, own, i), i=1, n)], [2, 3, n])
+    line%normal(:, :2, :) = line%end_normal
+    do i = 1, n
+      if (line%corner(2, i) .or. line%mirrored(2, i)) cycle
+      associate (next => line%neighbour(2, i))
+        line%normal(:, 2, i) = unit(line%chord_length(next)*arc(:, 2, i) + &
+                                    line%chord_length(i)*arc(:, 1, next))
+        line%normal(:, 1, next) = line%normal(:, 2, i)
+      end associate
+    end do
+    do i = 1, n
+      chord = line%own_normal(i, 0.5_wp)
+      do end = 1, 2
+        if (.not. line%corner(end, i)) cycle
+        line%normal(:, end, i) = arc(:, end, i)
+        if (line%segment(3, i) > 0 .or. line%corner(3 - end, i)) cycle
+        line%normal(:, end, i) = mirror_of(line%normal(:, 3 - end, i), chord)
       end do
-      do i = 1, n
-        chord = line%own_normal(i, 0.5_wp)
-        do end = 1, 2
-          if (.not. line%corner(end, i)) cycle
-          line%normal(:, end, i) = arc(:, end, i)
-          if (line%segment(3, i) > 0 .or. line%corner(3 - end, i)) cycle
-          line%normal(:, end, i) = mirror_of(line%normal(:, 3 - end, i), chord)
-        end do
-        line%normal(:, 3, i) = unit(arc(:, 3, i) + 0.5_wp*sum(line%normal(:, :2, i) - arc(:, :2, i), dim=2))
-      end do
-    end subroutine set_normals
+      line%normal(:, 3, i) = unit(arc(:, 3, i) + 0.5_wp*sum(line%normal(:, :2, i) - arc(:, :2, i), dim=2))
+    end do
+  end subroutine set_normals
 
-    !> Normals of the circle through start, end and middle of a side, there; of a chord its own.
-    pure function arc_normals(side) result(normal)
-      integer, intent(in) :: side
-      real(wp) :: half(2, 2), normal(2, 3)
+  !> Normals of the circle through start, end and middle of a side, there; of a chord its own.
+  pure function arc_normals(line, own, side) result(normal)
+    type(boundary_line), intent(in) :: line
+    real(wp), intent(in) :: own(:, :, :)
+    integer, intent(in) :: side
+    real(wp) :: half(2, 2), normal(2, 3)
 
-      normal = spread(own(:, 1, side), 2, 3)
-      if (line%segment(3, side) == 0) return
-      half(:, 1) = line%x(:, 3, side) - line%x(:, 1, side)
-      half(:, 2) = line%x(:, 2, side) - line%x(:, 3, side)
-      normal(:, 3) = unit(right_of(half(:, 1)/sum(half(:, 1)**2) + half(:, 2)/sum(half(:, 2)**2)))
-      normal(:, 1) = mirror_of(normal(:, 3), unit(right_of(half(:, 1))))
-      normal(:, 2) = mirror_of(normal(:, 3), unit(right_of(half(:, 2))))
-    end function arc_normals
-  end subroutine find_normals
+    normal = spread(own(:, 1, side), 2, 3)
+    if (line%segment(3, side) == 0) return
+    half(:, 1) = line%x(:, 3, side) - line%x(:, 1, side)
+    half(:, 2) = line%x(:, 2, side) - line%x(:, 3, side)
+    normal(:, 3) = unit(right_of(half(:, 1)/sum(half(:, 1)**2) + half(:, 2)/sum(half(:, 2)**2)))
+    normal(:, 1) = mirror_of(normal(:, 3), unit(right_of(half(:, 1))))
+    normal(:, 2) = mirror_of(normal(:, 3), unit(right_of(half(:, 2))))
+  end function arc_normals
 
   !> Of a circle through both ends of a chord the one normal mirrors the other.
   pure function mirror_of(normal, chord)

@@ -109,51 +109,9 @@ contains
         face%normal = -from%outward
         face%gap = dot_product(face%normal, away)
       end if
-      if (face%gap < -max(least_difference*search, rounding)) face%found = goes_on(side)
-      if (face%found) face%found = .not. is_blocked(face)
+      if (face%gap < -max(least_difference*search, rounding)) face%found = goes_on(line, search, ahead, side)
+      if (face%found) face%found = .not. is_blocked(line, obstacles, from, ahead, face)
     end function look_at
-
-    !> Does an overlap go on along the point's own side? (The corner of a block that stands on another is no
-    !! overlap with the other's flank, however far it lies behind that.)
-    pure logical function goes_on(side)
-      integer, intent(in) :: side
-      type(facing_type) :: place
-      integer :: end
-
-      place = line%face(side, ahead)
-      goes_on = place%found
-      do end = 1, 2
-        if (goes_on .or. line%neighbour(end, side) == 0) cycle
-        place = line%face(line%neighbour(end, side), ahead)
-        goes_on = place%found .and. place%gap < search .and. &
-                  dot_product(place%normal, line%own_normal(side, 0.5_wp)) > same_face
-      end do
-    end function goes_on
-
-    !> Does a body stand between the point and what it faces?
-    pure logical function is_blocked(face)
-      type(facing_type), intent(in) :: face
-      ! Parts of the way that do not count at its ends; of the way and of a side, where they cross
-      real(wp) :: near(2), part(2), place(2)
-      integer, allocatable :: between(:)
-      integer :: i
-
-      is_blocked = .false.
-      if (abs(face%gap) <= thin*min(line%chord_length(face%segment), 2.0_wp*norm2(from%along))) return
-      near = max([from%rise, rise_of(line, face%segment) + aside*norm2(from%along)]/abs(face%gap), at_end)
-      if (sum(near) >= 1.0_wp) return
-      place = ahead - face%gap*face%normal
-      between = obstacles%in_box(line_query(min(ahead, place), max(ahead, place), spread(ahead, 2, 2), &
-                                            .false., spread(place - ahead, 2, 2)))
-      do i = 1, size(between)
-        associate (side => obstacles%x(:, :2, between(i)))
-          part = crossing(ahead, place - ahead, side(:, 1), side(:, 2) - side(:, 1))
-        end associate
-        is_blocked = part(1) > near(1) .and. part(1) < 1.0_wp - near(2) .and. &
-                     part(2) >= 0.0_wp .and. part(2) <= 1.0_wp
-        if (is_blocked) return
-      end do
-    end function is_blocked
 
     !> The best face, and the nearest of those that look another way.
     pure function best_two(met) result(best)
@@ -203,6 +161,53 @@ contains
       aside_of = norm2(matmul(line%x(:, :, face%segment), face%share) - from%x - from%along)
     end function aside_of
   end function find_facing
+
+  !> Does a body stand between the point and what it faces?
+  pure logical function is_blocked(line, obstacles, from, ahead, face)
+    type(boundary_line), intent(in) :: line, obstacles
+    type(looking_point), intent(in) :: from
+    real(wp), intent(in) :: ahead(2)
+    type(facing_type), intent(in) :: face
+    ! Parts of the way that do not count at its ends; of the way and of a side, where they cross
+    real(wp) :: near(2), part(2), place(2)
+    integer, allocatable :: between(:)
+    integer :: i
+
+    is_blocked = .false.
+    if (abs(face%gap) <= thin*min(line%chord_length(face%segment), 2.0_wp*norm2(from%along))) return
+    near = max([from%rise, rise_of(line, face%segment) + aside*norm2(from%along)]/abs(face%gap), at_end)
+    if (sum(near) >= 1.0_wp) return
+    place = ahead - face%gap*face%normal
+    between = obstacles%in_box(line_query(min(ahead, place), max(ahead, place), spread(ahead, 2, 2), &
+                                          .false., spread(place - ahead, 2, 2)))
+    do i = 1, size(between)
+      associate (side => obstacles%x(:, :2, between(i)))
+        part = crossing(ahead, place - ahead, side(:, 1), side(:, 2) - side(:, 1))
+      end associate
+      is_blocked = part(1) > near(1) .and. part(1) < 1.0_wp - near(2) .and. &
+                   part(2) >= 0.0_wp .and. part(2) <= 1.0_wp
+      if (is_blocked) return
+    end do
+  end function is_blocked
+
+  !> Does an overlap go on along the point's own side? (The corner of a block that stands on another is no
+  !! overlap with the other's flank, however far it lies behind that.)
+  pure logical function goes_on(line, search, ahead, side)
+    type(boundary_line), intent(in) :: line
+    real(wp), intent(in) :: search, ahead(2)
+    integer, intent(in) :: side
+    type(facing_type) :: place
+    integer :: end
+
+    place = line%face(side, ahead)
+    goes_on = place%found
+    do end = 1, 2
+      if (goes_on .or. line%neighbour(end, side) == 0) cycle
+      place = line%face(line%neighbour(end, side), ahead)
+      goes_on = place%found .and. place%gap < search .and. &
+                dot_product(place%normal, line%own_normal(side, 0.5_wp)) > same_face
+    end do
+  end function goes_on
 
   !> Of two sides that a corner faces equally well at their corner none is the better one: between their
   !! normals.

@@ -32,7 +32,7 @@ contains
     allocate (model%first_point(model%elements + 1), model%point_element(model%points))
     !$omp parallel do num_threads(threads_over(model%elements))
     do e = 1, model%elements
-      call turn_plain(e, plain(e))
+      call turn_plain(e, plain(e), model)
     end do
     !$omp end parallel do
     next = 1
@@ -52,27 +52,6 @@ contains
       'plane elements only, or rings only')
 
   contains
-
-    !> Turn an element counter-clockwise if it has straight sides and there is nothing to be said of it.
-    subroutine turn_plain(e, plain)
-      integer, intent(in) :: e
-      logical, intent(out) :: plain   !! that is so, or it is not whole
-      real(wp) :: x(2, most_nodes)
-      integer :: k, turn
-
-      associate (node => model%connectivity(:, e), n => model%node_count(e), &
-                 kind => model%kinds(model%kind(e)))
-        plain = any(node(:n) == 0)
-        if (plain .or. n > kind%corners) return
-        do k = 1, n
-          x(:, k) = model%x(:, node(k))
-        end do
-        turn = kind%turn(x)
-        plain = turn /= 0 .and. &
-                max(maxval(abs(x(1, 2:n) - x(1, 1))), maxval(abs(x(2, 2:n) - x(2, 1)))) >= shortest_side
-        if (plain .and. turn < 0) node([2, n]) = node([n, 2])   ! the first one stays, and the third of four
-      end associate
-    end subroutine turn_plain
 
     !> Turn any other counter-clockwise; a shape that is none is a fault.
     subroutine check_shape()
@@ -143,6 +122,27 @@ contains
       end do
     end function ids
   end subroutine complete_elements
+
+  !> Turn an element counter-clockwise if it has straight sides and there is nothing to be said of it.
+  subroutine turn_plain(e, plain, model)
+    integer, intent(in) :: e
+    logical, intent(out) :: plain   !! that is so, or it is not whole
+    type(model_type), intent(inout) :: model
+    real(wp) :: x(2, most_nodes)
+    integer :: k, turn
+
+    associate (node => model%connectivity(:, e), n => model%node_count(e), kind => model%kinds(model%kind(e)))
+      plain = any(node(:n) == 0)
+      if (plain .or. n > kind%corners) return
+      do k = 1, n
+        x(:, k) = model%x(:, node(k))
+      end do
+      turn = kind%turn(x)
+      plain = turn /= 0 .and. &
+              max(maxval(abs(x(1, 2:n) - x(1, 1))), maxval(abs(x(2, 2:n) - x(2, 1)))) >= shortest_side
+      if (plain .and. turn < 0) node([2, n]) = node([n, 2])   ! the first one stays, and the third of four
+    end associate
+  end subroutine turn_plain
 
   !> Rings lie at x >= 0, the parabolas of their sides as well, and their nodes on the axis cannot leave it.
   !! Supports and ties are known.

@@ -15,6 +15,9 @@ module epcont_model_given
   implicit none
   private
   public :: check_given, number_parts
+
+  integer, parameter :: any_shape(0) = [integer ::]   !! for `fit`
+
 contains
 
   !> Arrays that are there and go together, numbers in their ranges; of each array the first fault. What a
@@ -23,249 +26,294 @@ contains
     type(scene_type), intent(in) :: given      !! arrays, however they are counted
     type(scene_type), intent(out) :: scene     !! they, counted from 1
     type(findings), intent(inout) :: found     !! what is wrong with it is added
-    character(len=:), allocatable :: a_node, above_zero, any_size
     type(element_kind), allocatable :: kinds(:)
-    integer :: any_shape(0), elements, i, nodes
+    integer :: elements, i, nodes
 
-    any_size = '0.0, or a size of '//short_real(least_cause)//' to '//short_real(farthest)
-    above_zero = short_real(least_divisor)//' to '//short_real(farthest)
-    call check_shapes()
+    call check_shapes(found, given)
     if (found%errors > 0) return
     call count_from_one(given, scene)
     nodes = size(scene%x, 2)
-    a_node = '1 to '//text_of(nodes)
-    call need(scene%young >= least_divisor .and. scene%young <= farthest, 'young(#) is no stiffness', &
-              above_zero)
-    call need(scene%poisson >= 0.0_wp .and. scene%poisson < 0.5_wp, 'poisson(#) is out of range', &
+    call need(found, scene%young >= least_divisor .and. scene%young <= farthest, 'young(#) is no stiffness', &
+              above_zero())
+    call need(found, scene%poisson >= 0.0_wp .and. scene%poisson < 0.5_wp, 'poisson(#) is out of range', &
               '0.0 or more, and less than 0.5')
-    call need(scene%thickness >= least_divisor .and. scene%thickness <= farthest, &
-              'thickness(#) is no thickness', above_zero)
-    call need(scene%density >= 0.0_wp .and. has_size(scene%density), 'density(#) is no density', any_size)
-    call need(within(scene%kinematics, axisymmetric), 'kinematics(#) is unknown', &
+    call need(found, scene%thickness >= least_divisor .and. scene%thickness <= farthest, &
+              'thickness(#) is no thickness', above_zero())
+    call need(found, scene%density >= 0.0_wp .and. has_size(scene%density), 'density(#) is no density', &
+              any_size())
+    call need(found, within(scene%kinematics, axisymmetric), 'kinematics(#) is unknown', &
               'plane_strain, plane_stress or axisymmetric')
     do i = 1, size(scene%curve)
-      if (found%errors == 0) call check_curve()
+      if (found%errors == 0) call check_curve(found, i, scene)
     end do
     elements = 0
     kinds = element_kinds()
     do i = 1, size(scene%block)
-      if (found%errors == 0) call check_block('block('//text_of(i)//')%', scene%block(i))
+      if (found%errors == 0) call check_block(found, scene, kinds, nodes, 'block('//text_of(i)//')%', &
+                                              scene%block(i), elements)
     end do
-    if (found%errors == 0) call need([elements > 0], 'there are no elements', 'add_elements')
-    call need(all(abs(scene%x) <= farthest, dim=1), 'x(:, #) is no place', any_size)
-    call need(all(has_size(scene%load), dim=1), 'load(:, #) is no force', any_size)
-    call need(all(has_size(scene%prescribed), dim=1), 'prescribed(:, #) is no displacement', any_size)
-    call need(all(scene%held .or. scene%prescribed == 0.0_wp, dim=1), &
+    if (found%errors == 0) call need(found, [elements > 0], 'there are no elements', 'add_elements')
+    call need(found, all(abs(scene%x) <= farthest, dim=1), 'x(:, #) is no place', any_size())
+    call need(found, all(has_size(scene%load), dim=1), 'load(:, #) is no force', any_size())
+    call need(found, all(has_size(scene%prescribed), dim=1), 'prescribed(:, #) is no displacement', &
+              any_size())
+    call need(found, all(scene%held .or. scene%prescribed == 0.0_wp, dim=1), &
               'prescribed(:, #) is not 0.0 where held is false', '0.0, or held')
-    call need(all(within(scene%leader, nodes), dim=1), 'leader(:, #) is no node', a_node)
-    call need(all(within(scene%pair_node, nodes), dim=1), 'pair_node(:, #) is no node', a_node)
-    call need(abs(norm2(scene%normal, dim=1) - 1.0_wp) <= no_effect .or. &
+    call need(found, all(within(scene%leader, nodes), dim=1), 'leader(:, #) is no node', up_to(nodes))
+    call need(found, all(within(scene%pair_node, nodes), dim=1), 'pair_node(:, #) is no node', up_to(nodes))
+    call need(found, abs(norm2(scene%normal, dim=1) - 1.0_wp) <= no_effect .or. &
               all(scene%normal == 0.0_wp, dim=1), &
               'normal(:, #) is no unit vector', 'one of length 1, or zero: from A to B')
-    call need(has_size(scene%initial_gap), 'initial_gap(#) is no length', any_size)
+    call need(found, has_size(scene%initial_gap), 'initial_gap(#) is no length', any_size())
     if (allocated(scene%temperature)) then
-      call need(abs(scene%temperature) <= farthest, 'temperature(#) is no temperature', any_size)
-      call need(has_size(scene%expansion), 'expansion(#) is no expansion', any_size)
-      call need(abs(scene%reference_temperature) <= farthest, &
-                'reference_temperature(#) is no temperature', any_size)
+      call need(found, abs(scene%temperature) <= farthest, 'temperature(#) is no temperature', any_size())
+      call need(found, has_size(scene%expansion), 'expansion(#) is no expansion', any_size())
+      call need(found, abs(scene%reference_temperature) <= farthest, &
+                'reference_temperature(#) is no temperature', any_size())
     end if
     if (elements > 0) &
-      call need(within(scene%pressure%element, elements), 'pressure(#)%element is no element', &
-                '1 to '//text_of(elements))
-    call need(has_size(scene%pressure%pressure(1)) .and. has_size(scene%pressure%pressure(2)) .and. &
-              has_size(scene%pressure%theta), 'pressure(#) is no pressure', any_size)
+      call need(found, within(scene%pressure%element, elements), 'pressure(#)%element is no element', &
+                up_to(elements))
+    call need(found, has_size(scene%pressure%pressure(1)) .and. has_size(scene%pressure%pressure(2)) .and. &
+              has_size(scene%pressure%theta), 'pressure(#) is no pressure', any_size())
     do i = 1, size(scene%body_load)
       associate (load => scene%body_load(i))
-        call need([all(has_size([load%factor, load%acceleration, load%centre, load%spin, load%spin_up]))], &
-                  'body_load('//text_of(i)//') is out of range', any_size)
+        call need(found, &
+                  [all(has_size([load%factor, load%acceleration, load%centre, load%spin, load%spin_up]))], &
+                  'body_load('//text_of(i)//') is out of range', any_size())
       end associate
     end do
-    call check_ties()
+    call check_ties(found, scene, nodes)
     do i = 1, size(scene%line)
-      call fit('line('//text_of(i)//')%node', any_shape, scene%line(i)%node)
+      call fit(found, 'line('//text_of(i)//')%node', any_shape, scene%line(i)%node)
       if (allocated(scene%line(i)%node)) &
-        call need(within(scene%line(i)%node, nodes), 'line('//text_of(i)//')%node(#) is no node', a_node)
+        call need(found, within(scene%line(i)%node, nodes), 'line('//text_of(i)//')%node(#) is no node', &
+                  up_to(nodes))
     end do
-    call need(within(scene%couple%line(1), size(scene%line)) .and. &
+    call need(found, within(scene%couple%line(1), size(scene%line)) .and. &
               within(scene%couple%line(2), size(scene%line)), 'couple(#)%line is no line', &
-              '1 to '//text_of(size(scene%line)))
-    call check_choices()
-
-  contains
-
-    !> Arrays are allocated, with one column for each node, section or pair.
-    subroutine check_shapes()
-      integer :: nodes(2), pairs(2), sections(1)
-
-      call fit('x', any_shape, given%x)
-      call fit('young', any_shape, given%young)
-      call fit('initial_gap', any_shape, given%initial_gap)
-      call fit('block', any_shape, given%block)
-      call fit('pressure', any_shape, given%pressure)
-      call fit('line', any_shape, given%line)
-      call fit('couple', any_shape, given%couple)
-      if (found%errors > 0) return
-      nodes = [directions, size(given%x, 2)]
-      sections = size(given%young)
-      pairs = [2, size(given%initial_gap)]
-      call fit('x(2, nodes)', nodes, given%x)
-      call fit('held(2, nodes)', nodes, given%held)
-      call fit('prescribed(2, nodes)', nodes, given%prescribed)
-      call fit('reference(2, nodes)', nodes, given%reference)
-      call fit('leader(2, nodes)', nodes, given%leader)
-      call fit('load(2, nodes)', nodes, given%load)
-      call fit('poisson(sections)', sections, given%poisson)
-      call fit('kinematics(sections)', sections, given%kinematics)
-      call fit('thickness(sections)', sections, given%thickness)
-      if (allocated(given%density)) call fit('density(sections)', sections, given%density)
-      call fit('curve(sections)', sections, given%curve)
-      call fit('pair_node(2, pairs)', pairs, given%pair_node)
-      call fit('normal(2, pairs)', pairs, given%normal)
-      if (.not. allocated(given%temperature)) return
-      call fit('temperature(nodes)', nodes(2:), given%temperature)
-      call fit('expansion(sections)', sections, given%expansion)
-      call fit('reference_temperature(sections)', sections, given%reference_temperature)
-    end subroutine check_shapes
-
-    !> An array is there, and of the shape that is wanted.
-    subroutine fit(name, wanted, array)
-      character(len=*), intent(in) :: name
-      integer, intent(in) :: wanted(:)
-      type(*), intent(in), optional :: array(..)   !! absent: it is not allocated
-
-      if (.not. present(array)) then
-        call need([.false.], name//' is not allocated', 'an array, empty where there are none')
-      else if (size(wanted) > 0) then
-        call need([all(shape(array) == wanted)], name//' has the shape '//text_of_shape(shape(array)), &
-                  text_of_shape(wanted))
-      end if
-    end subroutine fit
-
-    !> What ties freedoms names nodes that are there.
-    subroutine check_ties()
-      character(len=:), allocatable :: name
-
-      do i = 1, size(scene%platen)
-        name = 'platen('//text_of(i)//')%'
-        call fit(name//'follower', any_shape, scene%platen(i)%follower)
-        call need([within(scene%platen(i)%leader, nodes)], name//'leader is no node', a_node)
-        if (found%errors > 0) return
-        call need(within(scene%platen(i)%follower, nodes), name//'follower(#) is no node', a_node)
-        call need([has_size(scene%platen(i)%prescribed) .and. has_size(scene%platen(i)%moment)], &
-                  name//'prescribed or moment is out of range', any_size)
-        call need([all(scene%kinematics /= axisymmetric)], name//'leader would turn, and rings do not', &
-                  'leader: it does not turn')
-      end do
-      call check_equations()
-      do i = 1, size(scene%spring)
-        associate (spring => scene%spring(i))
-          call need([any(spring%node > 0), within(spring%node + 1, nodes + 1), &
-                     spring%node == 0 .or. within(spring%component, directions), &
-                     spring%node(1) /= spring%node(2) .or. spring%component(1) /= spring%component(2)], &
-                    'spring('//text_of(i)//') is not between two freedoms, or one and the ground', &
-                    'node 0: the ground; component 1 or 2')
-          call need([spring%stiffness >= least_divisor .and. spring%stiffness <= farthest], &
-                    'spring('//text_of(i)//')%stiffness is none', above_zero)
-        end associate
-      end do
-    end subroutine check_ties
-
-    subroutine check_equations()
-      character(len=:), allocatable :: name
-
-      do i = 1, size(scene%equation)
-        name = 'equation('//text_of(i)//')%'
-        call fit(name//'coefficient', any_shape, scene%equation(i)%coefficient)
-        if (found%errors > 0) return
-        call fit(name//'component', shape(scene%equation(i)%coefficient), scene%equation(i)%component)
-        call fit(name//'node', shape(scene%equation(i)%coefficient), scene%equation(i)%node)
-        call need([size(scene%equation(i)%coefficient) > 0], name//'coefficient is empty', 'a term at least')
-        if (found%errors > 0) return
-        call need(within(scene%equation(i)%node, nodes), name//'node(#) is no node', a_node)
-        call need(within(scene%equation(i)%component, directions), name//'component(#) is none', '1 or 2')
-        call need(has_size(scene%equation(i)%coefficient), name//'coefficient(#) is out of range', any_size)
-      end do
-    end subroutine check_equations
-
-    !> A curve that can be.
-    subroutine check_curve()
-      type(curve_fault) :: fault
-      character(len=:), allocatable :: name
-
-      name = 'curve('//text_of(i)//')'
-      associate (curve => scene%curve(i))
-        if (.not. (allocated(curve%strain) .or. allocated(curve%stress))) return
-        call fit(name//'%strain', any_shape, curve%strain)
-        if (found%errors == 0) call fit(name//'%stress', shape(curve%strain), curve%stress)
-        if (found%errors > 0) return
-        call need(abs(curve%strain) <= farthest, name//'%strain(#) is no strain', any_size)
-        call need(abs(curve%stress) <= farthest, name//'%stress(#) is no stress', any_size)
-        if (found%errors > 0) return
-        call straighten(curve, scene%young(i), fault)
-        if (fault%point > 0) call need([.false.], name//': '//fault%what, fault%remedy)
-      end associate
-    end subroutine check_curve
-
-    !> Elements of one kind: its name, its nodes and their sections, which are rings where it is.
-    subroutine check_block(name, block)
-      character(len=*), intent(in) :: name
-      type(element_block), intent(in) :: block
-      integer :: row
-
-      row = kind_of(kinds, block%name)
-      call need([row > 0], name//'name is '''//trim(block%name)//'''', &
-                'the card of a kind of elements: CTRIA3, say')
-      if (row == 0) return
-      call fit(name//'section', any_shape, block%section)
-      if (found%errors == 0) &
-        call fit(name//'node', [kinds(row)%nodes, size(block%section)], block%node)
-      if (found%errors > 0) return
-      elements = elements + size(block%section)
-      call need(all(within(block%node, nodes), dim=1), name//'node(:, #) is no node', a_node)
-      call need(within(block%section, size(scene%young)), name//'section(#) is no section', &
-                '1 to '//text_of(size(scene%young)))
-      if (found%errors > 0) return
-      call need((scene%kinematics(block%section) == axisymmetric) .eqv. block%name == kinds(row)%ring_card, &
-                name//'section(#) is not of the kinematics of '//trim(block%name), &
-                'axisymmetric for rings (CTRAX3), and for no others')
-    end subroutine check_block
-
-    !> The choices of `controls` are some of those that there are, its figures what they can be.
-    subroutine check_choices()
-      character(len=*), parameter :: name(2, 9) = reshape([character(len=22) :: &
-        'method', 'method_auto, say', 'rule', 'rule_auto, say', 'solver', 'solver_auto, say', &
-        'most_iterations', '1 to 100000', 'load_steps', '1 to 10000', &
-        'tolerance', '0.0 to less than 1.0', 'accuracy', '0.0 to less than 1.0', &
-        'search', '0.0, or a length', 'corner', '0.0 to 180.0 degrees'], [2, 9])
-      logical :: fits(9)
-      integer :: k
-
-      associate (is => scene%controls)
-        fits = [within([is%method, is%rule, is%solver] + 1, &
-                       [size(method_name), size(rule_name), size(solver_name)]), &
-                within([is%most_iterations, is%load_steps], [100000, 10000]), &
-                [is%tolerance, is%accuracy, is%search, is%corner] >= 0.0_wp .and. &
-                [is%tolerance < 1.0_wp, is%accuracy < 1.0_wp, is%search <= farthest, is%corner <= 180.0_wp]]
-      end associate
-      do k = 1, size(fits)
-        call need(fits(k:k), 'controls%'//trim(name(1, k))//' is out of range', trim(name(2, k)))
-      end do
-    end subroutine check_choices
-
-    !> It is an error where something does not hold: of many the first, by its number in place of `#`.
-    subroutine need(holds, what, remedy)
-      logical, intent(in) :: holds(:)
-      character(len=*), intent(in) :: what, remedy
-      character(len=:), allocatable :: text
-      integer :: at
-
-      if (all(holds)) return
-      at = index(what, '#')
-      text = what
-      if (at > 0) text = what(:at - 1)//text_of(findloc(holds, .false., dim=1))//what(at + 1:)
-      call found%add_error(of_scene, 0, 0, text, remedy)
-    end subroutine need
+              up_to(size(scene%line)))
+    call check_choices(found, scene)
   end subroutine check_given
+
+  !> It is an error where something does not hold: of many the first, by its number in place of `#`.
+  subroutine need(found, holds, what, remedy)
+    type(findings), intent(inout) :: found
+    logical, intent(in) :: holds(:)
+    character(len=*), intent(in) :: what, remedy
+    character(len=:), allocatable :: text
+    integer :: at
+
+    if (all(holds)) return
+    at = index(what, '#')
+    text = what
+    if (at > 0) text = what(:at - 1)//text_of(findloc(holds, .false., dim=1))//what(at + 1:)
+    call found%add_error(of_scene, 0, 0, text, remedy)
+  end subroutine need
+
+  !> An array is there, and of the shape that is wanted.
+  subroutine fit(found, name, wanted, array)
+    type(findings), intent(inout) :: found
+    character(len=*), intent(in) :: name
+    integer, intent(in) :: wanted(:)
+    type(*), intent(in), optional :: array(..)   !! absent: it is not allocated
+
+    if (.not. present(array)) then
+      call need(found, [.false.], name//' is not allocated', 'an array, empty where there are none')
+    else if (size(wanted) > 0) then
+      call need(found, [all(shape(array) == wanted)], name//' has the shape '//text_of_shape(shape(array)), &
+                text_of_shape(wanted))
+    end if
+  end subroutine fit
+
+  !> Arrays are allocated, with one column for each node, section or pair.
+  subroutine check_shapes(found, given)
+    type(findings), intent(inout) :: found
+    type(scene_type), intent(in) :: given
+    integer :: nodes(2), pairs(2), sections(1)
+
+    call fit(found, 'x', any_shape, given%x)
+    call fit(found, 'young', any_shape, given%young)
+    call fit(found, 'initial_gap', any_shape, given%initial_gap)
+    call fit(found, 'block', any_shape, given%block)
+    call fit(found, 'pressure', any_shape, given%pressure)
+    call fit(found, 'line', any_shape, given%line)
+    call fit(found, 'couple', any_shape, given%couple)
+    if (found%errors > 0) return
+    nodes = [directions, size(given%x, 2)]
+    sections = size(given%young)
+    pairs = [2, size(given%initial_gap)]
+    call fit(found, 'x(2, nodes)', nodes, given%x)
+    call fit(found, 'held(2, nodes)', nodes, given%held)
+    call fit(found, 'prescribed(2, nodes)', nodes, given%prescribed)
+    call fit(found, 'reference(2, nodes)', nodes, given%reference)
+    call fit(found, 'leader(2, nodes)', nodes, given%leader)
+    call fit(found, 'load(2, nodes)', nodes, given%load)
+    call fit(found, 'poisson(sections)', sections, given%poisson)
+    call fit(found, 'kinematics(sections)', sections, given%kinematics)
+    call fit(found, 'thickness(sections)', sections, given%thickness)
+    if (allocated(given%density)) call fit(found, 'density(sections)', sections, given%density)
+    call fit(found, 'curve(sections)', sections, given%curve)
+    call fit(found, 'pair_node(2, pairs)', pairs, given%pair_node)
+    call fit(found, 'normal(2, pairs)', pairs, given%normal)
+    if (.not. allocated(given%temperature)) return
+    call fit(found, 'temperature(nodes)', nodes(2:), given%temperature)
+    call fit(found, 'expansion(sections)', sections, given%expansion)
+    call fit(found, 'reference_temperature(sections)', sections, given%reference_temperature)
+  end subroutine check_shapes
+
+  !> What ties freedoms names nodes that are there.
+  subroutine check_ties(found, scene, nodes)
+    type(findings), intent(inout) :: found
+    type(scene_type), intent(in) :: scene
+    integer, intent(in) :: nodes
+    integer :: i
+    character(len=:), allocatable :: name
+
+    do i = 1, size(scene%platen)
+      name = 'platen('//text_of(i)//')%'
+      call fit(found, name//'follower', any_shape, scene%platen(i)%follower)
+      call need(found, [within(scene%platen(i)%leader, nodes)], name//'leader is no node', up_to(nodes))
+      if (found%errors > 0) return
+      call need(found, within(scene%platen(i)%follower, nodes), name//'follower(#) is no node', up_to(nodes))
+      call need(found, [has_size(scene%platen(i)%prescribed) .and. has_size(scene%platen(i)%moment)], &
+                name//'prescribed or moment is out of range', any_size())
+      call need(found, [all(scene%kinematics /= axisymmetric)], name//'leader would turn, and rings do not', &
+                'leader: it does not turn')
+    end do
+    call check_equations(found, scene, nodes)
+    do i = 1, size(scene%spring)
+      associate (spring => scene%spring(i))
+        call need(found, [any(spring%node > 0), within(spring%node + 1, nodes + 1), &
+                   spring%node == 0 .or. within(spring%component, directions), &
+                   spring%node(1) /= spring%node(2) .or. spring%component(1) /= spring%component(2)], &
+                  'spring('//text_of(i)//') is not between two freedoms, or one and the ground', &
+                  'node 0: the ground; component 1 or 2')
+        call need(found, [spring%stiffness >= least_divisor .and. spring%stiffness <= farthest], &
+                  'spring('//text_of(i)//')%stiffness is none', above_zero())
+      end associate
+    end do
+  end subroutine check_ties
+
+  subroutine check_equations(found, scene, nodes)
+    type(findings), intent(inout) :: found
+    type(scene_type), intent(in) :: scene
+    integer, intent(in) :: nodes
+    integer :: i
+    character(len=:), allocatable :: name
+
+    do i = 1, size(scene%equation)
+      name = 'equation('//text_of(i)//')%'
+      call fit(found, name//'coefficient', any_shape, scene%equation(i)%coefficient)
+      if (found%errors > 0) return
+      call fit(found, name//'component', shape(scene%equation(i)%coefficient), scene%equation(i)%component)
+      call fit(found, name//'node', shape(scene%equation(i)%coefficient), scene%equation(i)%node)
+      call need(found, [size(scene%equation(i)%coefficient) > 0], name//'coefficient is empty', &
+                'a term at least')
+      if (found%errors > 0) return
+      call need(found, within(scene%equation(i)%node, nodes), name//'node(#) is no node', up_to(nodes))
+      call need(found, within(scene%equation(i)%component, directions), name//'component(#) is none', &
+                '1 or 2')
+      call need(found, has_size(scene%equation(i)%coefficient), name//'coefficient(#) is out of range', &
+                any_size())
+    end do
+  end subroutine check_equations
+
+  !> A curve that can be.
+  subroutine check_curve(found, i, scene)
+    type(findings), intent(inout) :: found
+    integer, intent(in) :: i
+    type(scene_type), intent(inout) :: scene
+    type(curve_fault) :: fault
+    character(len=:), allocatable :: name
+
+    name = 'curve('//text_of(i)//')'
+    associate (curve => scene%curve(i))
+      if (.not. (allocated(curve%strain) .or. allocated(curve%stress))) return
+      call fit(found, name//'%strain', any_shape, curve%strain)
+      if (found%errors == 0) call fit(found, name//'%stress', shape(curve%strain), curve%stress)
+      if (found%errors > 0) return
+      call need(found, abs(curve%strain) <= farthest, name//'%strain(#) is no strain', any_size())
+      call need(found, abs(curve%stress) <= farthest, name//'%stress(#) is no stress', any_size())
+      if (found%errors > 0) return
+      call straighten(curve, scene%young(i), fault)
+      if (fault%point > 0) call need(found, [.false.], name//': '//fault%what, fault%remedy)
+    end associate
+  end subroutine check_curve
+
+  !> Elements of one kind: its name, its nodes and their sections, which are rings where it is.
+  subroutine check_block(found, scene, kinds, nodes, name, block, elements)
+    type(findings), intent(inout) :: found
+    type(scene_type), intent(in) :: scene
+    type(element_kind), intent(in) :: kinds(:)
+    integer, intent(in) :: nodes
+    character(len=*), intent(in) :: name
+    type(element_block), intent(in) :: block
+    integer, intent(inout) :: elements
+    integer :: row
+
+    row = kind_of(kinds, block%name)
+    call need(found, [row > 0], name//'name is '''//trim(block%name)//'''', &
+              'the card of a kind of elements: CTRIA3, say')
+    if (row == 0) return
+    call fit(found, name//'section', any_shape, block%section)
+    if (found%errors == 0) &
+      call fit(found, name//'node', [kinds(row)%nodes, size(block%section)], block%node)
+    if (found%errors > 0) return
+    elements = elements + size(block%section)
+    call need(found, all(within(block%node, nodes), dim=1), name//'node(:, #) is no node', up_to(nodes))
+    call need(found, within(block%section, size(scene%young)), name//'section(#) is no section', &
+              up_to(size(scene%young)))
+    if (found%errors > 0) return
+    call need(found, &
+              (scene%kinematics(block%section) == axisymmetric) .eqv. block%name == kinds(row)%ring_card, &
+              name//'section(#) is not of the kinematics of '//trim(block%name), &
+              'axisymmetric for rings (CTRAX3), and for no others')
+  end subroutine check_block
+
+  !> The choices of `controls` are some of those that there are, its figures what they can be.
+  subroutine check_choices(found, scene)
+    type(findings), intent(inout) :: found
+    type(scene_type), intent(in) :: scene
+    character(len=*), parameter :: name(2, 9) = reshape([character(len=22) :: &
+      'method', 'method_auto, say', 'rule', 'rule_auto, say', 'solver', 'solver_auto, say', &
+      'most_iterations', '1 to 100000', 'load_steps', '1 to 10000', &
+      'tolerance', '0.0 to less than 1.0', 'accuracy', '0.0 to less than 1.0', &
+      'search', '0.0, or a length', 'corner', '0.0 to 180.0 degrees'], [2, 9])
+    logical :: fits(9)
+    integer :: k
+
+    associate (is => scene%controls)
+      fits = [within([is%method, is%rule, is%solver] + 1, &
+                     [size(method_name), size(rule_name), size(solver_name)]), &
+              within([is%most_iterations, is%load_steps], [100000, 10000]), &
+              [is%tolerance, is%accuracy, is%search, is%corner] >= 0.0_wp .and. &
+              [is%tolerance < 1.0_wp, is%accuracy < 1.0_wp, is%search <= farthest, is%corner <= 180.0_wp]]
+    end associate
+    do k = 1, size(fits)
+      call need(found, fits(k:k), 'controls%'//trim(name(1, k))//' is out of range', trim(name(2, k)))
+    end do
+  end subroutine check_choices
+
+  !> Remedies.
+  function any_size() result(text)
+    character(len=:), allocatable :: text
+
+    text = '0.0, or a size of '//short_real(least_cause)//' to '//short_real(farthest)
+  end function any_size
+
+  function above_zero() result(text)
+    character(len=:), allocatable :: text
+
+    text = short_real(least_divisor)//' to '//short_real(farthest)
+  end function above_zero
+
+  pure function up_to(most) result(text)
+    integer, intent(in) :: most
+    character(len=:), allocatable :: text
+
+    text = '1 to '//text_of(most)
+  end function up_to
 
   !> A shape in parentheses.
   pure function text_of_shape(extent) result(text)

@@ -94,11 +94,11 @@ contains
         equation(rows) = k
       end associate
     end do
-    call make_room(k)
+    call make_room(last, k, model)
     do k = 1, rows
       if (state(k) == untouched) call resolve(k)
     end do
-    call make_room(last)
+    call make_room(last, last, model)
     do i = 1, model%nodes
       do c = 1, directions
         if (model%leader(c, i) /= i) model%sum_of(c, i) = model%sum_of(c, model%leader(c, i))
@@ -156,58 +156,66 @@ contains
           call resolve(j)
         end if
       end do
-      call put_terms(row)
+      call put_terms(first, component, node, weight, row, model, last)
       state(row) = done
     end subroutine resolve
+  end subroutine complete_ties
 
-    !> The terms of a freedom, by what they follow.
-    subroutine put_terms(row)
-      integer, intent(in) :: row
-      integer :: i, j
+  !> The terms of a freedom, by what they follow.
+  subroutine put_terms(first, component, node, weight, row, model, last)
+    integer, intent(in) :: first(:), component(:), node(:)
+    real(wp), intent(in) :: weight(:)
+    integer, intent(in) :: row
+    type(model_type), intent(inout) :: model
+    integer, intent(inout) :: last
+    integer :: i, j
 
-      model%sum%first(row) = last + 1
-      do i = first(row), first(row + 1) - 1
-        j = 0
-        if (component(i) /= angle) j = model%sum_of(component(i), node(i))
-        if (j == 0) then
-          call put([component(i)], [node(i)], [weight(i)])
-        else
-          associate (from => model%sum%first(j), to => model%sum%last(j))
-            call put([model%sum%component(from:to)], [model%sum%node(from:to)], &
-                     weight(i)*model%sum%weight(from:to))
-          end associate
-        end if
-      end do
-      model%sum%last(row) = last
-    end subroutine put_terms
+    model%sum%first(row) = last + 1
+    do i = first(row), first(row + 1) - 1
+      j = 0
+      if (component(i) /= angle) j = model%sum_of(component(i), node(i))
+      if (j == 0) then
+        call put([component(i)], [node(i)], [weight(i)])
+      else
+        associate (from => model%sum%first(j), to => model%sum%last(j))
+          call put([model%sum%component(from:to)], [model%sum%node(from:to)], &
+                   weight(i)*model%sum%weight(from:to))
+        end associate
+      end if
+    end do
+    model%sum%last(row) = last
+
+  contains
 
     subroutine put(components, nodes, weights)
       integer, intent(in) :: components(:), nodes(:)
       real(wp), intent(in) :: weights(:)
 
-      if (last + size(nodes) > size(model%sum%node)) call make_room(2*(last + size(nodes)))
+      if (last + size(nodes) > size(model%sum%node)) call make_room(last, 2*(last + size(nodes)), model)
       model%sum%component(last + 1:last + size(nodes)) = components
       model%sum%node(last + 1:last + size(nodes)) = nodes
       model%sum%weight(last + 1:last + size(nodes)) = weights
       last = last + size(nodes)
     end subroutine put
+  end subroutine put_terms
 
-    !> Room for so many terms, behind those that there are.
-    subroutine make_room(terms)
-      integer, intent(in) :: terms
-      integer :: new_component(terms), new_node(terms)
-      real(wp) :: new_weight(terms)
+  !> Room for so many terms, behind those that there are.
+  subroutine make_room(last, terms, model)
+    integer, intent(in) :: last
+    integer, intent(in) :: terms
+    type(model_type), intent(inout) :: model
+    integer :: new_component(terms), new_node(terms)
+    real(wp) :: new_weight(terms)
 
-      if (last > 0) then
-        new_component(:last) = model%sum%component(:last)
-        new_node(:last) = model%sum%node(:last)
-        new_weight(:last) = model%sum%weight(:last)
-      end if
-      model%sum%component = new_component
-      model%sum%node = new_node
-      model%sum%weight = new_weight
-    end subroutine make_room
-  end subroutine complete_ties
+    if (last > 0) then
+      new_component(:last) = model%sum%component(:last)
+      new_node(:last) = model%sum%node(:last)
+      new_weight(:last) = model%sum%weight(:last)
+    end if
+    model%sum%component = new_component
+    model%sum%node = new_node
+    model%sum%weight = new_weight
+  end subroutine make_room
 
   !> A moment at the leader of a platen that turns: forces on those that follow it, across their arms and as
   !! these are long, and on the leader what balances their sum.

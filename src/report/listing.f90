@@ -93,125 +93,142 @@ contains
       call wrap(listing, '  *NOT VALID*  '//run%outcome%word//': '//run%outcome%sentence)
     end if
     if (.not. run%outcome%has_answer) return
-    if (run%iteration%yields) call list_iterations()
-    if (run%model%pairs > 0) call list_contact()
+    if (run%iteration%yields) call list_iterations(listing, run)
+    if (run%model%pairs > 0) call list_contact(listing, run)
     if (run%wants_nodes(all_tables)) call put_table(run, 'nodes', listing)
     if (run%wants_elements(all_tables)) call put_table(run, 'elements', listing)
     call list_summary()
-    if (run%certificate%scene%looked_through) call list_scene_found()
+    if (run%certificate%scene%looked_through) call list_scene_found(listing, run)
     call listing%heading('ACCURACY')
     call list_rounding()
-    call list_mesh()
-    call list_doubtful_elements()
-    if (run%model%controls%accuracy > 0.0_wp) call list_wanted()
+    call list_mesh(listing, run, figures)
+    call list_doubtful_elements(listing, run)
+    if (run%model%controls%accuracy > 0.0_wp) call list_wanted(listing, run)
 
   contains
 
-    !> Add a line, two blanks from the margin.
-    subroutine say_it(text)
-      character(len=*), intent(in) :: text
+    !> Summary and certificate.
+    subroutine list_summary()
+      call listing%heading('SUMMARY')
+      call list_figures(listing, figures, [character(len=21) :: 'max_pressure', 'total_contact_force', &
+        'pairs_in_contact', 'approach_', 'angle_', 'moment_', 'spring_', 'plastic_elements', &
+        'max_equivalent_stress', 'max_displacement', 'lowest_temperature', 'highest_temperature', 'status'])
+      call listing%heading('CERTIFICATE  (recomputed from displacements and forces alone; tolerance '// &
+                           short_real(valid_to)//')')
+      call list_figures(listing, figures, [character(len=25) :: 'equilibrium_residual', 'smallest_', &
+        'largest_force_gap_product', 'stress_off_curve|', 'curve_tolerance', 'stress_off_curve_limit', &
+        'energy_balance'])
+    end subroutine list_summary
 
-      call say(listing, text)
-    end subroutine say_it
+    !> What stopping and rounding leave.
+    subroutine list_rounding()
+      call list_figures(listing, figures, ['iteration_error_', 'condition       '])
+      call list_figure(listing, 'digits that rounding leaves, at least', &
+                       text_of(max(0, floor(-log10(run%answer%rounding())))), '')
+      call list_figure(listing, 'linear residual', rounding_number(run%certificate%equilibrium), '')
+      if (run%accuracy%sensitivity%known) &
+        call list_figure(listing, 'rounding in the contact forces, at most', &
+                         rounding_number(run%accuracy%sensitivity%rounding), '   of the largest')
+    end subroutine list_rounding
+  end subroutine list_case
 
-    !> Add a named figure: its value at the right of 13 columns, and what is to be said of it.
-    subroutine list_figure(name, value, note)
-      character(len=*), intent(in) :: name, value, note   ! the name in at most 44 characters
-      character(len=44) :: label
+  !> Add a named figure: its value at the right of 13 columns, and what is to be said of it.
+  subroutine list_figure(listing, name, value, note)
+    type(table_type), intent(inout) :: listing
+    character(len=*), intent(in) :: name, value, note   ! the name in at most 44 characters
+    character(len=44) :: label
 
-      label = name
-      call say_it(label//right(value, 13)//note)
-    end subroutine list_figure
+    label = name
+    call say(listing, label//right(value, 13)//note)
+  end subroutine list_figure
 
-    !> Figures of the summary that have a name, and whose keys begin so; a key that ends in `|` is one alone.
-    subroutine list_figures(keys)
-      character(len=*), intent(in) :: keys(:)
-      integer :: i, k
+  !> Figures of the summary that have a name, and whose keys begin so; a key that ends in `|` is one alone.
+  subroutine list_figures(listing, figures, keys)
+    type(table_type), intent(inout) :: listing
+    type(figure_type), intent(in) :: figures(:)
+    character(len=*), intent(in) :: keys(:)
+    integer :: i, k
 
-      do k = 1, size(keys)
-        do i = 1, size(figures)
-          if (figures(i)%name /= '' .and. index(trim(figures(i)%key)//'|', trim(keys(k))) == 1) &
-            call list_figure(figures(i)%name, trim(figures(i)%listed), trim(figures(i)%note))
-        end do
+    do k = 1, size(keys)
+      do i = 1, size(figures)
+        if (figures(i)%name /= '' .and. index(trim(figures(i)%key)//'|', trim(keys(k))) == 1) &
+          call list_figure(listing, figures(i)%name, trim(figures(i)%listed), trim(figures(i)%note))
       end do
-    end subroutine list_figures
+    end do
+  end subroutine list_figures
 
-    !> One line a solve, and what is to be known of the yielding.
-    subroutine list_iterations()
-      call put_table(run, 'history', listing)
-      call listing%line('')
-      if (run%answer%load_steps > run%model%controls%load_steps) &
-        call say_it('in '//plural(run%model%controls%load_steps, 'load step')// &
-                 ' no answer was found; tried again in '//text_of(run%answer%load_steps)//' (AUTO)')
-      if (any(run%answer%history%by_tangent)) call say_it( &
-        'the last step is one by the tangent: its change is what the others have left')
-      call say_it(plural(count(run%answer%plastic), 'element')//' of '// &
-               text_of(run%model%elements)//' beyond the yield point')
-      call list_elements('beyond the last point of its table, whose last slope goes on', &
-                         count(run%answer%beyond), findloc(run%answer%beyond, .true., dim=1))
-      call list_elements('the strain fell as the load grew, and went back along the curve (elastic '// &
-                         'unloading is not modelled)', run%answer%unloaded, run%answer%first_unloaded)
-    end subroutine list_iterations
+  !> One line a solve, and what is to be known of the yielding.
+  subroutine list_iterations(listing, run)
+    type(table_type), intent(inout) :: listing
+    type(run_results), intent(in) :: run
+    call put_table(run, 'history', listing)
+    call listing%line('')
+    if (run%answer%load_steps > run%model%controls%load_steps) &
+      call say(listing, 'in '//plural(run%model%controls%load_steps, 'load step')// &
+               ' no answer was found; tried again in '//text_of(run%answer%load_steps)//' (AUTO)')
+    if (any(run%answer%history%by_tangent)) call say(listing,  &
+      'the last step is one by the tangent: its change is what the others have left')
+    call say(listing, plural(count(run%answer%plastic), 'element')//' of '// &
+             text_of(run%model%elements)//' beyond the yield point')
+    call list_elements('beyond the last point of its table, whose last slope goes on', &
+                       count(run%answer%beyond), findloc(run%answer%beyond, .true., dim=1))
+    call list_elements('the strain fell as the load grew, and went back along the curve (elastic '// &
+                       'unloading is not modelled)', run%answer%unloaded, run%answer%first_unloaded)
+
+  contains
 
     !> A number of elements, and one of them.
     subroutine list_elements(what, count, first)
       character(len=*), intent(in) :: what
       integer, intent(in) :: count, first
 
-      if (count > 0) call say_it(what//': element '//text_of(run%model%element_id(first))// &
+      if (count > 0) call say(listing, what//': element '//text_of(run%model%element_id(first))// &
                               when(count > 1, ' and '//text_of(count - 1)//' more'))
     end subroutine list_elements
+  end subroutine list_iterations
 
-    !> The pairs, how the set of contacts was found, and what contact makes of zones, lines and bodies.
-    subroutine list_contact()
-      character(len=:), allocatable :: text
+  !> The pairs, how the set of contacts was found, and what contact makes of zones, lines and bodies.
+  subroutine list_contact(listing, run)
+    type(table_type), intent(inout) :: listing
+    type(run_results), intent(in) :: run
+    character(len=:), allocatable :: text
 
-      call put_table(run, 'contact', listing)
-      call listing%line('')
-      associate (contact => run%answer%contact)
-        text = '  '//plural(contact%pivots, 'pivot')//', '//text_of(contact%degenerate_pivots)// &
-               ' degenerate'//when(contact%block_steps > 0, ' (CONRY, after '// &
-                                   plural(contact%block_steps, 'set')//' of block pivoting)')
-        if (contact%by_blocks .or. contact%joined) &
-          text = '  '//when(contact%joined, 'joined bodies: ', 'block pivoting: ')// &
-                 plural(contact%block_steps, 'set')//', '//plural(contact%pivots, 'exchange')//' of pairs'
-        call listing%line(text//when(size(run%answer%history) > 1, ', in the last solve'))
-        if (size(contact%history) > 0) call put_table(run, 'pivots', listing)
-        if (size(contact%history) > 0 .and. contact%pivots > size(contact%history)) &
-          call say_it('and '//text_of(contact%pivots - size(contact%history))//' more')
-      end associate
-      call put_table(run, 'zones', listing)
-      if (size(run%answer%lines) > 0) call put_table(run, 'lines', listing)
-      call put_table(run, 'bodies', listing)
-    end subroutine list_contact
+    call put_table(run, 'contact', listing)
+    call listing%line('')
+    associate (contact => run%answer%contact)
+      text = '  '//plural(contact%pivots, 'pivot')//', '//text_of(contact%degenerate_pivots)// &
+             ' degenerate'//when(contact%block_steps > 0, ' (CONRY, after '// &
+                                 plural(contact%block_steps, 'set')//' of block pivoting)')
+      if (contact%by_blocks .or. contact%joined) &
+        text = '  '//when(contact%joined, 'joined bodies: ', 'block pivoting: ')// &
+               plural(contact%block_steps, 'set')//', '//plural(contact%pivots, 'exchange')//' of pairs'
+      call listing%line(text//when(size(run%answer%history) > 1, ', in the last solve'))
+      if (size(contact%history) > 0) call put_table(run, 'pivots', listing)
+      if (size(contact%history) > 0 .and. contact%pivots > size(contact%history)) &
+        call say(listing, 'and '//text_of(contact%pivots - size(contact%history))//' more')
+    end associate
+    call put_table(run, 'zones', listing)
+    if (size(run%answer%lines) > 0) call put_table(run, 'lines', listing)
+    call put_table(run, 'bodies', listing)
+  end subroutine list_contact
 
-    !> Summary and certificate.
-    subroutine list_summary()
-      call listing%heading('SUMMARY')
-      call list_figures([character(len=21) :: 'max_pressure', 'total_contact_force', &
-        'pairs_in_contact', 'approach_', 'angle_', 'moment_', 'spring_', 'plastic_elements', &
-        'max_equivalent_stress', 'max_displacement', 'lowest_temperature', 'highest_temperature', 'status'])
-      call listing%heading('CERTIFICATE  (recomputed from displacements and forces alone; tolerance '// &
-                           short_real(valid_to)//')')
-      call list_figures([character(len=25) :: 'equilibrium_residual', 'smallest_', &
-        'largest_force_gap_product', 'stress_off_curve|', 'curve_tolerance', 'stress_off_curve_limit', &
-        'energy_balance'])
-    end subroutine list_summary
+  !> Bodies in each other and pairs that press across gaps: the worst, and the deepest where that differs.
+  subroutine list_scene_found(listing, run)
+    type(table_type), intent(inout) :: listing
+    type(run_results), intent(in) :: run
+    associate (scene => run%certificate%scene)
+      call list_place('bodies in each other, of what is allowed', scene%inside)
+      if (scene%deepest%ratio >= little .and. scene%deepest%depth > deeper*scene%inside%depth) &
+        call list_place('  at the deepest place, of what is allowed', scene%deepest)
+      if (scene%passed%side > 0) call list_place('  on their way through each other', scene%passed)
+      if (run%model%pairs == 0) return
+      call list_place('pressed across a gap, of what is allowed', scene%apart)
+      if (scene%widest%ratio >= little .and. scene%widest%depth > deeper*scene%apart%depth) &
+        call list_place('  at the widest place, of what is allowed', scene%widest)
+      if (scene%beside%ratio >= little) call list_place('  beside the other body', scene%beside)
+    end associate
 
-    !> Bodies in each other and pairs that press across gaps: the worst, and the deepest where that differs.
-    subroutine list_scene_found()
-      associate (scene => run%certificate%scene)
-        call list_place('bodies in each other, of what is allowed', scene%inside)
-        if (scene%deepest%ratio >= little .and. scene%deepest%depth > deeper*scene%inside%depth) &
-          call list_place('  at the deepest place, of what is allowed', scene%deepest)
-        if (scene%passed%side > 0) call list_place('  on their way through each other', scene%passed)
-        if (run%model%pairs == 0) return
-        call list_place('pressed across a gap, of what is allowed', scene%apart)
-        if (scene%widest%ratio >= little .and. scene%widest%depth > deeper*scene%apart%depth) &
-          call list_place('  at the widest place, of what is allowed', scene%widest)
-        if (scene%beside%ratio >= little) call list_place('  beside the other body', scene%beside)
-      end associate
-    end subroutine list_scene_found
+  contains
 
     !> A depth, over what is allowed; and where.
     subroutine list_place(name, place)
@@ -219,36 +236,30 @@ contains
       type(overlap_place), intent(in) :: place
 
       if (place%ratio < little) then
-        call list_figure(name, '< '//short_real(little), '')
+        call list_figure(listing, name, '< '//short_real(little), '')
       else
-        call list_figure(name, estimate_number(place%ratio), &
+        call list_figure(listing, name, estimate_number(place%ratio), &
                          '   '//short_real(place%depth)//' at '//point_name(place%x))
       end if
     end subroutine list_place
+  end subroutine list_scene_found
 
-    !> What stopping and rounding leave.
-    subroutine list_rounding()
-      call list_figures(['iteration_error_', 'condition       '])
-      call list_figure('digits that rounding leaves, at least', &
-                       text_of(max(0, floor(-log10(run%answer%rounding())))), '')
-      call list_figure('linear residual', rounding_number(run%certificate%equilibrium), '')
-      if (run%accuracy%sensitivity%known) &
-        call list_figure('rounding in the contact forces, at most', &
-                         rounding_number(run%accuracy%sensitivity%rounding), '   of the largest')
-    end subroutine list_rounding
+  !> What the mesh leaves, and the pairs that may as well be open, or touch.
+  subroutine list_mesh(listing, run, figures)
+    type(table_type), intent(inout) :: listing
+    type(run_results), intent(in) :: run
+    type(figure_type), intent(in) :: figures(:)
+    call list_figures(listing, figures, [character(len=21) :: 'contact_amplification', 'mesh_error_'])
+    if (size(run%accuracy%worst) > 0) &
+      call say(listing, 'refine first: element '//joined(run%model%element_id(run%accuracy%worst), ' ')// &
+               ', the first at '//centre_name(run%model, run%accuracy%worst(1))//'; '// &
+               percent(sum(run%accuracy%element(run%accuracy%worst)), sum(run%accuracy%element))// &
+               ' of the error')
+    if (.not. any(run%accuracy%weak)) return   ! nor is it known of each pair
+    call list_pairs('contact state uncertain: pressed by less than the error of the force', .true.)
+    call list_pairs('contact state uncertain: open by less than the error of the gap', .false.)
 
-    !> What the mesh leaves, and the pairs that may as well be open, or touch.
-    subroutine list_mesh()
-      call list_figures([character(len=21) :: 'contact_amplification', 'mesh_error_'])
-      if (size(run%accuracy%worst) > 0) &
-        call say_it('refine first: element '//joined(run%model%element_id(run%accuracy%worst), ' ')// &
-                 ', the first at '//centre_name(run%model, run%accuracy%worst(1))//'; '// &
-                 percent(sum(run%accuracy%element(run%accuracy%worst)), sum(run%accuracy%element))// &
-                 ' of the error')
-      if (.not. any(run%accuracy%weak)) return   ! nor is it known of each pair
-      call list_pairs('contact state uncertain: pressed by less than the error of the force', .true.)
-      call list_pairs('contact state uncertain: open by less than the error of the gap', .false.)
-    end subroutine list_mesh
+  contains
 
     !> Pairs that touch, or that do not, but may as well.
     subroutine list_pairs(what, touching)
@@ -257,46 +268,52 @@ contains
       logical, allocatable :: chosen(:)
 
       chosen = run%accuracy%weak .and. (run%answer%contact%touching .eqv. touching)
-      if (any(chosen)) call say_it(what//', '//plural(count(chosen), 'pair')//': '// &
+      if (any(chosen)) call say(listing, what//', '//plural(count(chosen), 'pair')//': '// &
                                 joined(pack(run%model%pair_id, chosen), ' ', most_pairs))
     end subroutine list_pairs
+  end subroutine list_mesh
 
-    !> Elements that are too stiff for what their material does, and displacements that are not small.
-    subroutine list_doubtful_elements()
-      if (run%answer%locking%elements > 0) then
-        call list_figure('three-node elements of constant volume', text_of(run%answer%locking%elements), '')
-        call list_figure('scatter of their mean stress / equivalent', &
-                         listed_number(number, run%answer%locking%scatter, 1.0_wp), '')
-        call say_it('  ('//poisson_text(run%answer)// &
-                 ': they are too stiff there; six-node elements and CQUAD4 are not)')
-      end if
-      if (run%answer%gradient%part > 0.0_wp) then
-        call list_figure('not small: turned, stretched by over 0.1', &
-                         listed_number(part, run%answer%gradient%part, 0.0_wp), '   of the volume')
-        call say_it('  (most at '//centre_name(run%model, run%answer%gradient%worst)//', '// &
-                 estimate_number(run%answer%gradient%largest)//'; equilibrium and contact are those of '// &
-                 'the undeformed shape: loads, moduli, units?)')
-      end if
-    end subroutine list_doubtful_elements
+  !> Elements that are too stiff for what their material does, and displacements that are not small.
+  subroutine list_doubtful_elements(listing, run)
+    type(table_type), intent(inout) :: listing
+    type(run_results), intent(in) :: run
+    if (run%answer%locking%elements > 0) then
+      call list_figure(listing, 'three-node elements of constant volume', &
+                       text_of(run%answer%locking%elements), '')
+      call list_figure(listing, 'scatter of their mean stress / equivalent', &
+                       listed_number(number, run%answer%locking%scatter, 1.0_wp), '')
+      call say(listing, '  ('//poisson_text(run%answer)// &
+               ': they are too stiff there; six-node elements and CQUAD4 are not)')
+    end if
+    if (run%answer%gradient%part > 0.0_wp) then
+      call list_figure(listing, 'not small: turned, stretched by over 0.1', &
+                       listed_number(part, run%answer%gradient%part, 0.0_wp), '   of the volume')
+      call say(listing, '  (most at '//centre_name(run%model, run%answer%gradient%worst)//', '// &
+               estimate_number(run%answer%gradient%largest)//'; equilibrium and contact are those of '// &
+               'the undeformed shape: loads, moduli, units?)')
+    end if
+  end subroutine list_doubtful_elements
 
-    !> The wish, and what stands in its way: PARAM ACCURACY sets the solution, but the mesh has the last word.
-    subroutine list_wanted()
-      real(wp) :: left
+  !> The wish, and what stands in its way: PARAM ACCURACY sets the solution, but the mesh has the last word.
+  subroutine list_wanted(listing, run)
+    type(table_type), intent(inout) :: listing
+    type(run_results), intent(in) :: run
+    real(wp) :: left
 
-      call list_figure('wanted error of contact pressures', short_real(run%model%controls%accuracy), '')
-      if (limit_of_pressure(run) == unbounded) then
-        call say_it('  not to be had: the largest pressure is unbounded: it grows with every finer mesh')
-      else if (run%accuracy%max_pressure < 0.0_wp .or. .not. any(run%answer%contact%force > 0.0_wp)) then
-        call say_it('  (of the mesh''s error nothing is known: no pressure, or too few pairs in contact)')
-      else
-        left = run%accuracy%max_pressure/maxval(run%answer%pressure)
-        call say_it(when(left > run%model%controls%accuracy, &
-                      '  not reached: the error of the mesh is estimated at '// &
-                      estimate_number(left)//'; refine the elements named above', &
-                      '  reached: the error of the mesh is estimated at '//estimate_number(left)))
-      end if
-    end subroutine list_wanted
-  end subroutine list_case
+    call list_figure(listing, 'wanted error of contact pressures', short_real(run%model%controls%accuracy), &
+                     '')
+    if (limit_of_pressure(run) == unbounded) then
+      call say(listing, '  not to be had: the largest pressure is unbounded: it grows with every finer mesh')
+    else if (run%accuracy%max_pressure < 0.0_wp .or. .not. any(run%answer%contact%force > 0.0_wp)) then
+      call say(listing, '  (of the mesh''s error nothing is known: no pressure, or too few pairs in contact)')
+    else
+      left = run%accuracy%max_pressure/maxval(run%answer%pressure)
+      call say(listing, when(left > run%model%controls%accuracy, &
+                    '  not reached: the error of the mesh is estimated at '// &
+                    estimate_number(left)//'; refine the elements named above', &
+                    '  reached: the error of the mesh is estimated at '//estimate_number(left)))
+    end if
+  end subroutine list_wanted
 
   !> Warnings and notes.
   subroutine list_remarks(text, warnings, notes, listing)

@@ -141,11 +141,11 @@ contains
     case ('nodes')
       call put_nodes()
     case ('elements')
-      call put_elements()
+      call put_elements(run, table)
     case ('history')
       call put_history()
     case ('pivots')
-      call put_pivots()
+      call put_pivots(run, table)
     end select
 
   contains
@@ -224,23 +224,6 @@ contains
       end do
     end subroutine put_nodes
 
-    !> Stresses and strains: a row an element.
-    subroutine put_elements()
-      call table%begin('STRESSES  (means over the element; largest: von Mises at the integration point '// &
-                       'nearest to that GRID of it)', element_columns, &
-                       [0.0_wp, 0.0_wp, spread(maxval(abs(run%answer%stress)), 1, 6), 0.0_wp, 0.0_wp, &
-                        maxval(run%answer%equivalent_strain), 0.0_wp])
-      do k = 1, run%model%elements
-        call table%row([run%model%element_id(k)], &
-                       [sum(run%model%coordinates(k), dim=2)/run%model%node_count(k), &
-                        run%answer%stress(:, k), run%answer%equivalent_stress(k), &
-                        run%answer%largest_stress(k), place_of_point(run%model, run%answer%largest_at(k)), &
-                        run%answer%equivalent_strain(k), run%answer%secant_modulus(k)], &
-                       [nearest_grid(run%answer%largest_at(k)), &
-                        merge('plastic ', 'elastic ', run%answer%plastic(k))])
-      end do
-    end subroutine put_elements
-
     !> The plastic iteration: a row a solve.
     subroutine put_history()
       call table%begin('ITERATIONS', history_columns, [1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp])
@@ -251,22 +234,26 @@ contains
         end associate
       end do
     end subroutine put_history
+  end subroutine put_table
 
-    !> The first pivots of the simplex: those of the last solve, below the pairs of the listing; in a file, of
-    !! all.
-    subroutine put_pivots()
-      integer :: first, k, last
+  !> The first pivots of the simplex: those of the last solve, below the pairs of the listing; in a file, of
+  !! all.
+  subroutine put_pivots(run, table)
+    type(run_results), intent(in) :: run
+    type(table_type), intent(inout) :: table
+    integer :: first, k, last
 
-      call table%begin('', pivot_columns, [1.0_wp, 1.0_wp])
-      if (table%listed) call put_pivots_of(0, run%answer%contact%history)
-      if (table%listed) return
-      last = 0
-      do k = 1, size(run%answer%history)
-        first = last + 1
-        last = last + run%answer%history(k)%kept
-        call put_pivots_of(k, run%answer%pivot(first:last))
-      end do
-    end subroutine put_pivots
+    call table%begin('', pivot_columns, [1.0_wp, 1.0_wp])
+    if (table%listed) call put_pivots_of(0, run%answer%contact%history)
+    if (table%listed) return
+    last = 0
+    do k = 1, size(run%answer%history)
+      first = last + 1
+      last = last + run%answer%history(k)%kept
+      call put_pivots_of(k, run%answer%pivot(first:last))
+    end do
+
+  contains
 
     !> Those of one iteration.
     subroutine put_pivots_of(iteration, pivot)
@@ -279,6 +266,38 @@ contains
                        [variable(pivot(i)%entered), variable(pivot(i)%left)])
       end do
     end subroutine put_pivots_of
+
+    !> A variable of the simplex by the id of its pair.
+    pure function variable(code) result(text)
+      integer, intent(in) :: code
+      character(len=14) :: text
+
+      text = 'load'
+      if (code > 0) text = 'force '//text_of(run%model%pair_id(code))
+      if (code < 0) text = 'gap '//text_of(run%model%pair_id(-code))
+    end function variable
+  end subroutine put_pivots
+
+  !> Stresses and strains: a row an element.
+  subroutine put_elements(run, table)
+    type(run_results), intent(in) :: run
+    type(table_type), intent(inout) :: table
+    integer :: k
+    call table%begin('STRESSES  (means over the element; largest: von Mises at the integration point '// &
+                     'nearest to that GRID of it)', element_columns, &
+                     [0.0_wp, 0.0_wp, spread(maxval(abs(run%answer%stress)), 1, 6), 0.0_wp, 0.0_wp, &
+                      maxval(run%answer%equivalent_strain), 0.0_wp])
+    do k = 1, run%model%elements
+      call table%row([run%model%element_id(k)], &
+                     [sum(run%model%coordinates(k), dim=2)/run%model%node_count(k), &
+                      run%answer%stress(:, k), run%answer%equivalent_stress(k), &
+                      run%answer%largest_stress(k), place_of_point(run%model, run%answer%largest_at(k)), &
+                      run%answer%equivalent_strain(k), run%answer%secant_modulus(k)], &
+                     [nearest_grid(run%answer%largest_at(k)), &
+                      merge('plastic ', 'elastic ', run%answer%plastic(k))])
+    end do
+
+  contains
 
     !> Id of the corner of an element that an integration point is nearest to; of one in the middle: none.
     pure function nearest_grid(point) result(id)
@@ -296,17 +315,7 @@ contains
         end associate
       end associate
     end function nearest_grid
-
-    !> A variable of the simplex by the id of its pair.
-    pure function variable(code) result(text)
-      integer, intent(in) :: code
-      character(len=14) :: text
-
-      text = 'load'
-      if (code > 0) text = 'force '//text_of(run%model%pair_id(code))
-      if (code < 0) text = 'gap '//text_of(run%model%pair_id(-code))
-    end function variable
-  end subroutine put_table
+  end subroutine put_elements
 
   !> The first of some ids, and a mark where there are more: the plan has them all.
   pure function first_of(id) result(text)

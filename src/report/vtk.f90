@@ -29,6 +29,13 @@ module epcont_report_vtk
     integer, allocatable :: point(:)    !! of one cell after the other, counted from 1
   end type vtk_cells
 
+  !> A file with a grid, and arrays of its points or cells.
+  type, extends(text_file) :: vtk_file
+  contains
+    procedure, private :: begin, end_grid, put_bytes, put_integers, put_reals, put_fields
+    generic, private :: put => put_integers, put_reals, put_fields
+  end type vtk_file
+
   !> Begins the line of a load case in DECK.pvd.
   character(len=*), parameter :: data_set = '<DataSet timestep="'
 
@@ -39,171 +46,181 @@ contains
     type(run_results), intent(in) :: run                  !! what is known of the run
     character(len=*), intent(in) :: stem                  !! path of the files, without their suffixes
     type(error_type), allocatable, intent(out) :: error   !! a file cannot be written
-    type(text_file) :: file
-    interface put
-      procedure :: put_integers, put_reals, put_fields
-    end interface put
 
-    call write_bodies()
-    if (run%model%pairs > 0 .and. .not. allocated(error)) call write_contact()
-
-  contains
-
-    !> Bodies: nodes that belong to elements are the points, in the order of the deck; elements are the cells.
-    subroutine write_bodies()
-      real(wp), allocatable :: force(:, :)
-      integer, allocatable :: last(:), node(:), point(:)
-      integer :: i
-
-      associate (model => run%model, answer => run%answer)
-        node = model%around%members()
-        allocate (point(model%nodes))
-        point(node) = [(i, i=1, size(node))]
-        last = model%node_count
-        do i = 2, size(last)
-          last(i) = last(i - 1) + last(i)
-        end do
-        call begin('.vtu', model%x(:, node), &
-                   vtk_cells(model%kinds(model%kind)%vtk, last, &
-                             point(pack(model%connectivity, model%connectivity > 0))))
-        if (allocated(error)) return
-        call file%line('<PointData Vectors="displacement">')
-        call put('node_id', model%node_id(node))
-        call put('displacement', answer%displacement(:, node))
-        force = pair_forces(model, answer%contact%force)
-        call put('contact_force', force(:, node))
-        call put('reaction', answer%reaction(:, node))
-        call file%line('</PointData>'//newline//'<CellData Scalars="equivalent_stress">')
-        call put('element_id', model%element_id)
-        call put('body', model%body(model%connectivity(1, :)))
-        call put('property_id', model%property_id(model%section))
-        call put('material_id', model%material_id(model%section))
-        call put('stress', answer%stress)
-        call put('equivalent_stress', answer%equivalent_stress)
-        call put('max_equivalent_stress', answer%largest_stress)
-        call put('equivalent_strain', answer%equivalent_strain)
-        call put('secant_modulus', answer%secant_modulus)
-        call put('yielded', merge(1, 0, answer%plastic))
-      end associate
-      call end_grid()
-    end subroutine write_bodies
-
-    !> Contact: pairs are the points, each at its node of the boundary, in the order of the deck; cells are
-    !! the lines between neighbours, and the points of pairs that have none.
-    subroutine write_contact()
-      type(contact_line) :: line
-      type(vtk_cells) :: cells
-      integer, dimension(run%model%pairs) :: bconp, zone   ! 0: of a CGAP; none
-      real(wp) :: force(directions, run%model%pairs)
-      integer :: k
-
-      line = find_contact_line(run%model)
-      cells = cells_along(line)
-      call begin('.contact.vtu', run%model%x(:, line%node), cells)
-      if (allocated(error)) return
-      do k = 1, run%model%pairs
-        force(:, k) = run%answer%contact%force(k)*run%model%normal(:, k)
-        if (line%node(k) /= run%model%pair_node(2, k)) force(:, k) = -force(:, k)
-      end do
-      zone = 0
-      do k = 1, size(run%answer%zones)
-        zone(run%answer%zones(k)%pairs) = k
-      end do
-      bconp = 0
-      do k = 1, size(run%model%line_contact)
-        associate (contact => run%model%line_contact(k))
-          bconp(contact%first:contact%last) = contact%bconp(1)
-        end associate
-      end do
-      call file%line('<PointData Scalars="pressure" Vectors="displacement">')
-      call put('pair_id', run%model%pair_id)
-      call put('node_a', run%model%node_id(run%model%pair_node(1, :)))
-      call put('node_b', run%model%node_id(run%model%pair_node(2, :)))
-      call put('displacement', run%answer%displacement(:, line%node))
-      call put('contact_force', force)
-      call put('pressure', max(0.0_wp, run%answer%pressure))
-      call put('has_pressure', merge(1, 0, run%answer%pressure >= 0.0_wp))
-      call put('gap', run%answer%contact%gap)
-      call put('touching', merge(1, 0, run%answer%contact%touching))
-      call put('zone', zone)
-      call file%line('</PointData>'//newline//'<CellData Scalars="bconp">')
-      call put('bconp', bconp(cells%point(cells%last)))
-      call end_grid()
-    end subroutine write_contact
-
-    !> Begin a file with the points and the cells; arrays of the points come next.
-    subroutine begin(suffix, x, cells)
-      character(len=*), intent(in) :: suffix   !! of the file
-      real(wp), intent(in) :: x(:, :)         !! of the points [length] [2, points]
-      type(vtk_cells), intent(in) :: cells    !! how the points are joined
-
-      call new_text_file(stem//suffix, file, error)
-      if (allocated(error)) return
-      call file%line('<?xml version="1.0"?>'//newline// &
-                     '<VTKFile type="UnstructuredGrid" version="1.0" byte_order="'// &
-                     when(transfer(1, 0_int8) == 1_int8, 'LittleEndian', 'BigEndian')// &
-                     '" header_type="UInt64">'//newline//'<UnstructuredGrid>'//newline//'<FieldData>')
-      call put_bytes('Int32', 'exit_status', ' NumberOfTuples="1"', transfer([run%outcome%status], [0_int8]))
-      call file%line('</FieldData>'//newline//'<Piece NumberOfPoints="'//text_of(size(x, 2))// &
-                     '" NumberOfCells="'//text_of(size(cells%kind))//'">'//newline//'<Points>')
-      call put('Points', x)
-      call file%line('</Points>'//newline//'<Cells>')
-      call put('connectivity', cells%point - 1)
-      call put('offsets', cells%last)
-      call put_bytes('UInt8', 'types', '', int(cells%kind, int8))
-      call file%line('</Cells>')
-    end subroutine begin
-
-    !> Close the file and give it its name.
-    subroutine end_grid()
-
-      call file%line('</CellData>'//newline//'</Piece>'//newline//'</UnstructuredGrid>'//newline// &
-                     '</VTKFile>')
-      call file%finish(error)
-    end subroutine end_grid
-
-    !> One integer a point or cell.
-    subroutine put_integers(name, values)
-      character(len=*), intent(in) :: name   !! of the array
-      integer, intent(in) :: values(:)       !! [points] or [cells]
-
-      call put_bytes('Int32', name, '', transfer(values, [0_int8]))
-    end subroutine put_integers
-
-    !> One real a point or cell.
-    subroutine put_reals(name, values)
-      character(len=*), intent(in) :: name   !! of the array
-      real(wp), intent(in) :: values(:)      !! [points] or [cells]
-
-      call put_bytes('Float64', name, '', transfer(values, [0_int8]))
-    end subroutine put_reals
-
-    !> One vector of the plane a point or cell, or one symmetric tensor, in VTK's order of components.
-    subroutine put_fields(name, values)
-      character(len=*), intent(in) :: name   !! of the array
-      real(wp), intent(in) :: values(:, :)   !! vectors [2, any], or tensors: xx, yy, zz, xy [4, any]
-      character(len=*), parameter :: tensor = ' NumberOfComponents="6" ComponentName0="XX" '// &
-        'ComponentName1="YY" ComponentName2="ZZ" ComponentName3="XY" ComponentName4="YZ" ComponentName5="XZ"'
-      real(wp), allocatable :: space(:, :)
-      logical :: is_vector
-
-      is_vector = size(values, 1) == directions
-      allocate (space(merge(3, 6, is_vector), size(values, 2)), source=0.0_wp)
-      space(:size(values, 1), :) = values
-      call put_bytes('Float64', name, when(is_vector, ' NumberOfComponents="3"', tensor), &
-                          transfer(space, [0_int8]))
-    end subroutine put_fields
-
-    !> One array, with further attributes, each behind a blank.
-    subroutine put_bytes(type, name, shape, bytes)
-      character(len=*), intent(in) :: type, name, shape
-      integer(int8), intent(in) :: bytes(:)
-
-      call file%line('<DataArray type="'//type//'" Name="'//name//'"'//shape//' format="binary">')
-      call file%line(base64([transfer(int(size(bytes), i8), bytes), bytes]))
-      call file%line('</DataArray>')
-    end subroutine put_bytes
+    call write_bodies(run, stem, error)
+    if (run%model%pairs > 0 .and. .not. allocated(error)) call write_contact(run, stem, error)
   end subroutine write_vtk
+
+  !> Bodies: nodes that belong to elements are the points, in the order of the deck; elements are the cells.
+  subroutine write_bodies(run, stem, error)
+    type(run_results), intent(in) :: run
+    character(len=*), intent(in) :: stem
+    type(error_type), allocatable, intent(out) :: error
+    type(vtk_file) :: file
+    real(wp), allocatable :: force(:, :)
+    integer, allocatable :: last(:), node(:), point(:)
+    integer :: i
+
+    associate (model => run%model, answer => run%answer)
+      node = model%around%members()
+      allocate (point(model%nodes))
+      point(node) = [(i, i=1, size(node))]
+      last = model%node_count
+      do i = 2, size(last)
+        last(i) = last(i - 1) + last(i)
+      end do
+      call file%begin(stem//'.vtu', run%outcome%status, model%x(:, node), &
+                 vtk_cells(model%kinds(model%kind)%vtk, last, &
+                           point(pack(model%connectivity, model%connectivity > 0))), error)
+      if (allocated(error)) return
+      call file%line('<PointData Vectors="displacement">')
+      call file%put('node_id', model%node_id(node))
+      call file%put('displacement', answer%displacement(:, node))
+      force = pair_forces(model, answer%contact%force)
+      call file%put('contact_force', force(:, node))
+      call file%put('reaction', answer%reaction(:, node))
+      call file%line('</PointData>'//newline//'<CellData Scalars="equivalent_stress">')
+      call file%put('element_id', model%element_id)
+      call file%put('body', model%body(model%connectivity(1, :)))
+      call file%put('property_id', model%property_id(model%section))
+      call file%put('material_id', model%material_id(model%section))
+      call file%put('stress', answer%stress)
+      call file%put('equivalent_stress', answer%equivalent_stress)
+      call file%put('max_equivalent_stress', answer%largest_stress)
+      call file%put('equivalent_strain', answer%equivalent_strain)
+      call file%put('secant_modulus', answer%secant_modulus)
+      call file%put('yielded', merge(1, 0, answer%plastic))
+    end associate
+    call file%end_grid(error)
+  end subroutine write_bodies
+
+  !> Contact: pairs are the points, each at its node of the boundary, in the order of the deck; cells are
+  !! the lines between neighbours, and the points of pairs that have none.
+  subroutine write_contact(run, stem, error)
+    type(run_results), intent(in) :: run
+    character(len=*), intent(in) :: stem
+    type(error_type), allocatable, intent(out) :: error
+    type(vtk_file) :: file
+    type(contact_line) :: line
+    type(vtk_cells) :: cells
+    integer, dimension(run%model%pairs) :: bconp, zone   ! 0: of a CGAP; none
+    real(wp) :: force(directions, run%model%pairs)
+    integer :: k
+
+    line = find_contact_line(run%model)
+    cells = cells_along(line)
+    call file%begin(stem//'.contact.vtu', run%outcome%status, run%model%x(:, line%node), cells, error)
+    if (allocated(error)) return
+    do k = 1, run%model%pairs
+      force(:, k) = run%answer%contact%force(k)*run%model%normal(:, k)
+      if (line%node(k) /= run%model%pair_node(2, k)) force(:, k) = -force(:, k)
+    end do
+    zone = 0
+    do k = 1, size(run%answer%zones)
+      zone(run%answer%zones(k)%pairs) = k
+    end do
+    bconp = 0
+    do k = 1, size(run%model%line_contact)
+      associate (contact => run%model%line_contact(k))
+        bconp(contact%first:contact%last) = contact%bconp(1)
+      end associate
+    end do
+    call file%line('<PointData Scalars="pressure" Vectors="displacement">')
+    call file%put('pair_id', run%model%pair_id)
+    call file%put('node_a', run%model%node_id(run%model%pair_node(1, :)))
+    call file%put('node_b', run%model%node_id(run%model%pair_node(2, :)))
+    call file%put('displacement', run%answer%displacement(:, line%node))
+    call file%put('contact_force', force)
+    call file%put('pressure', max(0.0_wp, run%answer%pressure))
+    call file%put('has_pressure', merge(1, 0, run%answer%pressure >= 0.0_wp))
+    call file%put('gap', run%answer%contact%gap)
+    call file%put('touching', merge(1, 0, run%answer%contact%touching))
+    call file%put('zone', zone)
+    call file%line('</PointData>'//newline//'<CellData Scalars="bconp">')
+    call file%put('bconp', bconp(cells%point(cells%last)))
+    call file%end_grid(error)
+  end subroutine write_contact
+
+  !> Begin a file with the points and the cells; arrays of the points come next.
+  subroutine begin(self, path, status, x, cells, error)
+    class(vtk_file), intent(inout) :: self
+    character(len=*), intent(in) :: path    !! of the file
+    integer, intent(in) :: status           !! exit status of the run
+    real(wp), intent(in) :: x(:, :)         !! of the points [length] [2, points]
+    type(vtk_cells), intent(in) :: cells    !! how the points are joined
+    type(error_type), allocatable, intent(out) :: error
+
+    call new_text_file(path, self%text_file, error)
+    if (allocated(error)) return
+    call self%line('<?xml version="1.0"?>'//newline// &
+                   '<VTKFile type="UnstructuredGrid" version="1.0" byte_order="'// &
+                   when(transfer(1, 0_int8) == 1_int8, 'LittleEndian', 'BigEndian')// &
+                   '" header_type="UInt64">'//newline//'<UnstructuredGrid>'//newline//'<FieldData>')
+    call self%put_bytes('Int32', 'exit_status', ' NumberOfTuples="1"', transfer([status], [0_int8]))
+    call self%line('</FieldData>'//newline//'<Piece NumberOfPoints="'//text_of(size(x, 2))// &
+                   '" NumberOfCells="'//text_of(size(cells%kind))//'">'//newline//'<Points>')
+    call self%put('Points', x)
+    call self%line('</Points>'//newline//'<Cells>')
+    call self%put('connectivity', cells%point - 1)
+    call self%put('offsets', cells%last)
+    call self%put_bytes('UInt8', 'types', '', int(cells%kind, int8))
+    call self%line('</Cells>')
+  end subroutine begin
+
+  !> Close the file and give it its name.
+  subroutine end_grid(self, error)
+    class(vtk_file), intent(inout) :: self
+    type(error_type), allocatable, intent(out) :: error
+
+    call self%line('</CellData>'//newline//'</Piece>'//newline//'</UnstructuredGrid>'//newline// '</VTKFile>')
+    call self%finish(error)
+  end subroutine end_grid
+
+  !> One integer a point or cell.
+  subroutine put_integers(self, name, values)
+    class(vtk_file), intent(inout) :: self
+    character(len=*), intent(in) :: name   !! of the array
+    integer, intent(in) :: values(:)       !! [points] or [cells]
+
+    call self%put_bytes('Int32', name, '', transfer(values, [0_int8]))
+  end subroutine put_integers
+
+  !> One real a point or cell.
+  subroutine put_reals(self, name, values)
+    class(vtk_file), intent(inout) :: self
+    character(len=*), intent(in) :: name   !! of the array
+    real(wp), intent(in) :: values(:)      !! [points] or [cells]
+
+    call self%put_bytes('Float64', name, '', transfer(values, [0_int8]))
+  end subroutine put_reals
+
+  !> One vector of the plane a point or cell, or one symmetric tensor, in VTK's order of components.
+  subroutine put_fields(self, name, values)
+    class(vtk_file), intent(inout) :: self
+    character(len=*), intent(in) :: name   !! of the array
+    real(wp), intent(in) :: values(:, :)   !! vectors [2, any], or tensors: xx, yy, zz, xy [4, any]
+    character(len=*), parameter :: tensor = ' NumberOfComponents="6" ComponentName0="XX" '// &
+      'ComponentName1="YY" ComponentName2="ZZ" ComponentName3="XY" ComponentName4="YZ" ComponentName5="XZ"'
+    real(wp), allocatable :: space(:, :)
+    logical :: is_vector
+
+    is_vector = size(values, 1) == directions
+    allocate (space(merge(3, 6, is_vector), size(values, 2)), source=0.0_wp)
+    space(:size(values, 1), :) = values
+    call self%put_bytes('Float64', name, when(is_vector, ' NumberOfComponents="3"', tensor), &
+                        transfer(space, [0_int8]))
+  end subroutine put_fields
+
+  !> One array, with further attributes, each behind a blank.
+  subroutine put_bytes(self, type, name, shape, bytes)
+    class(vtk_file), intent(inout) :: self
+    character(len=*), intent(in) :: type, name, shape
+    integer(int8), intent(in) :: bytes(:)
+
+    call self%line('<DataArray type="'//type//'" Name="'//name//'"'//shape//' format="binary">')
+    call self%line(base64([transfer(int(size(bytes), i8), bytes), bytes]))
+    call self%line('</DataArray>')
+  end subroutine put_bytes
 
   !> Lines between neighbouring pairs, then pairs that have no neighbour.
   pure function cells_along(line) result(cells)
