@@ -140,6 +140,7 @@ contains
     type(progress_type), intent(inout) :: watch
     type(run_results), intent(inout) :: run
     type(error_type), allocatable, intent(inout) :: error
+
     call read_deck(path, run%deck, run%faults, error)
     call watch%lap(stage_reading)
     if (allocated(error)) return

@@ -235,8 +235,7 @@ contains
     !> The table, the card and the column, or the negative item of a list, that a finding is about.
     pure function card_of(one) result(card)
       type(diagnostic), intent(in) :: one
-      integer :: card(3)
-      integer :: c
+      integer :: card(3), c
 
       card = [one%of, one%which, one%item]
       select case (one%of)

@@ -122,7 +122,7 @@ contains
     associate (mat1 => deck%card(card_mat1), mats1 => deck%card(card_mats1))
       allocate (material(mat1%count))
       do i = 1, mat1%count
-        if (mat1%sound(i)) call read_elasticity(i)
+        if (mat1%sound(i)) call read_elasticity(deck, i, found, material)
       end do
       call resolve(deck, card_mats1, 1, index_of(deck, card_mat1), found, m)
       call resolve(deck, card_mats1, mats1%column('TID'), index_of(deck, card_tables1), found, table)
@@ -131,39 +131,40 @@ contains
         if (material(m(i))%young > 0.0_wp) call read_yielding(deck, i, table(i), material(m(i)), found)
       end do
     end associate
-
-  contains
-
-    !> MAT1: E and NU from two of E, G, NU.
-    subroutine read_elasticity(i)
-      integer, intent(in) :: i
-      real(wp) :: shear
-
-      associate (mat1 => deck%card(card_mat1), young => material(i)%young, poisson => material(i)%poisson)
-        young = mat1%number('E', i)
-        shear = mat1%number('G', i)
-        poisson = mat1%number('NU', i)
-        material(i)%expansion = mat1%number('A', i)
-        material(i)%reference_temperature = mat1%number('TREF', i)
-        material(i)%density = mat1%number('RHO', i)
-        if (mat1%has('TREF', i) .and. mat1%entry%field(mat1%column('TREF'))%used .and. &
-            material(i)%expansion == 0.0_wp) call found%add_note(card_mat1, i, mat1%column('TREF'), &
-                                                                 ': field 8 (TREF) has no effect without A')
-        if (count([mat1%has('E', i), mat1%has('G', i), mat1%has('NU', i)]) < 2) then
-          call refuse(deck, card_mat1, i, 'E', ': of E, G and NU two are needed', 'E and NU, say', found)
-        else if (.not. mat1%has('NU', i)) then
-          poisson = young/(2.0_wp*shear) - 1.0_wp
-          if (poisson < 0.0_wp .or. poisson >= 0.5_wp) &
-            call refuse(deck, card_mat1, i, 'G', ': E and G give NU = '//short_real(poisson), &
-                        '0 <= NU < 0.5: G above E/3, up to E/2', found)
-        else if (.not. mat1%has('E', i)) then
-          young = 2.0_wp*shear*(1.0_wp + poisson)
-        else if (mat1%has('G', i) .and. abs(2.0_wp*shear*(1.0_wp + poisson) - young) > same_moduli*young) then
-          call refuse(deck, card_mat1, i, 'G', ': G is not E/(2(1 + NU))', 'a blank G', found)
-        end if
-      end associate
-    end subroutine read_elasticity
   end subroutine read_materials
+
+  !> MAT1: E and NU from two of E, G, NU.
+  subroutine read_elasticity(deck, i, found, material)
+    type(deck_type), intent(in) :: deck
+    integer, intent(in) :: i
+    type(findings), intent(inout) :: found
+    type(material_card), allocatable, intent(inout) :: material(:)
+    real(wp) :: shear
+
+    associate (mat1 => deck%card(card_mat1), young => material(i)%young, poisson => material(i)%poisson)
+      young = mat1%number('E', i)
+      shear = mat1%number('G', i)
+      poisson = mat1%number('NU', i)
+      material(i)%expansion = mat1%number('A', i)
+      material(i)%reference_temperature = mat1%number('TREF', i)
+      material(i)%density = mat1%number('RHO', i)
+      if (mat1%has('TREF', i) .and. mat1%entry%field(mat1%column('TREF'))%used .and. &
+          material(i)%expansion == 0.0_wp) call found%add_note(card_mat1, i, mat1%column('TREF'), &
+                                                               ': field 8 (TREF) has no effect without A')
+      if (count([mat1%has('E', i), mat1%has('G', i), mat1%has('NU', i)]) < 2) then
+        call refuse(deck, card_mat1, i, 'E', ': of E, G and NU two are needed', 'E and NU, say', found)
+      else if (.not. mat1%has('NU', i)) then
+        poisson = young/(2.0_wp*shear) - 1.0_wp
+        if (poisson < 0.0_wp .or. poisson >= 0.5_wp) &
+          call refuse(deck, card_mat1, i, 'G', ': E and G give NU = '//short_real(poisson), &
+                      '0 <= NU < 0.5: G above E/3, up to E/2', found)
+      else if (.not. mat1%has('E', i)) then
+        young = 2.0_wp*shear*(1.0_wp + poisson)
+      else if (mat1%has('G', i) .and. abs(2.0_wp*shear*(1.0_wp + poisson) - young) > same_moduli*young) then
+        call refuse(deck, card_mat1, i, 'G', ': G is not E/(2(1 + NU))', 'a blank G', found)
+      end if
+    end associate
+  end subroutine read_elasticity
 
   !> MATS1: the curve of its table, or the bilinear one of LIMIT1 and H.
   subroutine read_yielding(deck, i, table, material, found)
@@ -188,40 +189,40 @@ contains
         call refuse(deck, card_mats1, i, 'LIMIT1', ': field 8 (LIMIT1) is blank', &
                     'the yield stress: the second stress of the table', found)
     end associate
-    if (table > 0) call read_table(i, table, material%young, material%curve)
-
-  contains
-
-    !> TABLES1. Its yield stress is kept and its yield strain replaced by that over E, so that the elastic
-    !! part is MAT1's.
-    subroutine read_table(i, t, young, curve)
-      integer, intent(in) :: i, t   !! the MATS1, the TABLES1
-      real(wp), intent(in) :: young
-      type(uniaxial_curve), intent(inout) :: curve
-      type(curve_fault) :: fault
-      real(wp) :: limit
-      integer :: first
-
-      associate (tables1 => deck%card(card_tables1))
-        first = tables1%list_start(t)
-        curve%strain = tables1%list(first:tables1%list_start(t + 1) - 1)%number(1)
-        curve%stress = tables1%list(first:tables1%list_start(t + 1) - 1)%number(2)
-        call straighten(curve, young, fault)
-        if (fault%point > 0) then
-          call found%add_error(card_tables1, t, merge(1 - first - fault%point, 0, &
-                               fault%point <= size(curve%strain)), ': '//fault%what, fault%remedy)
-          return
-        end if
-        limit = deck%card(card_mats1)%number('LIMIT1', i)
-        associate (stress => curve%stress(2))
-          if (deck%card(card_mats1)%has('LIMIT1', i) .and. abs(limit - stress) > same_stress*stress) &
-            call refuse(deck, card_mats1, i, 'LIMIT1', ': field 8 (LIMIT1) is '//short_real(limit)// &
-                        ', the second stress of '//tables1%identity(t)//' '//short_real(stress), &
-                        'the same stress in both', found)
-        end associate
-      end associate
-    end subroutine read_table
+    if (table > 0) call read_table(deck, i, table, material%young, material%curve, found)
   end subroutine read_yielding
+
+  !> TABLES1. Its yield stress is kept and its yield strain replaced by that over E, so that the elastic
+  !! part is MAT1's.
+  subroutine read_table(deck, i, t, young, curve, found)
+    type(deck_type), intent(in) :: deck
+    integer, intent(in) :: i, t   !! the MATS1, the TABLES1
+    real(wp), intent(in) :: young
+    type(uniaxial_curve), intent(inout) :: curve
+    type(findings), intent(inout) :: found
+    type(curve_fault) :: fault
+    real(wp) :: limit
+    integer :: first
+
+    associate (tables1 => deck%card(card_tables1))
+      first = tables1%list_start(t)
+      curve%strain = tables1%list(first:tables1%list_start(t + 1) - 1)%number(1)
+      curve%stress = tables1%list(first:tables1%list_start(t + 1) - 1)%number(2)
+      call straighten(curve, young, fault)
+      if (fault%point > 0) then
+        call found%add_error(card_tables1, t, merge(1 - first - fault%point, 0, &
+                             fault%point <= size(curve%strain)), ': '//fault%what, fault%remedy)
+        return
+      end if
+      limit = deck%card(card_mats1)%number('LIMIT1', i)
+      associate (stress => curve%stress(2))
+        if (deck%card(card_mats1)%has('LIMIT1', i) .and. abs(limit - stress) > same_stress*stress) &
+          call refuse(deck, card_mats1, i, 'LIMIT1', ': field 8 (LIMIT1) is '//short_real(limit)// &
+                      ', the second stress of '//tables1%identity(t)//' '//short_real(stress), &
+                      'the same stress in both', found)
+      end associate
+    end associate
+  end subroutine read_table
 
   !> PSHELL, then PSOLID.
   subroutine read_sections(deck, material, model, found)
@@ -241,7 +242,7 @@ contains
       kinematics = axisymmetric
       do s = 1, size(named)
         if (named(s) > 0) section(s) = material(named(s))
-        if (s <= shell%count) call choose_kinematics(s, kinematics(s))
+        if (s <= shell%count) call choose_kinematics(deck, s, kinematics(s), found)
       end do
       if (deck%parameter_word('PLANE') == 'STRESS' .and. all(kinematics /= plane_stress) .and. &
           shell%count > 0) &
@@ -258,28 +259,28 @@ contains
                                       shell%value(shell%column('NSM'), :)/model%thickness(:shell%count)
       model%density = deck%parameter_value('WTMASS', 1.0_wp)*model%density
     end associate
-
-  contains
-
-    !> Plane strain or plane stress of a PSHELL: it says plane strain, or PARAM PLANE chooses.
-    subroutine choose_kinematics(i, kinematics)
-      integer, intent(in) :: i
-      integer, intent(out) :: kinematics
-      logical :: strain
-
-      kinematics = merge(plane_stress, plane_strain, deck%parameter_word('PLANE') == 'STRESS')
-      associate (shell => deck%card(card_pshell))
-        if (.not. shell%sound(i)) return
-        strain = shell%number('MID2', i) < 0.0_wp
-        if (strain) then
-          kinematics = plane_strain
-        else if (deck%parameter_row('PLANE') == 0) then
-          call refuse(deck, card_pshell, i, 'MID2', ': neither plane strain nor plane stress is chosen', &
-                      '-1 here for plane strain, or PARAM,PLANE,STRAIN or PARAM,PLANE,STRESS', found)
-        end if
-      end associate
-    end subroutine choose_kinematics
   end subroutine read_sections
+
+  !> Plane strain or plane stress of a PSHELL: it says plane strain, or PARAM PLANE chooses.
+  subroutine choose_kinematics(deck, i, kinematics, found)
+    type(deck_type), intent(in) :: deck
+    integer, intent(in) :: i
+    integer, intent(out) :: kinematics
+    type(findings), intent(inout) :: found
+    logical :: strain
+
+    kinematics = merge(plane_stress, plane_strain, deck%parameter_word('PLANE') == 'STRESS')
+    associate (shell => deck%card(card_pshell))
+      if (.not. shell%sound(i)) return
+      strain = shell%number('MID2', i) < 0.0_wp
+      if (strain) then
+        kinematics = plane_strain
+      else if (deck%parameter_row('PLANE') == 0) then
+        call refuse(deck, card_pshell, i, 'MID2', ': neither plane strain nor plane stress is chosen', &
+                    '-1 here for plane strain, or PARAM,PLANE,STRAIN or PARAM,PLANE,STRESS', found)
+      end if
+    end associate
+  end subroutine choose_kinematics
 
   !> The cards of elements, in the order in which they are read: those that the table of elements names.
   pure function element_cards(deck, kinds) result(cards)

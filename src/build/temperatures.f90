@@ -121,8 +121,7 @@ contains
   !> Nodes of elements that expand have temperatures, and those alone.
   subroutine check_nodes(model, named_by, default_by, set, found)
     type(model_type), intent(in) :: model
-    integer, intent(in) :: named_by(:, :), default_by
-    integer, intent(in) :: set
+    integer, intent(in) :: named_by(:, :), default_by, set
     type(findings), intent(inout) :: found
     logical :: expands(model%nodes), unnamed(model%nodes), vain(model%nodes)
     integer :: k

@@ -125,9 +125,8 @@ contains
   !> No side, or no free one, between the k-th and the next node of a line.
   subroutine add_no_side(model, i, element, k, node, found)
     type(model_type), intent(in) :: model
-    integer, intent(in) :: i
+    integer, intent(in) :: i, k, node(2)
     integer, intent(in) :: element(:)    !! that have a side there
-    integer, intent(in) :: k, node(2)
     type(findings), intent(inout) :: found
     character(len=:), allocatable :: ends
 

@@ -1,8 +1,8 @@
 !> Sides of a slave line, cut into pieces that face one side of the master, with their integration points.
 !>
-!> A side whose nodes do not all face the master, or not all along, counts at its nodes' own points. At a joint
-!> of the master, where ends of two bodies lie flush, a side is two: the ends may step, or the line bend there,
-!> so each has a gap row.
+!> A side whose nodes do not all face the master, or not all along, counts at its nodes' own points. At a
+!> joint of the master, where ends of two bodies lie flush, a side is two: the ends may step, or the line bend
+!> there, so each has a gap row.
 module epcont_contact_geometry_mortar_sides
   use epcont_base_kinds, only: wp
   use epcont_contact_geometry_faces, only: faces_type
@@ -224,9 +224,8 @@ contains
     type(faces_type), intent(in) :: faces
     integer, allocatable, intent(out) :: ends(:)
     type(side_points), allocatable, intent(inout) :: points(:)
-    integer :: s
+    integer :: s, first, i, p
     type(side_points), allocatable :: whole(:)
-    integer :: first, i, p
 
     call move_alloc(points, whole)
     allocate (points(size(whole) + sum([(joints_within(whole(s)), s=1, size(whole))])), ends(0))

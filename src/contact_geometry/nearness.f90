@@ -140,10 +140,9 @@ contains
   !> How far a straight line, as long as a side or as `over` if that is more, is from the curve into which
   !! the boundary bends from that side on [length].
   pure real(wp) function bend(displacement, line, side, over)
-    real(wp), intent(in) :: displacement(:, :)
+    real(wp), intent(in) :: displacement(:, :), over
     type(boundary_line), intent(in) :: line
     integer, intent(in) :: side
-    real(wp), intent(in) :: over
     real(wp) :: covered, theta, turn
     integer :: end, i
 
@@ -179,10 +178,9 @@ contains
   !> How far sides are, at most, from the curve that their boundary means: as the undeformed curve rises
   !! above them, and as it bends [length].
   pure real(wp) function openness(displacement, line, sides, over)
-    real(wp), intent(in) :: displacement(:, :)
+    real(wp), intent(in) :: displacement(:, :), over
     type(boundary_line), intent(in) :: line
     integer, intent(in) :: sides(:)   !! 0: none
-    real(wp), intent(in) :: over
     real(wp) :: rise
     integer :: end, k
 
@@ -232,7 +230,7 @@ contains
       if (smooth .and. all(moved%holds(slave%segment(:, s)) .or. slave%segment(:, s) == 0)) then
         ! It is where the mesh has it; a pair of its own would be one too many.
         left_open = most*moved%travel
-      else if (is_held_off(s)) then
+      else if (is_held_off(moved, contact, s)) then
         ! Over a side of the slave gaps are closed in the mean, however short the master's are.
         beside = 0
         if (which < 3) beside = master%neighbour(which, side)
@@ -247,19 +245,19 @@ contains
       end if
     end associate
     left_open = min(left_open, most*moved%travel)
-
-  contains
-
-    !> Does a node of a side of the slave, or of those beside it, stand on the other line? Then contact ends
-    !! near by, between nodes.
-    pure logical function is_held_off(side)
-      integer, intent(in) :: side
-
-      associate (beside => contact%slave%neighbour(:, side))
-        is_held_off = any(moved%holds([contact%slave%segment(:, [side, pack(beside, beside > 0)])]))
-      end associate
-    end function is_held_off
   end function left_open
+
+  !> Does a node of a side of the slave, or of those beside it, stand on the other line? Then contact ends
+  !! near by, between nodes.
+  pure logical function is_held_off(moved, contact, side)
+    type(moved_bodies), intent(in) :: moved
+    type(line_contact), intent(in) :: contact
+    integer, intent(in) :: side
+
+    associate (beside => contact%slave%neighbour(:, side))
+      is_held_off = any(moved%holds([contact%slave%segment(:, [side, pack(beside, beside > 0)])]))
+    end associate
+  end function is_held_off
 
   !> Give pairs to the nodes that came near.
   subroutine pair_nodes_that_came_near(model, contacts, paired)

@@ -100,15 +100,14 @@ contains
     type(incidence), intent(in) :: around
     integer, intent(in) :: cgaps
     type(findings), intent(inout) :: found
-    integer :: c
+    integer :: c, k
     type(incidence) :: lines   ! pairs of lines in which each node stands on sides
     integer, dimension(cgaps) :: cgap, line   ! like each pair; 0: none
-    integer :: k
 
     lines = new_incidence(reshape(model%row_node(model%row_start(cgaps + 1:model%pairs)), &
         [1, model%pairs - cgaps]), model%nodes)
-    cgap = [(cgap_like(k), k=1, cgaps)]
-    line = [(line_pair_like(k), k=1, cgaps)]
+    cgap = [(cgap_like(model, around, k), k=1, cgaps)]
+    line = [(line_pair_like(model, cgaps, lines, k), k=1, cgaps)]
     k = findloc(cgap > 0, .true., dim=1)
     if (k > 0) call found%add_error(of_pair, k, 1, ': joins the nodes of '// &
         model%name_of(of_pair, cgap(k))//' along the same normal, with the '// &
@@ -120,50 +119,52 @@ contains
     call found%add_error(of_pair, k, 1, ': joins nodes that '// &
                          model%name_of(of_couple, model%line_contact(c)%couple(1))// &
                          ' joins along the same normal'//like_this(line), 'either CGAPs or a BCONP')
+  end subroutine refuse_pairs_twice
 
-  contains
+  !> The first CGAP before pair k that is between its nodes, along its normal, with its gap; 0: none.
+  pure integer function cgap_like(model, around, k) result(other)
+    type(model_type), intent(in) :: model
+    type(incidence), intent(in) :: around
+    integer, intent(in) :: k
+    real(wp) :: apart
+    integer :: i, node, way
 
-    !> The first CGAP before pair k that is between its nodes, along its normal, with its gap; 0: none.
-    pure integer function cgap_like(k) result(other)
-      integer, intent(in) :: k
-      real(wp) :: apart
-      integer :: i, node, way
+    associate (a => model%pair_node(1, k), b => model%pair_node(2, k))
+      apart = norm2(model%x(:, b) - model%x(:, a)) + abs(model%initial_gap(k))
+      ! At a node of the ground there may be thousands.
+      node = merge(a, b, around%start(a + 1) - around%start(a) < around%start(b + 1) - around%start(b))
+      do i = around%start(node), around%start(node + 1) - 1
+        other = around%group(i)
+        if (other == k) exit
+        way = 0
+        if (all(model%pair_node(:, other) == [a, b])) way = 1
+        if (all(model%pair_node(:, other) == [b, a])) way = -1
+        if (way*dot_product(model%normal(:, other), model%normal(:, k)) < parallel) cycle
+        if (abs(model%initial_gap(other) - model%initial_gap(k)) <= rounded_off*apart) return
+      end do
+    end associate
+    other = 0
+  end function cgap_like
 
-      associate (a => model%pair_node(1, k), b => model%pair_node(2, k))
-        apart = norm2(model%x(:, b) - model%x(:, a)) + abs(model%initial_gap(k))
-        ! At a node of the ground there may be thousands.
-        node = merge(a, b, around%start(a + 1) - around%start(a) < around%start(b + 1) - around%start(b))
-        do i = around%start(node), around%start(node + 1) - 1
-          other = around%group(i)
-          if (other == k) exit
-          way = 0
-          if (all(model%pair_node(:, other) == [a, b])) way = 1
-          if (all(model%pair_node(:, other) == [b, a])) way = -1
-          if (way*dot_product(model%normal(:, other), model%normal(:, k)) < parallel) cycle
-          if (abs(model%initial_gap(other) - model%initial_gap(k)) <= rounded_off*apart) return
+  !> The first pair of lines that joins the nodes of CGAP k along its normal; 0: none.
+  pure integer function line_pair_like(model, cgaps, lines, k) result(pair)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: cgaps, k
+    type(incidence), intent(in) :: lines
+    integer :: i, which
+
+    do which = 1, 2
+      associate (near => lines%of(model%pair_node(which, k)), other => model%pair_node(3 - which, k))
+        do i = 1, size(near)
+          pair = cgaps + near(i)
+          if (all(model%row_node(model%row_start(pair) + 1:model%row_start(pair + 1) - 1) /= other)) cycle
+          if (dot_product(model%normal(:, pair), model%normal(:, k))*merge(1, -1, which == 2) >= one_face) &
+            return
         end do
       end associate
-      other = 0
-    end function cgap_like
-
-    !> The first pair of lines that joins the nodes of CGAP k along its normal; 0: none.
-    pure integer function line_pair_like(k) result(pair)
-      integer, intent(in) :: k
-      integer :: i, which
-
-      do which = 1, 2
-        associate (near => lines%of(model%pair_node(which, k)), other => model%pair_node(3 - which, k))
-          do i = 1, size(near)
-            pair = cgaps + near(i)
-            if (all(model%row_node(model%row_start(pair) + 1:model%row_start(pair + 1) - 1) /= other)) cycle
-            if (dot_product(model%normal(:, pair), model%normal(:, k))*merge(1, -1, which == 2) >= one_face) &
-              return
-          end do
-        end associate
-      end do
-      pair = 0
-    end function line_pair_like
-  end subroutine refuse_pairs_twice
+    end do
+    pair = 0
+  end function line_pair_like
 
   subroutine look_around_nodes(model, longest, outward)
     type(model_type), intent(in) :: model
@@ -245,10 +246,11 @@ contains
     logical :: at(3)
     integer :: s
 
-    half = pack([(s, s=1, model%body_outline%sides)], [(is_half(s), s=1, model%body_outline%sides)])
+    half = pack([(s, s=1, model%body_outline%sides)], &
+                [(is_half(model, around, on_line, s), s=1, model%body_outline%sides)])
     if (size(half) == 0) return
     associate (node => model%body_outline%node(:, half(1)), element => model%body_outline%element(half(1)))
-      at = has_pair(node)
+      at = has_pair(model, around, node)
       what = ' at both ends and none at its middle, '//model%name_of(of_node, node(3))
       if (at(3)) what = ' at its middle, '//model%name_of(of_node, node(3))//', and none at its ends'
       call found%add_warning(of_pair, around%group(around%start(node(merge(3, 1, at(3))))), 1, &
@@ -257,44 +259,47 @@ contains
                              and_more(size(half), '; so it is with ', ' more'), &
                              'CGAPs at all three nodes of the sides, or BLSEG and BCONP')
     end associate
-
-  contains
-
-    !> Has a six-node side that can bend, of no line, pairs at its ends alone, or, beside another such side,
-    !! at its middle alone?
-    pure logical function is_half(side)
-      integer, intent(in) :: side
-      logical :: at(3), beside(3)
-
-      associate (outline => model%body_outline, node => model%body_outline%node(:, side))
-        is_half = node(3) > 0 .and. .not. on_line(node(3))
-        if (is_half) is_half = .not. model%is_rigid(node)
-        if (.not. is_half) return
-        at = has_pair(node)
-        beside = has_pair(outline%node(:, outline%before(side))) .or. &
-                 has_pair(outline%node(:, outline%after(side)))
-      end associate
-      is_half = merge(beside(3) .and. .not. any(at(:2)), all(at(:2)), at(3))
-    end function is_half
-
-    !> Have the nodes of a six-node side a CGAP that presses on it?
-    pure function has_pair(node)
-      integer, intent(in) :: node(3)
-      logical :: has_pair(3)
-      real(wp) :: across(2)
-      integer :: i, k
-
-      has_pair = .false.
-      if (node(3) == 0) return
-      across = unit(right_of(model%x(:, node(2)) - model%x(:, node(1))))
-      do k = 1, 3
-        associate (pairs => around%of(node(k)))
-          has_pair(k) = any([(abs(dot_product(across, model%normal(:, pairs(i)))) >= same_way, &
-                              i=1, size(pairs))])
-        end associate
-      end do
-    end function has_pair
   end subroutine warn_of_half_sides
+
+  !> Has a six-node side that can bend, of no line, pairs at its ends alone, or, beside another such side,
+  !! at its middle alone?
+  pure logical function is_half(model, around, on_line, side)
+    type(model_type), intent(in) :: model
+    type(incidence), intent(in) :: around
+    logical, intent(in) :: on_line(0:)
+    integer, intent(in) :: side
+    logical :: at(3), beside(3)
+
+    associate (outline => model%body_outline, node => model%body_outline%node(:, side))
+      is_half = node(3) > 0 .and. .not. on_line(node(3))
+      if (is_half) is_half = .not. model%is_rigid(node)
+      if (.not. is_half) return
+      at = has_pair(model, around, node)
+      beside = has_pair(model, around, outline%node(:, outline%before(side))) .or. &
+               has_pair(model, around, outline%node(:, outline%after(side)))
+    end associate
+    is_half = merge(beside(3) .and. .not. any(at(:2)), all(at(:2)), at(3))
+  end function is_half
+
+  !> Have the nodes of a six-node side a CGAP that presses on it?
+  pure function has_pair(model, around, node)
+    type(model_type), intent(in) :: model
+    type(incidence), intent(in) :: around
+    integer, intent(in) :: node(3)
+    logical :: has_pair(3)
+    real(wp) :: across(2)
+    integer :: i, k
+
+    has_pair = .false.
+    if (node(3) == 0) return
+    across = unit(right_of(model%x(:, node(2)) - model%x(:, node(1))))
+    do k = 1, 3
+      associate (pairs => around%of(node(k)))
+        has_pair(k) = any([(abs(dot_product(across, model%normal(:, pairs(i)))) >= same_way, &
+                            i=1, size(pairs))])
+      end associate
+    end do
+  end function has_pair
 
   !> Why a pair is refused, and how many more CGAPs there are with such a pair than the one that is named.
   pure function like_this(pair) result(text)

@@ -160,31 +160,29 @@ contains
         is_first = .false.
         text = lines%text(line%first:min(line%last, line%first + 7))
         if (line%special <= line%last) then   ! with a comma the name may be longer
-          found = kind_of(lines%text(line%first:line%last))
+          found = kind_of(names, lines%text(line%first:line%last))
           before = ''
         else if (text /= before) then
-          found = kind_of(text)
+          found = kind_of(names, text)
           before = text
         end if
         kind(1, i) = found
       end associate
     end do
-
-  contains
-
-    !> The kind of the card that a line begins.
-    pure integer function kind_of(text)
-      character(len=*), intent(in) :: text
-      character(len=8) :: name
-      integer :: first, last
-      logical :: large
-
-      call find_name(text, index(text, ','), first, last, large)
-      name = upper(text(first:min(last, first + 7)))
-      kind_of = findloc(names == name, .true., dim=1)
-      if (kind_of == 0) kind_of = unknown_card
-    end function kind_of
   end subroutine find_kinds
+
+  !> The kind of the card that a line begins.
+  pure integer function kind_of(names, text)
+    character(len=*), intent(in) :: names(:), text
+    character(len=8) :: name
+    integer :: first, last
+    logical :: large
+
+    call find_name(text, index(text, ','), first, last, large)
+    name = upper(text(first:min(last, first + 7)))
+    kind_of = findloc(names == name, .true., dim=1)
+    if (kind_of == 0) kind_of = unknown_card
+  end function kind_of
 
   !> The card has a name that is not in the catalogue.
   subroutine refuse_name(first, card, names, faults)
@@ -247,24 +245,22 @@ contains
                             suggestion(word, parameter_entry%name, &
                                        'epcont --cards PARAM lists the parameters'))
     end if
-
-  contains
-
-    !> ` without GRAV or RFORCE`: cards without which a field has no effect; empty if they do not matter.
-    pure function without(field) result(text)
-      type(field_entry), intent(in) :: field
-      character(len=:), allocatable :: text
-      integer :: k
-
-      text = ''
-      if (field%with_cards == '') return
-      text = field%with_cards(2:index(field%with_cards, '/', back=.true.) - 1)
-      do k = 1, len(text)
-        if (text(k:k) == '/') text(k:k) = ' '
-      end do
-      text = ' without '//listed(text)
-    end function without
   end subroutine choose_parameter
+
+  !> ` without GRAV or RFORCE`: cards without which a field has no effect; empty if they do not matter.
+  pure function without(field) result(text)
+    type(field_entry), intent(in) :: field
+    character(len=:), allocatable :: text
+    integer :: k
+
+    text = ''
+    if (field%with_cards == '') return
+    text = field%with_cards(2:index(field%with_cards, '/', back=.true.) - 1)
+    do k = 1, len(text)
+      if (text(k:k) == '/') text(k:k) = ' '
+    end do
+    text = ' without '//listed(text)
+  end function without
 
   !> List once each field that was filled and has no effect.
   subroutine note_fields(lines, cards, faults)

@@ -101,8 +101,7 @@ contains
   subroutine refuse(card, table, row, slot, what, remedy, faults)
     type(card_fields), intent(in) :: card
     type(card_table), intent(in) :: table
-    integer, intent(in) :: row
-    integer, intent(in) :: slot
+    integer, intent(in) :: row, slot
     character(len=*), intent(in) :: what, remedy
     type(diagnostics), intent(inout) :: faults
 
@@ -170,8 +169,7 @@ contains
   subroutine read_slot(card, table, row, slot, entry, value, faults)
     type(card_fields), intent(in) :: card
     type(card_table), intent(in) :: table
-    integer, intent(in) :: row
-    integer, intent(in) :: slot
+    integer, intent(in) :: row, slot
     type(field_entry), intent(in) :: entry    !! what it may hold
     type(field_value), intent(out) :: value
     type(diagnostics), intent(inout) :: faults
@@ -197,65 +195,71 @@ contains
     if (.not. any([(card%filled(k), k=slot, card%count)])) call refuse(card, table, row, slot, 'is blank', &
                                                                        id%allowed(), faults)
     do while (slot <= card%count)
-      if (card%filled(slot)) call read_range(slot)
+      if (card%filled(slot)) call read_range(card, row, slot, table, faults)
       slot = slot + 1
     end do
+  end subroutine read_ids
 
-  contains
+  !> One id, or a range of them.
+  subroutine read_range(card, row, slot, table, faults)
+    type(card_fields), intent(in) :: card
+    integer, intent(in) :: row
+    integer, intent(inout) :: slot   !! the first of the range, then its last
+    type(card_table), intent(inout) :: table
+    type(diagnostics), intent(inout) :: faults
+    type(field_value) :: value
+    type(list_item) :: item
+    logical :: is_range
 
-    !> One id, or a range of them.
-    subroutine read_range(slot)
-      integer, intent(inout) :: slot   !! the first of the range, then its last
-      type(field_value) :: value
-      type(list_item) :: item
-      logical :: is_range
-
-      item%place = card%place(slot)
+    item%place = card%place(slot)
+    call read_slot(card, table, row, slot, id, value, faults)
+    if (value%outcome /= scan_sound) return
+    item%from = nint(value%number)
+    is_range = table%entry%has_ranges .and. is_word(card, slot + 1, 'THRU')
+    if (is_range) then
+      slot = slot + 2
       call read_slot(card, table, row, slot, id, value, faults)
       if (value%outcome /= scan_sound) return
-      item%from = nint(value%number)
-      is_range = table%entry%has_ranges .and. is_word(card, slot + 1, 'THRU')
-      if (is_range) then
-        slot = slot + 2
-        call read_slot(card, table, row, slot, id, value, faults)
-        if (value%outcome /= scan_sound) return
-      end if
-      item%to = nint(value%number)
-      if (is_range .and. table%entry%has_steps) then
-        call read_step(slot, item)
-      else if (item%to < item%from) then
-        call refuse(card, table, row, slot, 'is less than the id before THRU', &
-                    'an id of at least '//text_of(item%from), faults)
-        return
-      end if
-      call table%add_item(row, item)
-    end subroutine read_range
+    end if
+    item%to = nint(value%number)
+    if (is_range .and. table%entry%has_steps) then
+      call read_step(card, row, slot, item, table, faults)
+    else if (item%to < item%from) then
+      call refuse(card, table, row, slot, 'is less than the id before THRU', &
+                  'an id of at least '//text_of(item%from), faults)
+      return
+    end if
+    call table%add_item(row, item)
+  end subroutine read_range
 
-    !> The step of a range: 1 towards its end, or as `BY` behind it says; `slot` is then that of the step.
-    subroutine read_step(slot, item)
-      integer, intent(inout) :: slot
-      type(list_item), intent(inout) :: item
-      type(field_value) :: value
-      integer :: length, most
+  !> The step of a range: 1 towards its end, or as `BY` behind it says; `slot` is then that of the step.
+  subroutine read_step(card, row, slot, item, table, faults)
+    type(card_fields), intent(in) :: card
+    integer, intent(in) :: row
+    integer, intent(inout) :: slot
+    type(list_item), intent(inout) :: item
+    type(card_table), intent(in) :: table
+    type(diagnostics), intent(inout) :: faults
+    type(field_value) :: value
+    integer :: length, most
 
-      length = item%to - item%from
-      item%step = merge(1, -1, length >= 0)
-      if (.not. is_word(card, slot + 1, 'BY')) return
-      slot = slot + 2
-      most = item%step*max(1, abs(length))
-      call read_slot(card, table, row, slot, &
-                     field_entry(kind=kind_integer, lowest=real(min(item%step, most), wp), &
-          highest=real(max(item%step, most), wp)), value, faults)
-      if (value%outcome /= scan_sound) return
-      if (mod(length, nint(value%number)) == 0) then
-        item%step = nint(value%number)
-      else
-        call refuse(card, table, row, slot, &
-                    'does not lead from '//text_of(item%from)//' to '//text_of(item%to), &
-                    'a step that divides '//text_of(length), faults)
-      end if
-    end subroutine read_step
-  end subroutine read_ids
+    length = item%to - item%from
+    item%step = merge(1, -1, length >= 0)
+    if (.not. is_word(card, slot + 1, 'BY')) return
+    slot = slot + 2
+    most = item%step*max(1, abs(length))
+    call read_slot(card, table, row, slot, &
+                   field_entry(kind=kind_integer, lowest=real(min(item%step, most), wp), &
+        highest=real(max(item%step, most), wp)), value, faults)
+    if (value%outcome /= scan_sound) return
+    if (mod(length, nint(value%number)) == 0) then
+      item%step = nint(value%number)
+    else
+      call refuse(card, table, row, slot, &
+                  'does not lead from '//text_of(item%from)//' to '//text_of(item%to), &
+                  'a step that divides '//text_of(length), faults)
+    end if
+  end subroutine read_step
 
   !> Records, one at least. A fault in one of them ends the list: what follows it would be taken for the
   !! wrong field.
@@ -264,18 +268,18 @@ contains
     integer, intent(in) :: row
     type(card_table), intent(inout) :: table
     type(diagnostics), intent(inout) :: faults
-    integer :: slot
+    integer :: slot, first, k, record
     type(list_item) :: item
-    integer :: first, k, record
-    logical :: sound
+    type(field_value) :: value
 
     record = 1
     first = table%entry%list_slot
-    do while (.not. at_end(first))
+    do while (.not. at_end(card, table, first))
       item%place = card%place(first)
       do k = 1, size(table%entry%record)
-        call read_part(first + k - 1, table%entry%record(k), item%number(k), sound)
-        if (.not. sound) return
+        call read_part(card, table, row, first + k - 1, table%entry%record(k), value, faults)
+        item%number(k) = value%number
+        if (value%outcome /= scan_sound) return
       end do
       call table%add_item(row, item)
       record = record + 1
@@ -292,44 +296,42 @@ contains
                               text_of(number_of(slot))//' must be blank', &
                               'blank: '//table%entry%end_word//' ends the card')
     end do
-
-  contains
-
-    !> Does no record begin at a slot?
-    logical function at_end(slot)
-      integer, intent(in) :: slot
-      integer :: k
-
-      if (table%entry%end_word /= '') then
-        at_end = is_word(card, slot, table%entry%end_word)
-      else
-        at_end = slot > table%entry%list_slot .and. .not. any([(card%filled(k), k=slot, card%count)])
-      end if
-    end function at_end
-
-    !> Read a field of a record.
-    subroutine read_part(slot, entry, number, sound)
-      integer, intent(in) :: slot
-      type(field_entry), intent(in) :: entry   !! what it may hold
-      real(wp), intent(out) :: number
-      logical, intent(out) :: sound            !! it could be read
-      character(len=:), allocatable :: remedy
-      type(field_value) :: value
-
-      number = entry%default
-      sound = card%filled(slot) .or. .not. entry%required
-      if (card%filled(slot)) then
-        call read_slot(card, table, row, slot, entry, value, faults)
-        number = value%number
-        sound = value%outcome == scan_sound
-      else if (entry%required) then
-        remedy = entry%allowed()
-        if (table%entry%end_word /= '') &
-          remedy = 'a real, or '//table%entry%end_word//' behind the last point'
-        call refuse(card, table, row, slot, 'is blank', remedy, faults)
-      end if
-    end subroutine read_part
   end subroutine read_records
+
+  !> Does no record begin at a slot?
+  logical function at_end(card, table, slot)
+    type(card_fields), intent(in) :: card
+    type(card_table), intent(in) :: table
+    integer, intent(in) :: slot
+    integer :: k
+
+    if (table%entry%end_word /= '') then
+      at_end = is_word(card, slot, table%entry%end_word)
+    else
+      at_end = slot > table%entry%list_slot .and. .not. any([(card%filled(k), k=slot, card%count)])
+    end if
+  end function at_end
+
+  !> Read a field of a record. A blank one has its default, if there is one.
+  subroutine read_part(card, table, row, slot, entry, value, faults)
+    type(card_fields), intent(in) :: card
+    type(card_table), intent(in) :: table
+    integer, intent(in) :: row, slot
+    type(field_entry), intent(in) :: entry   !! what it may hold
+    type(field_value), intent(out) :: value
+    type(diagnostics), intent(inout) :: faults
+    character(len=:), allocatable :: remedy
+
+    value%number = entry%default
+    value%outcome = merge(scan_malformed, scan_sound, entry%required)
+    if (card%filled(slot)) then
+      call read_slot(card, table, row, slot, entry, value, faults)
+    else if (entry%required) then
+      remedy = entry%allowed()
+      if (table%entry%end_word /= '') remedy = 'a real, or '//table%entry%end_word//' behind the last point'
+      call refuse(card, table, row, slot, 'is blank', remedy, faults)
+    end if
+  end subroutine read_part
 
   !> Say why a value cannot be taken, and which would be right.
   subroutine explain(entry, value, text, what, remedy)

@@ -212,6 +212,7 @@ contains
   logical function says_all(parts, faults)
     type(statement), intent(in) :: parts
     type(diagnostics), intent(inout) :: faults
+
     says_all = upper(parts%value) == 'ALL'
     if (.not. says_all .and. upper(parts%value) /= 'NONE') &
       call refuse(parts, 'a word', ' known here', 'ALL or NONE', faults)

@@ -163,9 +163,8 @@ contains
 
   !> The terms of a freedom, by what they follow.
   subroutine put_terms(first, component, node, weight, row, model, last)
-    integer, intent(in) :: first(:), component(:), node(:)
+    integer, intent(in) :: first(:), component(:), node(:), row
     real(wp), intent(in) :: weight(:)
-    integer, intent(in) :: row
     type(model_type), intent(inout) :: model
     integer, intent(inout) :: last
     integer :: i, j
@@ -201,8 +200,7 @@ contains
 
   !> Room for so many terms, behind those that there are.
   subroutine make_room(last, terms, model)
-    integer, intent(in) :: last
-    integer, intent(in) :: terms
+    integer, intent(in) :: last, terms
     type(model_type), intent(inout) :: model
     integer :: new_component(terms), new_node(terms)
     real(wp) :: new_weight(terms)

@@ -161,6 +161,7 @@ contains
   subroutine list_iterations(listing, run)
     type(table_type), intent(inout) :: listing
     type(run_results), intent(in) :: run
+
     call put_table(run, 'history', listing)
     call listing%line('')
     if (run%answer%load_steps > run%model%controls%load_steps) &
@@ -216,6 +217,7 @@ contains
   subroutine list_scene_found(listing, run)
     type(table_type), intent(inout) :: listing
     type(run_results), intent(in) :: run
+
     associate (scene => run%certificate%scene)
       call list_place('bodies in each other, of what is allowed', scene%inside)
       if (scene%deepest%ratio >= little .and. scene%deepest%depth > deeper*scene%inside%depth) &
@@ -249,6 +251,7 @@ contains
     type(table_type), intent(inout) :: listing
     type(run_results), intent(in) :: run
     type(figure_type), intent(in) :: figures(:)
+
     call list_figures(listing, figures, [character(len=21) :: 'contact_amplification', 'mesh_error_'])
     if (size(run%accuracy%worst) > 0) &
       call say(listing, 'refine first: element '//joined(run%model%element_id(run%accuracy%worst), ' ')// &
@@ -277,6 +280,7 @@ contains
   subroutine list_doubtful_elements(listing, run)
     type(table_type), intent(inout) :: listing
     type(run_results), intent(in) :: run
+
     if (run%answer%locking%elements > 0) then
       call list_figure(listing, 'three-node elements of constant volume', &
                        text_of(run%answer%locking%elements), '')

@@ -47,25 +47,25 @@ contains
     plan%text = ''
     if (present(of)) call plan%heading('PLAN  ('//of//')')
     if (.not. present(of)) call plan%heading('PLAN')
-    call say(plural(scene%model%nodes, 'node')//', '//plural(scene%model%elements, 'element')//', '// &
+    call say(plan, plural(scene%model%nodes, 'node')//', '//plural(scene%model%elements, 'element')//', '// &
              plural(scene%model%pairs, 'pair')//'; bodies: '//text_of(scene%model%bodies))
     if (iteration%from_first_pivot) &
-      call say('ORIGINAL: as the program of about 1980, each contact from its first pivot on')
-    call say_iteration()
-    call say_rule()
+      call say(plan, 'ORIGINAL: as the program of about 1980, each contact from its first pivot on')
+    call say_iteration(plan, scene, iteration)
+    call say_rule(plan, scene, iteration)
     do k = 1, min(most, size(scene%model%line_contact))
-      call say_contact(scene%model%line_contact(k))
+      call say_contact(plan, scene, scene%model%line_contact(k))
     end do
     call say_further(size(scene%model%line_contact), 'further contact', ' of lines')
     do k = 1, min(most, scene%motions%count)
-      call say('free motion: '//motion_name(scene, k))
+      call say(plan, 'free motion: '//motion_name(scene, k))
     end do
     call say_further(scene%motions%count, 'further free motion', '')
     call say_factors()
     if (scene%model%controls%accuracy > 0.0_wp) call say_choices()
     call say_bodies()
     call plan%line('')
-    call say('memory '//megabytes(scene%expected%peak(scene%plan_cases))// &
+    call say(plan, 'memory '//megabytes(scene%expected%peak(scene%plan_cases))// &
              when(iteration%joined, ' (up to '//megabytes(scene%expected%apart_bytes)// &
                   ' should bodies have to be solved apart)')// &
              ', operations '//short_real(scene%expected%operations)//when(iteration%yields, ' a solve'))
@@ -73,102 +73,13 @@ contains
 
   contains
 
-    !> Add a line, two blanks from the margin.
-    subroutine say(text)
-      character(len=*), intent(in) :: text
-
-      call plan%line('  '//text)
-    end subroutine say
-
     !> How many are not told of one by one.
     subroutine say_further(count, noun, behind)
       integer, intent(in) :: count
       character(len=*), intent(in) :: noun, behind
 
-      if (count > most) call say('and '//plural(count - most, noun)//behind)
+      if (count > most) call say(plan, 'and '//plural(count - most, noun)//behind)
     end subroutine say_further
-
-    !> Whether the scene can yield, and how that is iterated.
-    subroutine say_iteration()
-      if (.not. iteration%yields) then
-        call say('elastic material only: one solve, no iteration')
-        return
-      end if
-      call say(when(scene%model%controls%flow_theory, 'flow', 'total')// &
-               ' theory of plasticity; bodies that can yield: '// &
-               text_of(count(yielding_bodies(scene%model))))
-      call say('iteration '//trim(method_name(iteration%method))//': '//method_text(iteration%method))
-      if (iteration%chosen_here) call say('  chosen here (AUTO): '// &
-        when(iteration%method == method_newton, 'it needs the fewest factorizations', &
-             'the method of the paper, as MUP PAPER has no tangent for NEWTON'))
-      call say('  until no displacement changes, or is estimated to be off, by more than '// &
-               short_real(iteration%tolerance)//' of the largest,')
-      call say('  and no stress is off its curve by more than '//short_real(iteration%off_curve)// &
-               ' of the stress there; at most '//plural(scene%model%controls%most_iterations, 'iteration'))
-      if (iteration%load_steps > 1) &
-        call say(plural(iteration%load_steps, 'load step')//when(scene%model%controls%flow_theory, &
-          ', each from the plastic strains of the one before', '; elastic unloading is not modelled'))
-      if (scene%model%controls%paper_ratio) call say('MUP PAPER: Poisson''s ratio in the equivalent '// &
-        'strain by formula (2-4): stresses up to (1 - 2 nu)/3 below the curve')
-    end subroutine say_iteration
-
-    !> How the pairs in contact are found.
-    subroutine say_rule()
-      if (scene%model%pairs == 0) then
-        call say('no pairs: no flexibility, no simplex')
-      else if (iteration%joined) then
-        call say('contact by joined bodies, one system below, without their flexibility (JOINED)')
-        if (iteration%rule_chosen_here) call say('  chosen here (AUTO): faster where the '// &
-          'flexibility takes more than '//short_real(many_of(scene%model))//' operations a node')
-      else if (.not. iteration%by_blocks) then
-        call say('contact by the simplex with contact entry rule (CONRY)')
-      else
-        call say('contact by block pivoting of the contacts (BLOCK)')
-        if (iteration%rule_chosen_here) &
-          call say('  chosen here (AUTO): the faster rule from '//text_of(many_pairs)//' pairs on')
-      end if
-      if (scene%model%controls%rule == rule_joined .and. .not. (iteration%joined .or. scene%apart)) &
-        call say('  not JOINED: '//when(size(scene%model%sum%first) + size(scene%model%spring) > 0, &
-          'freedoms that follow others (MPC, RBE2 that turns) or have springs are not joined', &
-          'at some pairs nothing gives way'))
-    end subroutine say_rule
-
-    !> A contact of lines.
-    subroutine say_contact(contact)
-      type(line_contact), intent(in) :: contact
-      character(len=:), allocatable :: master
-
-      master = joined(contact%master_id, ', ')
-      associate (gap => scene%model%initial_gap(contact%first:contact%last))
-        call say('BCONP '//joined(contact%bconp, ', ')//': nodes of BLSEG '// &
-                 joined(contact%slave_id, ', ')//' against sides of BLSEG '//master//': '// &
-                 plural(size(gap), 'pair')//', initial gaps '//short_real(minval(gap))//' to '// &
-                 short_real(maxval(gap))// &
-                 when(contact%nodes_left_out > 0, '; left out, since they face nothing within '// &
-                      short_real(contact%search)//': '//plural(contact%nodes_left_out, 'node')))
-      end associate
-      if (contact%last >= contact%first_of_master) &
-        call say('  of these nodes of BLSEG '//master//' that stand on sides of the former: '// &
-                 text_of(contact%last - contact%first_of_master + 1))
-      if (contact%is_wider .or. size(contact%came_near) > 0) &
-        call say('  solved anew, with nodes that came near')
-      call say_corners(contact%slave, contact%slave_id)
-      call say_corners(contact%master, contact%master_id)
-    end subroutine say_contact
-
-    !> The corners of lines: where a face ends, and nothing is smoothed.
-    subroutine say_corners(line, id)
-      class(boundary_line), intent(in) :: line
-      integer, intent(in) :: id(:)
-      logical, allocatable :: ends(:, :)
-      integer, allocatable :: node(:)
-
-      ends = line%corner .and. .not. line%mirrored
-      node = [pack(line%segment(1, :), ends(1, :)), &
-              pack(line%segment(2, :), ends(2, :) .and. line%neighbour(2, :) == 0)]
-      if (size(node) > 0) call say('  corners of BLSEG '//joined(id, ', ')//': GRID '// &
-          joined(scene%model%node_id(node), ', ', most_corners))
-    end subroutine say_corners
 
     !> How bodies are factored, where it is not in panels of their bands alone.
     subroutine say_factors()
@@ -176,9 +87,9 @@ contains
 
       fronts = count(scene%numbering%body%solver == solver_frontal)
       if (fronts > 0 .and. .not. iteration%joined) then
-        call say('bodies factored in nested fronts (FRONTAL): '//text_of(fronts))
+        call say(plan, 'bodies factored in nested fronts (FRONTAL): '//text_of(fronts))
         if (scene%model%controls%solver == solver_auto) &
-          call say('  chosen here (AUTO): faster where a band (BAND) takes more than '// &
+          call say(plan, '  chosen here (AUTO): faster where a band (BAND) takes more than '// &
                    short_real(many_operations)//' operations, the flexibility by it '// &
                    short_real(many_of_flexibility))
       end if
@@ -193,7 +104,7 @@ contains
                when(iteration%yields .and. iteration%chosen_here, &
                     ', METHOD '//trim(method_name(iteration%method)))
       if (len(chosen) == 0) chosen = ', nothing: no iteration, or the deck sets TOL and METHOD'
-      call say('ACCURACY '//short_real(scene%model%controls%accuracy)//' chooses '//chosen(3:))
+      call say(plan, 'ACCURACY '//short_real(scene%model%controls%accuracy)//' chooses '//chosen(3:))
     end subroutine say_choices
 
     !> A row a body: what its matrix is like, how often that is factored, and how its flexibility follows from
@@ -220,6 +131,108 @@ contains
       call say_further(size(scene%numbering%body), 'further one', '')
     end subroutine say_bodies
   end function plan_text
+
+  !> Add a line, two blanks from the margin.
+  subroutine say(plan, text)
+    type(table_type), intent(inout) :: plan
+    character(len=*), intent(in) :: text
+
+    call plan%line('  '//text)
+  end subroutine say
+
+  !> Whether the scene can yield, and how that is iterated.
+  subroutine say_iteration(plan, scene, iteration)
+    type(table_type), intent(inout) :: plan
+    type(planned_scene), intent(in) :: scene
+    type(iteration_plan), intent(in) :: iteration
+
+    if (.not. iteration%yields) then
+      call say(plan, 'elastic material only: one solve, no iteration')
+      return
+    end if
+    call say(plan, when(scene%model%controls%flow_theory, 'flow', 'total')// &
+             ' theory of plasticity; bodies that can yield: '// &
+             text_of(count(yielding_bodies(scene%model))))
+    call say(plan, 'iteration '//trim(method_name(iteration%method))//': '//method_text(iteration%method))
+    if (iteration%chosen_here) call say(plan, '  chosen here (AUTO): '// &
+      when(iteration%method == method_newton, 'it needs the fewest factorizations', &
+           'the method of the paper, as MUP PAPER has no tangent for NEWTON'))
+    call say(plan, '  until no displacement changes, or is estimated to be off, by more than '// &
+             short_real(iteration%tolerance)//' of the largest,')
+    call say(plan, '  and no stress is off its curve by more than '//short_real(iteration%off_curve)// &
+             ' of the stress there; at most '//plural(scene%model%controls%most_iterations, 'iteration'))
+    if (iteration%load_steps > 1) &
+      call say(plan, plural(iteration%load_steps, 'load step')//when(scene%model%controls%flow_theory, &
+        ', each from the plastic strains of the one before', '; elastic unloading is not modelled'))
+    if (scene%model%controls%paper_ratio) call say(plan, 'MUP PAPER: Poisson''s ratio in the equivalent '// &
+      'strain by formula (2-4): stresses up to (1 - 2 nu)/3 below the curve')
+  end subroutine say_iteration
+
+  !> How the pairs in contact are found.
+  subroutine say_rule(plan, scene, iteration)
+    type(table_type), intent(inout) :: plan
+    type(planned_scene), intent(in) :: scene
+    type(iteration_plan), intent(in) :: iteration
+
+    if (scene%model%pairs == 0) then
+      call say(plan, 'no pairs: no flexibility, no simplex')
+    else if (iteration%joined) then
+      call say(plan, 'contact by joined bodies, one system below, without their flexibility (JOINED)')
+      if (iteration%rule_chosen_here) call say(plan, '  chosen here (AUTO): faster where the '// &
+        'flexibility takes more than '//short_real(many_of(scene%model))//' operations a node')
+    else if (.not. iteration%by_blocks) then
+      call say(plan, 'contact by the simplex with contact entry rule (CONRY)')
+    else
+      call say(plan, 'contact by block pivoting of the contacts (BLOCK)')
+      if (iteration%rule_chosen_here) &
+        call say(plan, '  chosen here (AUTO): the faster rule from '//text_of(many_pairs)//' pairs on')
+    end if
+    if (scene%model%controls%rule == rule_joined .and. .not. (iteration%joined .or. scene%apart)) &
+      call say(plan, '  not JOINED: '//when(size(scene%model%sum%first) + size(scene%model%spring) > 0, &
+        'freedoms that follow others (MPC, RBE2 that turns) or have springs are not joined', &
+        'at some pairs nothing gives way'))
+  end subroutine say_rule
+
+  !> A contact of lines.
+  subroutine say_contact(plan, scene, contact)
+    type(table_type), intent(inout) :: plan
+    type(planned_scene), intent(in) :: scene
+    type(line_contact), intent(in) :: contact
+    character(len=:), allocatable :: master
+
+    master = joined(contact%master_id, ', ')
+    associate (gap => scene%model%initial_gap(contact%first:contact%last))
+      call say(plan, 'BCONP '//joined(contact%bconp, ', ')//': nodes of BLSEG '// &
+               joined(contact%slave_id, ', ')//' against sides of BLSEG '//master//': '// &
+               plural(size(gap), 'pair')//', initial gaps '//short_real(minval(gap))//' to '// &
+               short_real(maxval(gap))// &
+               when(contact%nodes_left_out > 0, '; left out, since they face nothing within '// &
+                    short_real(contact%search)//': '//plural(contact%nodes_left_out, 'node')))
+    end associate
+    if (contact%last >= contact%first_of_master) &
+      call say(plan, '  of these nodes of BLSEG '//master//' that stand on sides of the former: '// &
+               text_of(contact%last - contact%first_of_master + 1))
+    if (contact%is_wider .or. size(contact%came_near) > 0) &
+      call say(plan, '  solved anew, with nodes that came near')
+    call say_corners(contact%slave, contact%slave_id)
+    call say_corners(contact%master, contact%master_id)
+
+  contains
+
+    !> The corners of lines: where a face ends, and nothing is smoothed.
+    subroutine say_corners(line, id)
+      class(boundary_line), intent(in) :: line
+      integer, intent(in) :: id(:)
+      logical, allocatable :: ends(:, :)
+      integer, allocatable :: node(:)
+
+      ends = line%corner .and. .not. line%mirrored
+      node = [pack(line%segment(1, :), ends(1, :)), &
+              pack(line%segment(2, :), ends(2, :) .and. line%neighbour(2, :) == 0)]
+      if (size(node) > 0) call say(plan, '  corners of BLSEG '//joined(id, ', ')//': GRID '// &
+          joined(scene%model%node_id(node), ', ', most_corners))
+    end subroutine say_corners
+  end subroutine say_contact
 
   !> Has a body anything that can yield? [bodies]
   pure function yielding_bodies(model) result(yields)

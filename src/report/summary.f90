@@ -37,7 +37,7 @@ module epcont_report_summary
     type(figure_type), allocatable :: figure(:)   !! and room for more
     integer :: count = 0
   contains
-    procedure, private :: put, put_word, put_error, append
+    procedure, private :: put, list_as, put_word, put_error, append
   end type figure_list
 
 contains
@@ -75,31 +75,30 @@ contains
         'largest pressure', reason_of(limit_of_pressure(run)))
     do k = 1, run%motions%count
       call figures%put('approach_'//motion_key(run, k), motion_unit(run, k), number, &
-                       run%answer%contact%approach(k), &
-               'approach: '//motion_name(run, k), &
-               when(run%answer%contact%motion_free(k), newline// &
-                    '    nothing resists or drives this motion: its value is a choice'), &
-               listed_number(number, run%answer%contact%approach(k), &
-                             merge(0.0_wp, farthest, run%motions%component(k) == angle)))
+                       run%answer%contact%approach(k), 'approach: '//motion_name(run, k), &
+                       when(run%answer%contact%motion_free(k), newline// &
+                            '    nothing resists or drives this motion: its value is a choice'))
+      call figures%list_as(listed_number(number, run%answer%contact%approach(k), &
+                                         merge(0.0_wp, farthest, run%motions%component(k) == angle)))
     end do
     call put_platens(run, figures)
     do k = 1, size(run%model%spring)
       id = text_of(run%model%spring(k)%id)
       call figures%put('spring_'//id, force, number, run%model%spring(k)%stiffness* &
-               spring_stretch(run%model, k, run%answer%displacement), 'pull of spring '//id)
+                       spring_stretch(run%model, k, run%answer%displacement), 'pull of spring '//id)
     end do
     call figures%put('total_contact_force', force, number, sum(run%answer%contact%force), &
-             when(run%model%pairs > 0, 'total contact force'))
+                     when(run%model%pairs > 0, 'total contact force'))
     call figures%put_word('pairs_in_contact', text_of(count(run%answer%contact%touching)), &
-                  when(run%model%pairs > 0, 'pairs in contact'))
+                          when(run%model%pairs > 0, 'pairs in contact'))
     call figures%put_word('plastic_elements', text_of(count(run%answer%plastic)), &
-                  when(any(run%answer%plastic), 'elements beyond the yield point'))
+                          when(any(run%answer%plastic), 'elements beyond the yield point'))
     call figures%put_word('iterations', text_of(size(run%answer%history)), '')
     call figures%put_word('factorizations', text_of(run%answer%factorizations), '')
     call figures%put_word('pivots', text_of(sum(run%answer%history%pivots)), '')
     call put_largest_stress(run, figures, first_largest(run%answer%largest_stress))
     call figures%put('max_displacement', length, number, maxval(norm2(run%answer%displacement, dim=1)), &
-             'largest displacement')
+                     'largest displacement')
     if (allocated(run%model%free_strain)) call put_temperatures(run, figures)
   end subroutine put_answer
 
@@ -152,7 +151,7 @@ contains
     id = text_of(run%model%element_id(element))
     place = place_of_point(run%model, run%answer%largest_at(element))
     call figures%put('max_equivalent_stress', stress, number, run%answer%largest_stress(element), &
-             'largest equivalent stress', '   in element '//id//' at '//point_name(place))
+                     'largest equivalent stress', '   in element '//id//' at '//point_name(place))
     call figures%put_word('max_equivalent_stress_element', id, '')
     call figures%put('max_equivalent_stress_x', length, number, place(1))
     call figures%put('max_equivalent_stress_y', length, number, place(2))
@@ -162,23 +161,24 @@ contains
   subroutine put_certificate(run, figures)
     type(run_results), intent(in) :: run
     type(figure_list), intent(inout) :: figures
+
     associate (c => run%certificate)
       call figures%put('equilibrium_residual', none, rounding, c%equilibrium, 'equilibrium residual')
       call figures%put('smallest_force', force, number, c%smallest_force, &
-                       'most negative force, of the largest', &
-               listed=listed_number(rounding, max(0.0_wp, -c%smallest_force)/c%force_scale, 0.0_wp))
+                       'most negative force, of the largest')
+      call figures%list_as(listed_number(rounding, max(0.0_wp, -c%smallest_force)/c%force_scale, 0.0_wp))
       call figures%put('smallest_gap', length, number, c%smallest_gap, &
-                       'most negative gap, of the largest length', &
-               listed=listed_number(rounding, c%overlap/c%length_scale, 0.0_wp))
+                       'most negative gap, of the largest length')
+      call figures%list_as(listed_number(rounding, c%overlap/c%length_scale, 0.0_wp))
       call figures%put('largest_force_gap_product', 'force*length', number, c%force_gap, &
-               'largest force times gap', &
-               listed=listed_number(rounding, c%force_gap/c%force_scale/c%length_scale, 0.0_wp))
+                       'largest force times gap')
+      call figures%list_as(listed_number(rounding, c%force_gap/c%force_scale/c%length_scale, 0.0_wp))
       call figures%put('stress_off_curve', none, rounding, c%off_curve, 'stress off the curve')
       call figures%put('curve_tolerance', none, size_of, c%curve_tolerance, &
-               when(c%curve_tolerance > valid_to, 'of which the iteration may leave'))
+                       when(c%curve_tolerance > valid_to, 'of which the iteration may leave'))
       call figures%put('stress_off_curve_limit', none, size_of, c%off_curve_limit, &
-               when(c%off_curve > c%curve_tolerance .and. c%off_curve <= c%off_curve_limit, &
-                    'and with the rounding of displacements'))
+                       when(c%off_curve > c%curve_tolerance .and. c%off_curve <= c%off_curve_limit, &
+                            'and with the rounding of displacements'))
       call figures%put('energy_balance', none, rounding, c%energy, 'energy balance')
       if (.not. c%scene%looked_through) return
       call put_places(figures, 'penetration', c%scene%deepest, c%scene%inside)
@@ -209,10 +209,10 @@ contains
     call figures%put('condition', none, size_of, run%answer%condition, 'condition of the stiffness (1-norm)')
     call figures%put('load_factor', none, number, run%answer%load_factor)
     call figures%put('iteration_error_displacement', none, rounding, run%answer%history(last)%error, &
-             when(size(run%answer%history) > 1, 'iteration error, of the largest displacement'))
+                     when(size(run%answer%history) > 1, 'iteration error, of the largest displacement'))
     call figures%put('iteration_error_force', none, rounding, run%answer%history(last)%force_error, &
-             when(size(run%answer%history) > 1 .and. run%model%pairs > 0, &
-                  'iteration error, of the largest force'))
+                     when(size(run%answer%history) > 1 .and. run%model%pairs > 0, &
+                          'iteration error, of the largest force'))
     if (run%model%controls%paper_ratio .and. run%iteration%yields) &
       call figures%put('stress_below_curve', none, part, run%answer%shortfall)
   end subroutine put_iteration
@@ -222,18 +222,19 @@ contains
     type(run_results), intent(in) :: run
     type(figure_list), intent(inout) :: figures
     integer :: k
+
     call figures%put('mesh_error_energy_norm', none, part, run%accuracy%energy_norm, &
-             'mesh: error in the energy norm')
+                     'mesh: error in the energy norm')
     if (run%model%pairs > 0) then
       call figures%put_word('max_pressure_is', limit_of_pressure(run), '')
       call figures%put('mesh_error_max_pressure', stress, known, run%accuracy%max_pressure)
     end if
     do k = 1, size(run%accuracy%zone)
       call figures%put_error('pressure_zone_'//text_of(k), stress, 'largest pressure of zone '//text_of(k), &
-                     run%accuracy%zone(k)%pressure, run%answer%zones(k)%max_pressure, &
-                     limit_of_pressure(run, k))
+                             run%accuracy%zone(k)%pressure, run%answer%zones(k)%max_pressure, &
+                             limit_of_pressure(run, k))
       call figures%put_error('half_width_zone_'//text_of(k), length, 'half-width of zone '//text_of(k), &
-                     run%accuracy%zone(k)%half_width, run%answer%zones(k)%half_width, '')
+                             run%accuracy%zone(k)%half_width, run%answer%zones(k)%half_width, '')
     end do
     do k = 1, run%motions%count
       call figures%put_error('approach_'//motion_key(run, k), motion_unit(run, k), &
@@ -250,9 +251,10 @@ contains
   subroutine put_sensitivity(run, figures)
     type(run_results), intent(in) :: run
     type(figure_list), intent(inout) :: figures
+
     if (.not. run%accuracy%sensitivity%known) return
     call figures%put('contact_amplification', none, factor, run%accuracy%sensitivity%amplification, &
-             'contact forces amplify stiffness errors', '   times at most')
+                     'contact forces amplify stiffness errors', '   times at most')
     call figures%put('rounding_error_force', none, known, run%accuracy%sensitivity%rounding)
     call figures%put_word('weak_pairs', text_of(count(run%accuracy%weak)), '')
   end subroutine put_sensitivity
@@ -276,22 +278,29 @@ contains
     key = text_of(run%model%node_id(run%motions%node(k)))//'_'//direction_of(run%motions, k)
   end function motion_key
 
-  !> Add a number; it has that many digits in the listing, or stands there as `listed`.
-  subroutine put(self, key, unit, kind, value, name, note, listed)
+  !> Add a number; it has that many digits in the listing.
+  subroutine put(self, key, unit, kind, value, name, note)
     class(figure_list), intent(inout) :: self
     character(len=*), intent(in) :: key, unit
     integer, intent(in) :: kind
     real(wp), intent(in) :: value
-    character(len=*), intent(in), optional :: name, note, listed   !! in the listing
+    character(len=*), intent(in), optional :: name, note   !! in the listing
     type(figure_type) :: figure
 
     figure = figure_type(key, full_number(kind, value), unit)
     if (present(name)) figure%name = name
     figure%listed = listed_number(kind, value, 0.0_wp)
-    if (present(listed)) figure%listed = listed
     if (present(note)) figure%note = note
     call self%append(figure)
   end subroutine put
+
+  !> Write the number that was added last in this way in the listing.
+  subroutine list_as(self, listed)
+    class(figure_list), intent(inout) :: self
+    character(len=*), intent(in) :: listed
+
+    self%figure(self%count)%listed = listed
+  end subroutine list_as
 
   !> Add a word.
   subroutine put_word(self, key, word, name)
@@ -327,8 +336,8 @@ contains
 
     reason = reason_of(limit)
     call self%put('mesh_error_'//key, unit, known, error, &
-             when(reason /= '' .or. error >= 0.0_wp, 'mesh: '//name), &
-             when(reason == '', '   '//percent(error, value)), &
-             when(reason == '', listed_number(estimate, error, value), reason))
+                  when(reason /= '' .or. error >= 0.0_wp, 'mesh: '//name), &
+                  when(reason == '', '   '//percent(error, value)))
+    call self%list_as(when(reason == '', listed_number(estimate, error, value), reason))
   end subroutine put_error
 end module epcont_report_summary

@@ -283,6 +283,7 @@ contains
     type(run_results), intent(in) :: run
     type(table_type), intent(inout) :: table
     integer :: k
+
     call table%begin('STRESSES  (means over the element; largest: von Mises at the integration point '// &
                      'nearest to that GRID of it)', element_columns, &
                      [0.0_wp, 0.0_wp, spread(maxval(abs(run%answer%stress)), 1, 6), 0.0_wp, 0.0_wp, &
