@@ -15,7 +15,7 @@ module epcont_solution
   use epcont_model_model, only: line_contact
   use epcont_plan_forecast, only: check_memory
   use epcont_plan_iteration_plan, only: iteration_plan
-  use epcont_plan_planned_scene, only: planned_scene
+  use epcont_plan_planned_model, only: planned_model
   use epcont_plan_side_by_side, only: plan_threads
   use epcont_plasticity_load_path, only: follow_loads
   use epcont_plasticity_law_of_state, only: factor_law, linearise
@@ -57,7 +57,7 @@ module epcont_solution
   !> A scene with its answer, and what that is worth. Where a body's stiffness could not be factored
   !! (`answer%failed_body`), or without contact equilibrium (`answer%contact%state`), there are no
   !! displacements.
-  type, extends(planned_scene) :: solution_type
+  type, extends(planned_model) :: solution_type
     type(answer_type) :: answer
     type(certificate_type) :: certificate
     type(accuracy_type) :: accuracy
@@ -65,7 +65,7 @@ module epcont_solution
     type(kept_factors) :: kept           !! from load case to load case
     logical :: replanned = .false.       !! the last solve has changed the plan, also for other load cases
     !> The scene before nodes that came near in this load case got pairs; not allocated if there were none
-    type(planned_scene), allocatable :: as_given
+    type(planned_model), allocatable :: as_given
   contains
     procedure :: solve
     procedure :: return_to_given
@@ -90,7 +90,7 @@ contains
       if (allocated(error)) return
       self%iteration%threads = plan_threads(self%numbering, self%expected%bytes, granted_threads())
       call watch%expect(self%expected%operations)
-      call analyse(self%planned_scene, self%kept, self%answer, self%certificate, self%accuracy, watch, &
+      call analyse(self%planned_model, self%kept, self%answer, self%certificate, self%accuracy, watch, &
                    failed)
       if (failed) then
         self%apart = .true.
@@ -100,7 +100,7 @@ contains
         call find_nodes_that_came_near(self%model, self%answer%displacement, self%answer%contact%touching, &
                                        contacts, near)
         if (.not. near) exit
-        if (.not. allocated(self%as_given)) self%as_given = self%planned_scene
+        if (.not. allocated(self%as_given)) self%as_given = self%planned_model
         call pair_nodes_that_came_near(self%model, contacts, near)
         if (.not. near) exit
       end if
@@ -118,7 +118,7 @@ contains
     class(solution_type), intent(inout) :: self
 
     if (.not. allocated(self%as_given)) return
-    self%planned_scene = self%as_given
+    self%planned_model = self%as_given
     deallocate (self%as_given)
     call self%kept%forget()
   end subroutine return_to_given
@@ -137,7 +137,7 @@ contains
 
   !> Solve the scene as it is.
   subroutine analyse(scene, kept, answer, certificate, accuracy, watch, failed)
-    type(planned_scene), intent(in) :: scene
+    type(planned_model), intent(in) :: scene
     type(kept_factors), intent(inout) :: kept
     type(answer_type), intent(out) :: answer
     type(certificate_type), intent(out) :: certificate
@@ -172,8 +172,8 @@ contains
 
       if (.not. answer%converged .or. scene%model%controls%paper_ratio .or. .not. any(answer%plastic)) return
       if (scene%iteration%method == method_newton .or. answer%history(size(answer%history))%by_tangent) return
-      call linearise(scene, tangent, answer%scene_state, kept%linear, watch)
-      call factor_law(scene, tangent, answer%scene_state, kept%linear, failed_body, watch)
+      call linearise(scene, tangent, answer%solved_state, kept%linear, watch)
+      call factor_law(scene, tangent, answer%solved_state, kept%linear, failed_body, watch)
       if (failed_body > 0) answer%condition = huge(1.0_wp)
     end subroutine use_tangent
 
@@ -191,7 +191,8 @@ contains
           found = answer
           found_certificate = certificate
         end if
-        call kept%linear%sharpen(scene, answer%load_factor, answer%scene_state, answer%last_correction, watch)
+        call kept%linear%sharpen(scene, answer%load_factor, answer%solved_state, answer%last_correction, &
+                                 watch)
         call evaluate()
       end do
       ! Gaps far below a travel are rounding, and contact found from them is out of balance.

@@ -16,7 +16,7 @@ module epcont_accuracy_accuracy
   use epcont_element_kinematics, only: directions
   use epcont_linear_linear_problem, only: linear_problem
   use epcont_model_arrays, only: angle
-  use epcont_plan_planned_scene, only: planned_scene
+  use epcont_plan_planned_model, only: planned_model
   use epcont_result_answer, only: answer_type
   use epcont_result_contact_line, only: contact_line
   implicit none
@@ -59,7 +59,7 @@ contains
 
   !> What the figures of an answer are worth.
   subroutine assess(scene, linear, line, kept, answer, accuracy)
-    type(planned_scene), intent(in) :: scene       !! that was solved
+    type(planned_model), intent(in) :: scene       !! that was solved
     !> Of the last solve; the basis of its contact is taken over
     type(linear_problem), intent(inout), target :: linear
     type(contact_line), intent(in) :: line         !! of the pairs

@@ -11,7 +11,7 @@ module epcont_accuracy_body_loads
   use epcont_element_kinematics, only: directions
   use epcont_linear_linear_problem, only: linear_problem
   use epcont_model_model, only: model_type
-  use epcont_plan_planned_scene, only: planned_scene
+  use epcont_plan_planned_model, only: planned_model
   implicit none
   private
   public :: body_loads, choose_fields, contact_loads, find_displacements, load_batch, new_body_loads
@@ -156,7 +156,7 @@ contains
 
   !> Displacements of nodes of a body under the fields of a batch.
   subroutine find_displacements(scene, linear, b, pair, batch, node, u)
-    type(planned_scene), intent(in) :: scene     !! that was solved
+    type(planned_model), intent(in) :: scene     !! that was solved
     type(linear_problem), intent(inout) :: linear   !! of the last solve
     integer, intent(in) :: b                     !! the body
     integer, intent(in) :: pair(:)               !! its pairs

@@ -11,7 +11,7 @@ module epcont_accuracy_element_errors
   use epcont_element_kinematics, only: components
   use epcont_material_elasticity, only: cross_modulus
   use epcont_material_material_law, only: point_state
-  use epcont_material_scene_materials, only: scene_materials
+  use epcont_material_model_materials, only: model_materials
   use epcont_plan_forecast, only: loads_at_once
   implicit none
   private
@@ -118,7 +118,7 @@ contains
   pure subroutine find_stress(self, kind, materials, first, state)
     class(element_errors), intent(inout) :: self
     type(element_kind), intent(in) :: kind            !! of the element
-    type(scene_materials), intent(in) :: materials
+    type(model_materials), intent(in) :: materials
     integer, intent(in) :: first                      !! its first point
     type(point_state), allocatable, intent(in) :: state(:)   !! of the answer, where anything yields [points]
     type(point_state) :: after, before

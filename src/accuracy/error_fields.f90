@@ -13,8 +13,8 @@ module epcont_accuracy_error_fields
   use epcont_element_element_kind, only: most_nodes, most_points
   use epcont_element_kinematics, only: components
   use epcont_linear_linear_problem, only: linear_problem
-  use epcont_linear_scene_state, only: scene_state
-  use epcont_plan_planned_scene, only: planned_scene
+  use epcont_linear_solved_state, only: solved_state
+  use epcont_plan_planned_model, only: planned_model
   use epcont_system_threads, only: threads_over, use_one_thread_each
   implicit none
   private
@@ -52,9 +52,9 @@ contains
 
   !> Errors of the answer's strains, and what they have in common with those of unit loads.
   subroutine compare_fields(scene, linear, answer, table, unit_loads, known, field)
-    type(planned_scene), intent(in) :: scene     !! that was solved
+    type(planned_model), intent(in) :: scene     !! that was solved
     type(linear_problem), intent(inout) :: linear   !! of the last solve
-    class(scene_state), intent(in) :: answer     !! to it
+    class(solved_state), intent(in) :: answer     !! to it
     type(patch_table), intent(in) :: table       !! of its elements
     type(contact_loads), intent(in) :: unit_loads   !! contact forces under these
     type(body_fields), intent(inout) :: known(:) !! of the load case before, if the same; of these [bodies]

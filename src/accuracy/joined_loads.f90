@@ -8,7 +8,7 @@ module epcont_accuracy_joined_loads
   use epcont_flexibility_flexibility, only: terms_of_openings
   use epcont_linear_joined_springs, only: frozen_response
   use epcont_linear_linear_problem, only: linear_problem
-  use epcont_plan_planned_scene, only: planned_scene
+  use epcont_plan_planned_model, only: planned_model
   use epcont_result_answer, only: answer_type
   implicit none
   private
@@ -28,7 +28,7 @@ contains
   !! the first has led to. What the contact forces open gaps by, body by body, is taken from the deformation.
   !> Of another load case with the same contacts the loads are known: those columns alone are new.
   subroutine find_joined_loads(scene, linear, answer, unit_loads, probe, sensitivity)
-    type(planned_scene), intent(in) :: scene         !! that was solved
+    type(planned_model), intent(in) :: scene         !! that was solved
     type(linear_problem), intent(inout) :: linear    !! of the last solve
     type(answer_type), intent(in) :: answer          !! with some contact
     !> Motions and shares by which gaps close; contact forces and displacements

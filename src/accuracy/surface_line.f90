@@ -11,7 +11,7 @@ module epcont_accuracy_surface_line
   use epcont_base_tolerances, only: no_effect
   use epcont_element_kinematics, only: plane_stress
   use epcont_material_material_law, only: point_state
-  use epcont_material_scene_materials, only: scene_materials
+  use epcont_material_model_materials, only: model_materials
   use epcont_model_model, only: model_type
   use epcont_result_contact_line, only: contact_line
   implicit none
@@ -125,7 +125,7 @@ contains
   !! own; 0 where neither gives way [stress] [pairs].
   pure function smooth_pressures(model, materials, smooth) result(pressure)
     type(model_type), intent(in) :: model              !! the scene
-    type(scene_materials), intent(in) :: materials     !! of its sections
+    type(model_materials), intent(in) :: materials     !! of its sections
     real(wp), intent(in) :: smooth(:, :)               !! strains [components, places: first the nodes']
     real(wp) :: pressure(model%pairs)
     type(point_state) :: state

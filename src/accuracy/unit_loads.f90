@@ -17,7 +17,7 @@ module epcont_accuracy_unit_loads
   use epcont_element_kinematics, only: directions
   use epcont_flexibility_motion_matrix, only: dense_motions
   use epcont_linear_linear_problem, only: linear_problem
-  use epcont_plan_planned_scene, only: planned_scene
+  use epcont_plan_planned_model, only: planned_model
   use epcont_result_answer, only: answer_type
   use epcont_result_body_force, only: shares_of_pairs
   implicit none
@@ -58,7 +58,7 @@ contains
   !> Unit loads on a scene whose contact has been found. Those of the load case before are kept where it had
   !> the same contacts, and nothing yields.
   subroutine find_unit_loads(scene, linear, answer, loads, kept)
-    type(planned_scene), intent(in) :: scene     !! that was solved
+    type(planned_model), intent(in) :: scene     !! that was solved
     !> Of the last solve; the basis of its contact is taken over, and its flexibility must remain
     type(linear_problem), intent(inout), target :: linear
     type(answer_type), intent(in) :: answer      !! with some contact
@@ -164,7 +164,7 @@ contains
   !> The rigid-body modes with the largest motions, in ascending order. Of equal ones the mode with the least
   !> coordinates of its SUPORT node is taken first, so that the choice does not depend on numbers.
   pure function choose_motions(scene, extent, free) result(chosen)
-    type(planned_scene), intent(in) :: scene
+    type(planned_model), intent(in) :: scene
     real(wp), intent(in) :: extent(:)   !! largest change of a gap by each mode [length] [modes]
     logical, intent(in) :: free(:)      !! undetermined, which come last [modes]
     integer, allocatable :: chosen(:)

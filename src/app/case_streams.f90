@@ -9,7 +9,7 @@ module epcont_app_case_streams
   use epcont_base_text, only: plural
   use epcont_model_load_cases, only: put_case
   use epcont_plan_forecast, only: check_memory, forecast_type, most_memory
-  use epcont_plan_planned_scene, only: planned_scene
+  use epcont_plan_planned_model, only: planned_model
   use epcont_plasticity_observer, only: observer
   use epcont_messages_outcome, only: judge
   use epcont_report_results, only: results_type
@@ -32,7 +32,7 @@ module epcont_app_case_streams
   type :: case_stream
     integer :: from = 1, to = 0                       !! places in their pattern
     type(observer) :: watch
-    type(planned_scene), allocatable :: changed       !! by a case, before which all are solved again
+    type(planned_model), allocatable :: changed       !! by a case, before which all are solved again
     type(error_type), allocatable :: error
   end type case_stream
 
@@ -128,7 +128,7 @@ contains
         spent = spent + stream(s)%watch%spent
         if (allocated(stream(s)%error)) error = stream(s)%error
         if (.not. allocated(stream(s)%changed)) cycle
-        run%planned_scene = stream(s)%changed
+        run%planned_model = stream(s)%changed
         run%replanned = .true.
       end do
       if (threads > 1) call watch%share(spent)
@@ -148,7 +148,7 @@ contains
       else
         call solve_cases(own, self%from, self%to, watch, self%error)
       end if
-      if (own%replanned) self%changed = own%planned_scene
+      if (own%replanned) self%changed = own%planned_model
     end subroutine solve_stream
   end subroutine solve_pattern
 

@@ -12,7 +12,7 @@ module epcont_app_driver
   use epcont_deck_deck, only: deck_type, read_deck
   use epcont_deck_render, only: render, render_notes
   use epcont_model_load_cases, only: load_cases
-  use epcont_plan_planned_scene, only: planned_scene
+  use epcont_plan_planned_model, only: planned_model
   use epcont_report_file, only: file_lock, lock_files, unlock_files
   use epcont_report_results, only: remove_results, results_type
   use epcont_report_run, only: run_results
@@ -156,7 +156,7 @@ contains
 
     !> What is wrong with the scene where load cases hold other freedoms than the first, and not there too.
     subroutine check_patterns()
-      type(planned_scene) :: other
+      type(planned_model) :: other
       type(diagnostics) :: faults
       integer :: i, p
 

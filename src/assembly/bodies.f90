@@ -7,7 +7,7 @@ module epcont_assembly_bodies
   use epcont_linalg_assembled, only: sparse_rows
   use epcont_material_linear_law, only: linear_law
   use epcont_model_springs, only: spring_forces
-  use epcont_plan_planned_scene, only: planned_scene
+  use epcont_plan_planned_model, only: planned_model
   use epcont_system_threads, only: threads_over, use_one_thread_each
   implicit none
   private
@@ -55,7 +55,7 @@ contains
 
   !> Bodies with room for their factors, without a law.
   function new_bodies(scene) result(bodies)
-    type(planned_scene), intent(in) :: scene   !! with the numbers of its equations
+    type(planned_model), intent(in) :: scene   !! with the numbers of its equations
     type(factored_bodies) :: bodies
 
     bodies%operator = new_strain_operator(scene%model)
@@ -66,7 +66,7 @@ contains
   !> Factor bodies that are joined, as far as law or springs have changed.
   subroutine factor_system(self, scene, threads)
     class(factored_bodies), intent(inout) :: self
-    type(planned_scene), intent(in) :: scene   !! that they are of
+    type(planned_model), intent(in) :: scene   !! that they are of
     integer, intent(in) :: threads             !! that share the fronts
 
     !$omp parallel num_threads(threads) if (threads > 1)
@@ -84,7 +84,7 @@ contains
   !> Forces of the prescribed displacements: minus K_fp u_p on the free freedoms.
   subroutine settle(self, scene)
     class(factored_bodies), intent(inout) :: self
-    type(planned_scene), intent(in) :: scene   !! that they are of
+    type(planned_model), intent(in) :: scene   !! that they are of
     real(wp), allocatable :: prescribed(:, :)
 
     self%settlement = 0.0_wp
@@ -99,7 +99,7 @@ contains
 
   !> A part of the prescribed displacements, put in its place; nothing else is touched.
   pure subroutine prescribe(scene, load_factor, displacement)
-    type(planned_scene), intent(in) :: scene        !! that has them
+    type(planned_model), intent(in) :: scene        !! that has them
     real(wp), intent(in) :: load_factor             !! of the prescribed displacements
     real(wp), intent(inout) :: displacement(:, :)   !! [length] [directions, nodes]
     integer :: c, leader, node
@@ -120,7 +120,7 @@ contains
   !! not as stiff as it was when it was assembled first.
   subroutine estimate_condition(self, scene, condition)
     class(factored_bodies), intent(inout) :: self
-    type(planned_scene), intent(in) :: scene   !! with the numbers of its equations
+    type(planned_model), intent(in) :: scene   !! with the numbers of its equations
     real(wp), intent(out) :: condition         !! 1 where all bodies are rigid
     integer :: b
 
@@ -147,7 +147,7 @@ contains
   !! [directions, nodes].
   function displacements(self, scene, force, load_factor) result(u)
     class(factored_bodies), intent(in) :: self
-    type(planned_scene), intent(in) :: scene   !! with the numbers of its equations
+    type(planned_model), intent(in) :: scene   !! with the numbers of its equations
     real(wp), intent(in) :: force(:, :)  !! [directions, nodes]
     real(wp), intent(in) :: load_factor  !! of the prescribed displacements
     real(wp), allocatable :: u(:, :)
@@ -160,7 +160,7 @@ contains
   !> Put forces on the bodies: the half of the solve that can be done before all of them are known.
   subroutine add_forces(self, scene, force, load_factor, half)
     class(factored_bodies), intent(in) :: self
-    type(planned_scene), intent(in) :: scene     !! with the numbers of its equations
+    type(planned_model), intent(in) :: scene     !! with the numbers of its equations
     real(wp), intent(in) :: force(:, :)          !! [directions, nodes]
     real(wp), intent(in) :: load_factor          !! of the prescribed displacements, with their forces
     !> What has been put on before; not allocated: nothing [bodies]
@@ -218,7 +218,7 @@ contains
   !! [directions, nodes].
   function finish(self, scene, half, load_factor, at_contact) result(u)
     class(factored_bodies), intent(in) :: self
-    type(planned_scene), intent(in) :: scene       !! with the numbers of its equations
+    type(planned_model), intent(in) :: scene       !! with the numbers of its equations
     type(half_solved_body), intent(in) :: half(:)  !! all that has been put on [bodies]
     real(wp), intent(in) :: load_factor  !! of the prescribed displacements
     logical, intent(in) :: at_contact    !! only what gaps depend on is wanted
@@ -282,7 +282,7 @@ contains
   !! All fields are solved for at once: so the factor is read only twice.
   subroutine body_displacements(self, scene, b, loads, node, u, at_contact)
     class(factored_bodies), intent(inout) :: self
-    type(planned_scene), intent(in) :: scene       !! with the numbers of its equations
+    type(planned_model), intent(in) :: scene       !! with the numbers of its equations
     integer, intent(in) :: b                       !! the body
     type(force_fields), intent(in) :: loads        !! forces on it
     integer, intent(in) :: node(:)                 !! those that are asked for

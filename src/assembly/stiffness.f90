@@ -15,7 +15,7 @@ module epcont_assembly_stiffness
   use epcont_material_linear_law, only: linear_law
   use epcont_model_controls, only: solver_frontal
   use epcont_plan_numbering, only: most_freedoms
-  use epcont_plan_planned_scene, only: planned_scene
+  use epcont_plan_planned_model, only: planned_model
   !$ use omp_lib, only: omp_get_num_threads
   implicit none
   private
@@ -51,7 +51,7 @@ contains
   !! changed since it was factored, nothing is touched that does not depend on them.
   subroutine assemble(self, scene, operator, law, spring, b)
     class(body_stiffness), intent(inout) :: self
-    type(planned_scene), intent(in) :: scene         !! with the numbers of its equations
+    type(planned_model), intent(in) :: scene         !! with the numbers of its equations
     type(strain_operator), intent(in) :: operator    !! strains of nodal displacements
     type(linear_law), intent(in) :: law              !! stresses of strains, and where that has changed since
     type(spring_set), intent(in) :: spring           !! of joined bodies

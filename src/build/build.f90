@@ -12,7 +12,7 @@ module epcont_build_build
   use epcont_build_supports, only: build_ties, check_displacements, hold_nodes
   use epcont_build_temperatures, only: build_temperatures
   use epcont_contact_geometry_complete, only: check_controls, finish_model
-  use epcont_contact_geometry_line_contacts, only: find_contacts
+  use epcont_contact_geometry_line_contacts, only: find_line_contacts
   use epcont_deck_card_kinds, only: card_bconp, card_blseg, card_celas1, card_celas2, card_cgap, &
       card_cord2r, card_grav, card_grid, card_load, card_mat1, card_mats1, card_mpc, card_mpcadd, &
       card_nlparm, card_param, card_pelas, card_pgap, card_pshell, card_psolid, card_rbe2, card_rforce, &
@@ -77,7 +77,7 @@ contains
     where (abs(model%x) < least_cause) model%x = 0.0_wp
     call build_contacts(deck, nodes, chosen, model, faults)
     model%contact_is_off = chosen /= contact_all
-    call find_contacts(model, faults)
+    call find_line_contacts(model, faults)
     call check_once(deck, model%controls%original, faults)
     call check_controls(model, faults)
     if (model%elements == 0 .and. faults%errors == 0) &

@@ -9,7 +9,7 @@ module epcont_certificate_certificate
   use epcont_certificate_element_checks, only: checked_elements, check_elements, ratio
   use epcont_certificate_free_expansion, only: expansion_type, held_stress, part_of_held
   use epcont_certificate_mass_force, only: given_load
-  use epcont_certificate_scene, only: scene_type
+  use epcont_certificate_scene, only: overlaps_type
   use epcont_certificate_tied, only: check_springs, check_ties, gather_ties, longest_arms
   use epcont_certificate_unit_strains, only: find_slopes, largest_face, largest_of
   use epcont_element_element_kind, only: most_nodes, most_points
@@ -56,7 +56,7 @@ module epcont_certificate_certificate
     real(wp) :: off_curve_limit = valid_to  !! of a valid answer: rounding may add as much again
     logical :: balanced = .false.         !! all figures but `off_curve` are within the tolerance
     logical :: valid = .false.            !! that one too
-    type(scene_type) :: scene             !! whether bodies pass through each other, where all else is right
+    type(overlaps_type) :: scene          !! whether bodies pass through each other, where all else is right
   contains
     procedure :: figures
     procedure :: has_spoilt

@@ -5,7 +5,7 @@ module epcont_certificate_findings
   use epcont_element_kinematics, only: directions
   implicit none
   private
-  public :: overlap_place, beyond_place, scene_type, is_deeper, is_worse, rated
+  public :: overlap_place, beyond_place, overlaps_type, is_deeper, is_worse, rated
 
   !> Of places that differ by less than this part the first counts: rounding decides nothing.
   real(wp), parameter :: more = 1.0_wp + 1.0e-9_wp
@@ -34,7 +34,7 @@ module epcont_certificate_findings
     integer :: node = 0            !! 0: there is none
   end type beyond_place
 
-  type :: scene_type
+  type :: overlaps_type
     logical :: looked_through = .false.
     type(overlap_place) :: inside          !! deepest in another body, by what is allowed
     type(overlap_place) :: deepest         !! deepest in another body
@@ -52,13 +52,13 @@ module epcont_certificate_findings
     integer :: changed_side = 0            !! which one
   contains
     procedure :: sound
-  end type scene_type
+  end type overlaps_type
 
 contains
 
   !> Does no body lie in another or pass through one, and no force press where nothing is?
   pure logical function sound(self)
-    class(scene_type), intent(in) :: self
+    class(overlaps_type), intent(in) :: self
 
     sound = max(self%inside%ratio, self%apart%ratio, self%beside%ratio, self%passed%ratio) <= 1.0_wp &
             .and. self%axis%node == 0

@@ -11,7 +11,7 @@
 module epcont_certificate_scene
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: no_effect
-  use epcont_certificate_findings, only: beyond_place, is_worse, overlap_place, rated, scene_type
+  use epcont_certificate_findings, only: beyond_place, is_worse, overlap_place, rated, overlaps_type
   use epcont_certificate_meeting, only: insert, keep, meet, motion_at, new_search, &
       part_along, point_on, point_type, search_type, sides_meeting
   use epcont_certificate_way, only: look_at_ways
@@ -22,7 +22,7 @@ module epcont_certificate_scene
   use epcont_model_model, only: model_type
   implicit none
   private
-  public :: beyond_place, overlap_place, scene_type, look_through
+  public :: beyond_place, overlap_place, overlaps_type, look_through
 
   !> Sides turned [rad] or stretched by more than this are warned of.
   real(wp), parameter, public :: largest_change = 0.2_wp
@@ -43,7 +43,7 @@ contains
     type(model_type), intent(in) :: model        !! what is looked through
     real(wp), intent(in) :: displacement(:, :)   !! [length] [directions, nodes]
     real(wp), intent(in) :: force(:)             !! contact forces [pairs]
-    type(scene_type) :: scene
+    type(overlaps_type) :: scene
     type(search_type) :: search
     integer :: near   ! the side that was nearest to the point before: near to the next
     integer :: part, side

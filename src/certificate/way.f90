@@ -6,7 +6,7 @@
 !> way.
 module epcont_certificate_way
   use epcont_base_kinds, only: wp
-  use epcont_certificate_findings, only: is_worse, overlap_place, rated, scene_type
+  use epcont_certificate_findings, only: is_worse, overlap_place, rated, overlaps_type
   use epcont_certificate_meeting, only: insert, meet, point_on, point_type, search_type, &
       sides_meeting
   use epcont_element_kinematics, only: directions
@@ -35,7 +35,7 @@ contains
   !! no node goes inside.
   subroutine look_at_ways(search, scene)
     type(search_type), intent(in) :: search    !! the outlines
-    type(scene_type), intent(inout) :: scene   !! what is found is added
+    type(overlaps_type), intent(inout) :: scene   !! what is found is added
     real(wp) :: mean(directions, search%now%outline%parts)   ! displacement of each part [length]
     real(wp) :: spread_of(search%now%outline%parts)          ! what its nodes' differ by from that [length]
     logical :: straight(search%now%outline%parts)            ! it keeps a shape on its way

@@ -14,7 +14,7 @@ module epcont_contact_solver
   use epcont_contact_scaling, only: drop_motions, scale_problem, scaled_problem
   use epcont_contact_simplex, only: find_contacts
   use epcont_contact_state, only: contact_state, gaps_under, solve_set, terms_of_gaps
-  use epcont_contact_uniqueness, only: find_free_motions, find_indeterminate_forces, share_equally
+  use epcont_contact_uniqueness, only: find_undetermined_motions, find_indeterminate_forces, share_equally
   use epcont_flexibility_motion_matrix, only: dense_motions, motion_matrix
   use epcont_linalg_dense, only: cholesky_factor, cholesky_solve
   implicit none
@@ -110,7 +110,7 @@ contains
       call cut_rounding(state, terms)
       solution%approach(scaled%kept) = state%approach
       call find_touching(state, terms, solution%touching)
-      solution%motion_free = find_free_motions(motion, solution%touching, &
+      solution%motion_free = find_undetermined_motions(motion, solution%touching, &
           state%force > lost_digits*maxval([state%force, 1.0_wp]))
       if (any(solution%motion_free)) then
         call open_pairs(state, state%force <= zero)

@@ -10,7 +10,7 @@ module epcont_contact_uniqueness
   use epcont_linalg_dense, only: add_product, null_space, pivoted_cholesky
   implicit none
   private
-  public :: find_indeterminate_forces, share_equally, find_free_motions
+  public :: find_indeterminate_forces, share_equally, find_undetermined_motions
 
   !> Rounding in the Schur complement exceeds that in F_g by the condition of the pressed pairs: this is
   !! allowed for.
@@ -121,7 +121,7 @@ contains
 
   !> Motions that the pressed pairs do not hold, and that idle touching pairs do not block in both directions:
   !! they do where their forces, none of them a pull, would carry a load along the motion either way.
-  function find_free_motions(motion, touching, pressed) result(free)
+  function find_undetermined_motions(motion, touching, pressed) result(free)
     type(motion_matrix), intent(in) :: motion   !! A, largest entry of each column one [n, m]
     logical, intent(in) :: touching(:), pressed(:)   !! [n]
     logical, allocatable :: free(:)                  !! [m]
@@ -154,5 +154,5 @@ contains
         free = free .or. abs(way) > null_component*maxval(abs(way))
       end associate
     end subroutine give_way
-  end function find_free_motions
+  end function find_undetermined_motions
 end module epcont_contact_uniqueness

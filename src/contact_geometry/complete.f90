@@ -4,7 +4,7 @@
 module epcont_contact_geometry_complete
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of
-  use epcont_contact_geometry_line_contacts, only: find_contacts
+  use epcont_contact_geometry_line_contacts, only: find_line_contacts
   use epcont_contact_geometry_loose_nodes, only: warn_of_hanging_nodes, warn_of_lying_together
   use epcont_contact_geometry_pair_checks, only: check_pairs
   use epcont_element_kinematics, only: directions, plane_strain
@@ -57,7 +57,7 @@ contains
     call complete_freedoms()
     call check_axis(model, found)
     call complete_pairs(model, .false., found)
-    call find_contacts(model, found)
+    call find_line_contacts(model, found)
     call check_controls(model, found)
     if (found%errors > 0) return
     call find_travels(model)

@@ -17,7 +17,7 @@ module epcont_contact_geometry_line_contacts
   use epcont_model_model, only: line_contact, model_type
   implicit none
   private
-  public :: find_contacts
+  public :: find_line_contacts
 
   real(wp), parameter :: &
     !> Where nothing is said of it, a side is looked for within this many times the longest side of the two
@@ -32,7 +32,7 @@ contains
   !> Bodies, their outlines, and the pairs of all contacts of lines behind those that are given one by one:
   !! after elements, supports, ties and single pairs. Lines and couples are known by their nodes and lines;
   !! where there were errors before, there is no boundary to look at, and these alone are checked.
-  subroutine find_contacts(model, found)
+  subroutine find_line_contacts(model, found)
     type(model_type), intent(inout) :: model   !! the scene
     type(findings), intent(inout) :: found   !! what is wrong with it is added
     integer, allocatable :: number(:)   ! of the contact that each couple is of
@@ -134,7 +134,7 @@ contains
       end do
       call sets%numbers(number, contacts)
     end subroutine join_couples
-  end subroutine find_contacts
+  end subroutine find_line_contacts
 
   !> The contact of some couples, without its pairs.
   pure type(line_contact) function new_contact(model, couples) result(contact)

@@ -5,7 +5,7 @@ module epcont_linear_borne_loads
   use epcont_base_kinds, only: wp
   use epcont_flexibility_flexibility, only: gap_opening
   use epcont_linear_multiple, only: multiple_of
-  use epcont_plan_planned_scene, only: planned_scene
+  use epcont_plan_planned_model, only: planned_model
   implicit none
   private
   public :: borne_loads
@@ -25,7 +25,7 @@ contains
   !> Half of the solve for loads, and what gaps they open.
   subroutine bear(self, scene, bodies, force, load_factor, half, opening)
     class(borne_loads), intent(inout) :: self
-    type(planned_scene), intent(in) :: scene
+    type(planned_model), intent(in) :: scene
     class(factored_bodies), intent(in) :: bodies                     !! factored
     real(wp), intent(in) :: force(:, :)                              !! [force] [directions, nodes]
     real(wp), intent(in) :: load_factor                              !! of the prescribed displacements

@@ -17,7 +17,7 @@ module epcont_linear_joined_contact
   use epcont_base_tolerances, only: lost_digits, negligible
   use epcont_contact_equilibrium, only: find_rigid_start, rigid_start
   use epcont_contact_problem, only: contact_no_equilibrium, contact_solved, contact_stalled, new_solution
-  use epcont_contact_uniqueness, only: find_free_motions
+  use epcont_contact_uniqueness, only: find_undetermined_motions
   use epcont_element_kinematics, only: directions
   use epcont_flexibility_flexibility, only: gap_opening, pair_forces, terms_of_openings
   use epcont_flexibility_motion_matrix, only: motion_matrix
@@ -25,8 +25,8 @@ module epcont_linear_joined_contact
   use epcont_linear_joined_springs, only: find_springs, frozen_response, put_on_nodes, half_plane, of_pairs
   use epcont_linear_line_search, only: has_settled, least_at
   use epcont_linear_load_line, only: load_line
-  use epcont_linear_scene_state, only: scene_state
-  use epcont_plan_planned_scene, only: planned_scene
+  use epcont_linear_solved_state, only: solved_state
+  use epcont_plan_planned_model, only: planned_model
   use epcont_system_stopwatch, only: stage_contact, stage_factor, stopwatch
   implicit none
   private
@@ -66,7 +66,7 @@ contains
 
   !> Springs for bodies with the first law that they have.
   subroutine new_joined(scene, motion, resultant, threads, bodies, joined)
-    type(planned_scene), intent(in) :: scene           !! numbered as one system
+    type(planned_model), intent(in) :: scene           !! numbered as one system
     type(motion_matrix), intent(in) :: motion          !! A, closing of the gaps by unit motions
     real(wp), intent(in) :: resultant(:)               !! P, loads along the motions [force] [motions]
     integer, intent(in) :: threads                     !! that share the fronts
@@ -81,7 +81,7 @@ contains
   !> A load case: whether rigid bodies can carry it, and the springs of motions that it does not need held.
   subroutine take_case(self, scene, resultant, bodies)
     class(joined_contact), intent(inout) :: self
-    type(planned_scene), intent(in) :: scene           !! numbered as one system
+    type(planned_model), intent(in) :: scene           !! numbered as one system
     real(wp), intent(in) :: resultant(:)               !! P, loads along the motions [force] [motions]
     class(factored_bodies), intent(inout) :: bodies    !! with a law; their springs are made
     logical, allocatable :: redundant(:)               ! of the case before
@@ -106,7 +106,7 @@ contains
   !> Factor the bodies with the springs of the set of contacts, as far as law or springs have changed.
   subroutine factor(self, scene, bodies, sound, watch)
     class(joined_contact), intent(inout) :: self
-    type(planned_scene), intent(in) :: scene
+    type(planned_model), intent(in) :: scene
     class(factored_bodies), intent(inout) :: bodies
     logical, intent(out) :: sound                !! the factor can be solved with
     class(stopwatch), intent(inout) :: watch     !! takes the time
@@ -132,11 +132,11 @@ contains
   !> Find deformation, approach and contact forces. `failed` where there are none, or motions are neutral.
   subroutine solve(self, scene, bodies, gap, load_factor, state, watch)
     class(joined_contact), intent(inout) :: self
-    type(planned_scene), intent(in) :: scene
+    type(planned_model), intent(in) :: scene
     class(factored_bodies), intent(inout) :: bodies
     real(wp), intent(in) :: gap(:)               !! initial, and what supports travel [length] [pairs]
     real(wp), intent(in) :: load_factor          !! of the loads
-    type(scene_state), intent(inout) :: state    !! what is found
+    type(solved_state), intent(inout) :: state    !! what is found
     class(stopwatch), intent(inout) :: watch     !! takes the time
 
     if (allocated(self%line%last)) then
@@ -166,10 +166,10 @@ contains
   !! all that the answer has.
   subroutine find_set(self, scene, bodies, fixed_gap, load_factor, state, watch)
     class(joined_contact), intent(inout) :: self
-    type(planned_scene), intent(in) :: scene
+    type(planned_model), intent(in) :: scene
     class(factored_bodies), intent(inout) :: bodies
     real(wp), intent(in) :: fixed_gap(:), load_factor
-    type(scene_state), intent(inout) :: state
+    type(solved_state), intent(inout) :: state
     class(stopwatch), intent(inout) :: watch
     !> What the deformation is in equilibrium with; lambda - gamma g; what a step adds to the gaps
     real(wp), dimension(scene%model%pairs) :: borne, gap, opening, pull
@@ -246,7 +246,7 @@ contains
       logical :: near(size(gap))
 
       near = gap <= maxval(self%compliance)*maxval(sum(abs(unbalanced), dim=2)) - min(0.0_wp, minval(gap))
-      associate (free => find_free_motions(self%motion%over(self%motion%units()), near, near))
+      associate (free => find_undetermined_motions(self%motion%over(self%motion%units()), near, near))
         if (all(free .eqv. self%rigid%redundant)) self%closed = near
       end associate
     end subroutine begin_set
@@ -329,9 +329,9 @@ contains
   !> What follows from the forces and gaps that were found: which pairs touch, and which motions are free.
   subroutine settle(self, scene, fixed_gap, state)
     class(joined_contact), intent(in) :: self
-    type(planned_scene), intent(in) :: scene
+    type(planned_model), intent(in) :: scene
     real(wp), intent(in) :: fixed_gap(:)
-    type(scene_state), intent(inout) :: state
+    type(solved_state), intent(inout) :: state
     real(wp) :: terms(size(fixed_gap))   ! what gaps are the sum of
 
     associate (contact => state%contact)
@@ -341,8 +341,8 @@ contains
               self%motion%times(contact%approach, magnitudes=.true.)
       contact%touching = contact%force > 0.0_wp .or. contact%gap <= negligible*terms
       where (contact%touching) contact%gap = 0.0_wp
-      contact%motion_free = find_free_motions(self%motion%over(self%motion%units()), contact%touching, &
-          contact%force > lost_digits*maxval([contact%force, 0.0_wp]))
+      contact%motion_free = find_undetermined_motions(self%motion%over(self%motion%units()), &
+          contact%touching, contact%force > lost_digits*maxval([contact%force, 0.0_wp]))
       contact%joined = .true.
       if (any(contact%motion_free .neqv. self%rigid%redundant)) contact%state = contact_stalled
     end associate
@@ -352,7 +352,7 @@ contains
   !> known it leaves a thousandth or less. Springs at SUPORT freedoms bear what known displacements say.
   subroutine respond(self, scene, bodies, found, at_contact)
     class(joined_contact), intent(in) :: self
-    type(planned_scene), intent(in) :: scene
+    type(planned_model), intent(in) :: scene
     class(factored_bodies), intent(inout) :: bodies !! factored with the set of contacts
     type(frozen_response), intent(inout) :: found
     logical, intent(in) :: at_contact               !! only displacements that gaps depend on are wanted
@@ -379,7 +379,7 @@ contains
   !! that are given no one is likely to have none of these.
   logical function are_unique(self, scene, bodies)
     class(joined_contact), intent(inout) :: self
-    type(planned_scene), intent(in) :: scene
+    type(planned_model), intent(in) :: scene
     class(factored_bodies), intent(in) :: bodies    !! factored with the set of contacts
     type(half_solved_body), allocatable :: half(:)
     real(wp) :: force(scene%model%pairs)

@@ -4,7 +4,7 @@ module epcont_linear_joined_springs
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: directions
   use epcont_plan_numbering, only: most_freedoms
-  use epcont_plan_planned_scene, only: planned_scene
+  use epcont_plan_planned_model, only: planned_model
   implicit none
   private
   public :: frozen_response, find_springs, put_on_nodes
@@ -34,7 +34,7 @@ contains
   !> Springs of SUPORT freedoms, in the factor from now on, and of pairs, in it where these press. What
   !! nothing resists is held as firmly as its node.
   subroutine find_springs(scene, bodies, redundant, gamma, hold)
-    type(planned_scene), intent(in) :: scene          !! numbered as one system
+    type(planned_model), intent(in) :: scene          !! numbered as one system
     class(factored_bodies), intent(inout) :: bodies   !! with a law
     logical, intent(in) :: redundant(:)               !! nothing resists the motion [motions]
     real(wp), allocatable, intent(out) :: gamma(:)    !! [force/length] [pairs]
@@ -93,7 +93,7 @@ contains
 
   !> Forces of the chosen pairs on the nodes of their rows, behind room for one at each SUPORT freedom.
   subroutine put_on_nodes(scene, chosen, force, loads)
-    type(planned_scene), intent(in) :: scene     !! numbered as one system
+    type(planned_model), intent(in) :: scene     !! numbered as one system
     logical, intent(in) :: chosen(:)             !! [pairs]
     real(wp), intent(in) :: force(:, :)          !! [force] [pairs, fields]
     type(force_fields), intent(out) :: loads     !! none at the SUPORT freedoms
@@ -119,7 +119,7 @@ contains
 
   !> The spring of the SUPORT freedom that measures a motion.
   pure integer function spring_of_motion(scene, motion)
-    type(planned_scene), intent(in) :: scene   !! numbered as one system
+    type(planned_model), intent(in) :: scene   !! numbered as one system
     integer, intent(in) :: motion              !! which
 
     associate (reference => scene%model%reference, c => scene%motions%component(motion), &
@@ -131,7 +131,7 @@ contains
   !> What elements give to the diagonal of the stiffness at each node; a leader has as much as the stiffest of
   !! its followers. And the largest sum of magnitudes of a row.
   subroutine measure(scene, bodies, stiffness, norm)
-    type(planned_scene), intent(in) :: scene
+    type(planned_model), intent(in) :: scene
     class(factored_bodies), intent(in) :: bodies
     real(wp), intent(out) :: stiffness(:)   !! [force/length] [nodes]
     real(wp), intent(out) :: norm           !! [force/length]

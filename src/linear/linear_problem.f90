@@ -10,13 +10,13 @@ module epcont_linear_linear_problem
   use epcont_flexibility_flexibility, only: gap_opening, pair_forces, see_motions, terms_of_openings
   use epcont_linear_borne_loads, only: borne_loads
   use epcont_linear_joined_contact, only: joined_contact, new_joined
-  use epcont_linear_scene_state, only: force_change, relative_change, scene_state
+  use epcont_linear_solved_state, only: force_change, relative_change, solved_state
   use epcont_linear_whole_flexibility, only: add_flexibilities
-  use epcont_material_scene_materials, only: find_materials, scene_materials
+  use epcont_material_model_materials, only: find_materials, model_materials
   use epcont_model_controls, only: solver_frontal
   use epcont_model_springs, only: spring_forces
   use epcont_plan_iteration_plan, only: iteration_plan
-  use epcont_plan_planned_scene, only: planned_scene
+  use epcont_plan_planned_model, only: planned_model
   use epcont_plan_side_by_side, only: heaviest_first, threads_for
   use epcont_system_stopwatch, only: stage_contact, stage_displacements, stage_factor, stage_flexibility, &
     stopwatch
@@ -27,7 +27,7 @@ module epcont_linear_linear_problem
 
   type, extends(factored_bodies) :: linear_problem
     type(iteration_plan), private :: plan
-    type(scene_materials) :: materials
+    type(model_materials) :: materials
     type(contact_problem) :: problem
     type(flexibility_matrix), private :: lasting_flexibility   !! of bodies that cannot yield, if others can
     type(contact_basis) :: basis   !! of the last contact with this flexibility
@@ -47,7 +47,7 @@ contains
 
   !> What does not change with the law.
   subroutine new_linear_problem(scene, plan, linear)
-    type(planned_scene), intent(in) :: scene       !! what is to be solved
+    type(planned_model), intent(in) :: scene       !! what is to be solved
     type(iteration_plan), intent(in) :: plan       !! how; it may differ from the scene's
     type(linear_problem), intent(out) :: linear    !! all but its law
 
@@ -63,7 +63,7 @@ contains
   !> What loads and supports of the scene's load case do to gaps and motions.
   subroutine see_case(self, scene)
     class(linear_problem), intent(inout) :: self
-    type(planned_scene), intent(in) :: scene
+    type(planned_model), intent(in) :: scene
 
     self%travel_gap = gap_opening(scene%model, scene%model%travel)
     call see_motions(scene%model, scene%motions, self%problem%motion, self%resultant)
@@ -72,7 +72,7 @@ contains
   !> Another load case of the scene, with the factors that there are: those of the elastic bodies.
   subroutine take_case(self, scene)
     class(linear_problem), intent(inout) :: self
-    type(planned_scene), intent(in) :: scene    !! that it was made for, with that case
+    type(planned_model), intent(in) :: scene    !! that it was made for, with that case
 
     call see_case(self, scene)
     if (scene%numbering%joined) then
@@ -86,7 +86,7 @@ contains
   !! as the law of their elements has changed.
   subroutine set_stiffness(self, scene, failed_body, watch)
     class(linear_problem), intent(inout) :: self
-    type(planned_scene), intent(in) :: scene    !! that it was made for
+    type(planned_model), intent(in) :: scene    !! that it was made for
     integer, intent(out) :: failed_body            !! first body that could not be factored; 0: all could
     class(stopwatch), intent(inout) :: watch    !! takes the time
 
@@ -158,10 +158,10 @@ contains
   !! contact equilibrium (`state%contact%state`) there are no displacements.
   subroutine solve(self, scene, load_factor, start, state, watch)
     class(linear_problem), intent(inout) :: self
-    type(planned_scene), intent(in) :: scene       !! that it was made for
+    type(planned_model), intent(in) :: scene       !! that it was made for
     real(wp), intent(in) :: load_factor            !! of the loads
     logical, allocatable, intent(in) :: start(:)   !! guess of the pairs in contact, if allocated [pairs]
-    type(scene_state), intent(inout) :: state      !! what is found
+    type(solved_state), intent(inout) :: state      !! what is found
     class(stopwatch), intent(inout) :: watch       !! takes the time
 
     if (scene%numbering%joined) then
@@ -208,12 +208,12 @@ contains
   !! deformation, and that the contact.
   subroutine sharpen(self, scene, load_factor, state, change, watch)
     class(linear_problem), intent(inout) :: self
-    type(planned_scene), intent(in) :: scene    !! that it was made for
+    type(planned_model), intent(in) :: scene    !! that it was made for
     real(wp), intent(in) :: load_factor         !! of the loads
-    type(scene_state), intent(inout) :: state   !! as it was where the contact is not found again
+    type(solved_state), intent(inout) :: state   !! as it was where the contact is not found again
     real(wp), intent(out) :: change             !! of displacements and contact forces, of the largest of each
     class(stopwatch), intent(inout) :: watch    !! takes the time
-    type(scene_state) :: balanced, refined
+    type(solved_state) :: balanced, refined
     real(wp) :: strained   ! by a correction: the displacements tell what the step has done
 
     change = huge(1.0_wp)
@@ -238,9 +238,9 @@ contains
   !> One step of refinement: the deformation under the forces that are out of balance is added.
   subroutine correct(self, scene, load_factor, state, change)
     type(linear_problem), intent(in) :: self
-    type(planned_scene), intent(in) :: scene
+    type(planned_model), intent(in) :: scene
     real(wp), intent(in) :: load_factor
-    type(scene_state), intent(inout) :: state   !! deformation, strain, contact forces
+    type(solved_state), intent(inout) :: state   !! deformation, strain, contact forces
     real(wp), intent(out) :: change             !! largest of a strain / largest strain
 
     call deform(self, scene, load_factor*scene%model%load + pair_forces(scene%model, state%contact%force) &
@@ -251,9 +251,9 @@ contains
   !> Add the deformation under some forces.
   subroutine deform(self, scene, force, state, change)
     type(linear_problem), intent(in) :: self
-    type(planned_scene), intent(in) :: scene
+    type(planned_model), intent(in) :: scene
     real(wp), intent(in) :: force(:, :)         !! [directions, nodes]
-    type(scene_state), intent(inout) :: state   !! deformation, strain
+    type(solved_state), intent(inout) :: state   !! deformation, strain
     real(wp), intent(out) :: change             !! largest of a strain / largest strain
     real(wp), allocatable :: step(:, :), strain(:, :)
 
@@ -268,9 +268,9 @@ contains
   !! change of these opens.
   subroutine correct_contact(self, scene, load_factor, state)
     type(linear_problem), intent(inout) :: self
-    type(planned_scene), intent(in) :: scene
+    type(planned_model), intent(in) :: scene
     real(wp), intent(in) :: load_factor
-    type(scene_state), intent(inout) :: state   !! its touching pairs, if allocated, are a guess
+    type(solved_state), intent(inout) :: state   !! its touching pairs, if allocated, are a guess
     logical, allocatable :: guess(:)
 
     call move_alloc(state%contact%touching, guess)
@@ -287,9 +287,9 @@ contains
   !> What follows from deformation, strains and contact: stresses, displacements and gaps.
   subroutine complete(self, scene, load_factor, state)
     type(linear_problem), intent(in) :: self
-    type(planned_scene), intent(in) :: scene
+    type(planned_model), intent(in) :: scene
     real(wp), intent(in) :: load_factor
-    type(scene_state), intent(inout) :: state
+    type(solved_state), intent(inout) :: state
     real(wp), dimension(scene%model%pairs) :: gap, rounding
     real(wp) :: off(0:scene%model%bodies)   ! rounding of displacements of each body, at most [length]
     integer :: i

@@ -3,13 +3,13 @@
 module epcont_linear_load_line
   use epcont_base_kinds, only: wp
   use epcont_linear_multiple, only: multiple_of
-  use epcont_linear_scene_state, only: scene_state
+  use epcont_linear_solved_state, only: solved_state
   implicit none
   private
   public :: load_line
 
   type :: load_line
-    type(scene_state), allocatable :: last     !! what was found last
+    type(solved_state), allocatable :: last     !! what was found last
     real(wp), allocatable, private :: before(:, :), force(:), approach(:)   !! the state on the line before it
     real(wp), allocatable, private :: load(:, :)   !! of the load case [force] [directions, nodes]
     !> The case's load over that of `last`, that of the state before over that; 0: they are not on one line
@@ -35,7 +35,7 @@ contains
   !> Keep what was found for it, and the state before where that is on the line.
   pure subroutine keep(self, state)
     class(load_line), intent(inout) :: self
-    type(scene_state), intent(in) :: state
+    type(solved_state), intent(in) :: state
 
     self%times_before = 0.0_wp
     if (self%times /= 0.0_wp .and. self%times /= 1.0_wp) then
@@ -51,7 +51,7 @@ contains
   !> The state that the last two lead to; the last itself where they lead nowhere.
   pure function next(self) result(state)
     class(load_line), intent(in) :: self
-    type(scene_state) :: state
+    type(solved_state) :: state
     real(wp) :: share
 
     state = self%last

@@ -5,7 +5,7 @@ module epcont_linear_whole_flexibility
   use epcont_base_kinds, only: wp
   use epcont_contact_flexibility_matrix, only: flexibility_matrix
   use epcont_flexibility_flexibility, only: body_flexibility, find_flexibility
-  use epcont_plan_planned_scene, only: planned_scene
+  use epcont_plan_planned_model, only: planned_model
   use epcont_plan_side_by_side, only: threads_for
   use epcont_system_threads, only: use_one_thread_each
   implicit none
@@ -17,7 +17,7 @@ contains
   !> Add what some bodies give to the flexibility, each found by itself, in their order: so all roundings are
   !! the same on any number of threads.
   subroutine add_flexibilities(scene, body, chosen, threads, flexibility)
-    type(planned_scene), intent(in) :: scene          !! that they are of
+    type(planned_model), intent(in) :: scene          !! that they are of
     type(body_stiffness), intent(in) :: body(:)       !! factored
     logical, intent(in) :: chosen(:)                  !! [bodies]
     integer, intent(in) :: threads                    !! that share the bodies

@@ -3,7 +3,7 @@ module epcont_material_linear_law
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: components
   use epcont_material_elasticity, only: isotropic_matrix
-  use epcont_material_scene_materials, only: scene_materials
+  use epcont_material_model_materials, only: model_materials
   use epcont_system_threads, only: threads_over
   implicit none
   private
@@ -26,7 +26,7 @@ contains
 
   !> The law of bodies that do not yield.
   pure function elastic_law(materials) result(law)
-    type(scene_materials), intent(in) :: materials   !! of the scene
+    type(model_materials), intent(in) :: materials   !! of the scene
     type(linear_law) :: law
     integer :: last, p, s
 

@@ -7,7 +7,7 @@ module epcont_messages_names
   use epcont_model_finding, only: of_node
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
-  use epcont_plan_planned_scene, only: planned_scene
+  use epcont_plan_planned_model, only: planned_model
   implicit none
   private
   public :: centre_name, direction_of, first_grid, joined, motion_name, percent, point_name, when
@@ -25,7 +25,7 @@ contains
 
   !> `GRID 12 direction 2`: the SUPORT freedom that measures a free motion.
   pure function motion_name(scene, k) result(name)
-    class(planned_scene), intent(in) :: scene   !! with its model and free motions
+    class(planned_model), intent(in) :: scene   !! with its model and free motions
     integer, intent(in) :: k                    !! which of them
     character(len=:), allocatable :: name
 

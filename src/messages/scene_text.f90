@@ -2,7 +2,7 @@
 module epcont_messages_scene_text
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: short_real, text_of
-  use epcont_certificate_scene, only: beyond_place, largest_change, overlap_place, scene_type
+  use epcont_certificate_scene, only: beyond_place, largest_change, overlap_place, overlaps_type
   use epcont_contact_geometry_mates, only: find_mates, is_mate
   use epcont_geometry_boundary_line, only: boundary_line
   use epcont_model_finding, only: of_element, of_node
@@ -63,7 +63,7 @@ contains
   !> What speaks against a scene, or is to be known of it though it may be sound; empty: nothing.
   pure function scene_sentence(model, scene, about) result(text)
     type(model_type), intent(in) :: model   !! the model
-    type(scene_type), intent(in) :: scene   !! as the certificate has it
+    type(overlaps_type), intent(in) :: scene   !! as the certificate has it
     integer, intent(in) :: about            !! one of the subjects above
     character(len=:), allocatable :: text
     type(overlap_place) :: place, faulty(4), warned(scene_warnings)

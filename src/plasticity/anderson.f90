@@ -4,7 +4,7 @@
 !> does harm it is the plain iteration.
 module epcont_plasticity_anderson
   use epcont_base_kinds, only: wp
-  use epcont_linear_scene_state, only: scene_state
+  use epcont_linear_solved_state, only: solved_state
   use epcont_model_model, only: model_type
   implicit none
   private
@@ -42,8 +42,8 @@ contains
     class(anderson_mixer), intent(inout) :: self
     type(model_type), intent(in) :: model        !! the scene
     real(wp), intent(in) :: volume(:)            !! of each point [length**3]
-    type(scene_state), intent(in) :: found       !! displacement and strain
-    type(scene_state), intent(inout) :: about    !! the same
+    type(solved_state), intent(in) :: found       !! displacement and strain
+    type(solved_state), intent(inout) :: about    !! the same
     type(step_type) :: now
     real(wp) :: share(memory)
     integer :: k

@@ -5,12 +5,12 @@ module epcont_plasticity_equilibrium_iteration
   use epcont_contact_problem, only: contact_solved, contact_stalled, pivot_record
   use epcont_element_kinematics, only: components, directions
   use epcont_linear_linear_problem, only: linear_problem, new_linear_problem
-  use epcont_linear_scene_state, only: scene_state
+  use epcont_linear_solved_state, only: solved_state
   use epcont_material_linear_law, only: elastic_law
   use epcont_model_controls, only: method_inistr, method_modsec, method_newton, method_secant
   use epcont_plan_iteration_plan, only: iteration_plan
-  use epcont_plan_planned_scene, only: planned_scene
-  use epcont_plasticity_error_estimate, only: error_estimate, ratio
+  use epcont_plan_planned_model, only: planned_model
+  use epcont_plasticity_error_estimate, only: error_estimate, finite_ratio
   use epcont_plasticity_initial_stress, only: initial_stress_method
   use epcont_plasticity_law_of_state, only: factor_law, linearise
   use epcont_plasticity_newton, only: newton_method
@@ -42,13 +42,13 @@ module epcont_plasticity_equilibrium_iteration
     type(linear_problem), allocatable :: virgin
     logical :: keeps = .false.                      !! another load case may follow
     real(wp) :: load_factor = 0.0_wp                !! of the loads
-    type(scene_state), allocatable :: state         !! found at this load
+    type(solved_state), allocatable :: state         !! found at this load
     logical :: converged = .false.
     logical :: runs_away = .false.                  !! no equilibrium: displacements grow without end
     integer :: failed_body = 0                      !! body that could not be factored
     type(iteration_record), allocatable :: history(:)   !! every solve
     type(pivot_record), allocatable :: pivot(:)         !! those that are kept of each, one after the other
-    type(scene_state), private :: about             !! that the law is about
+    type(solved_state), private :: about             !! that the law is about
     type(iteration_record), private :: now          !! of the last solve
     logical, allocatable, private :: touching(:)    !! the last set: the next contact starts from it [pairs]
     real(wp), allocatable, private :: force(:)      !! the last contact forces [force] [pairs]
@@ -78,7 +78,7 @@ contains
   !! the one before, and the factors of the unloaded state.
   subroutine begin(self, scene)
     class(equilibrium_iteration), intent(inout) :: self
-    type(planned_scene), intent(in) :: scene        !! what is loaded
+    type(planned_model), intent(in) :: scene        !! what is loaded
 
     if (allocated(self%virgin)) self%linear = self%virgin
     self%stiff = allocated(self%linear)
@@ -105,11 +105,11 @@ contains
   !> Iterate at one load. The state is the last, or if that is not converged the one nearest to equilibrium.
   subroutine iterate(self, scene, load_factor, watch)
     class(equilibrium_iteration), intent(inout) :: self
-    type(planned_scene), intent(in) :: scene
+    type(planned_model), intent(in) :: scene
     real(wp), intent(in) :: load_factor             !! of the loads
     class(observer), intent(inout) :: watch         !! takes the time, and is told of each solve
     class(secant_method), allocatable :: method
-    type(scene_state), allocatable :: found
+    type(solved_state), allocatable :: found
     real(wp) :: farthest, least_residual, travel
     integer :: iteration
 
@@ -159,8 +159,8 @@ contains
   !> The stiffness about a state that was found before, made once more.
   subroutine return_to(self, scene, state, watch)
     class(equilibrium_iteration), intent(inout) :: self
-    type(planned_scene), intent(in) :: scene
-    type(scene_state), intent(in) :: state
+    type(planned_model), intent(in) :: scene
+    type(solved_state), intent(in) :: state
     class(observer), intent(inout) :: watch
     class(secant_method), allocatable :: method
 
@@ -214,7 +214,7 @@ contains
   !> The law about the last state, and the stiffness for it, unless a body has none that can be factored.
   subroutine set_law(self, scene, method, watch)
     class(equilibrium_iteration), intent(inout) :: self
-    type(planned_scene), intent(in) :: scene
+    type(planned_model), intent(in) :: scene
     class(secant_method), intent(inout) :: method
     class(observer), intent(inout) :: watch
 
@@ -232,8 +232,8 @@ contains
   !> Add a solve to the history, what it has changed and left. Was it the last, or a further one by tangent?
   subroutine judge(self, scene, found, watch)
     class(equilibrium_iteration), intent(inout) :: self
-    type(planned_scene), intent(in) :: scene
-    type(scene_state), allocatable, intent(inout) :: found
+    type(planned_model), intent(in) :: scene
+    type(solved_state), allocatable, intent(inout) :: found
     class(observer), intent(inout) :: watch
 
     call self%measure(scene, found)
@@ -252,7 +252,7 @@ contains
   !> Put a solve into the history. Its pivots stand by themselves: a list of lists would be copied slowly.
   subroutine keep(self, found)
     class(equilibrium_iteration), intent(inout) :: self
-    type(scene_state), intent(in) :: found
+    type(solved_state), intent(in) :: found
 
     self%history = [self%history, self%now]
     if (self%now%kept > 0) self%pivot = [self%pivot, found%contact%history]
@@ -262,14 +262,15 @@ contains
   !! exact in each solve: that distance is all that is left of the scene's equations.
   subroutine measure(self, scene, found)
     class(equilibrium_iteration), intent(inout) :: self
-    type(planned_scene), intent(in) :: scene
-    type(scene_state), intent(inout) :: found         !! its points are set
+    type(planned_model), intent(in) :: scene
+    type(solved_state), intent(inout) :: found         !! its points are set
 
     associate (now => self%now, materials => self%linear%materials)
       now%load_factor = self%load_factor
-      now%change = ratio(maxval(abs(found%displacement - self%about%displacement)), &
+      now%change = finite_ratio(maxval(abs(found%displacement - self%about%displacement)), &
                          maxval(abs(found%displacement)))
-      now%force_change = ratio(maxval(abs(found%contact%force - self%force)), maxval(found%contact%force))
+      now%force_change = finite_ratio(maxval(abs(found%contact%force - self%force)), &
+                                      maxval(found%contact%force))
       now%touching = count(found%contact%touching)
       now%pivots = found%contact%pivots
       now%kept = size(found%contact%history)
@@ -298,7 +299,7 @@ contains
   !> Is the estimate of what is to come to be tested, and is there a tangent to test it with?
   pure logical function wants_test(self, scene)
     class(equilibrium_iteration), intent(in) :: self
-    type(planned_scene), intent(in) :: scene
+    type(planned_model), intent(in) :: scene
 
     associate (now => self%now, method => self%plan%method)
       wants_test = method /= method_secant .or. now%iteration <= few_solves .or. &
@@ -313,12 +314,12 @@ contains
   !! all is as it was before, but for the doubt in estimates.
   subroutine step_by_tangent(self, scene, found, watch)
     class(equilibrium_iteration), intent(inout) :: self
-    type(planned_scene), intent(in) :: scene
-    type(scene_state), allocatable, intent(inout) :: found
+    type(planned_model), intent(in) :: scene
+    type(solved_state), allocatable, intent(inout) :: found
     class(observer), intent(inout) :: watch
     type(newton_method) :: tangent
-    type(scene_state), allocatable :: next
-    type(scene_state) :: before
+    type(solved_state), allocatable :: next
+    type(solved_state) :: before
     type(iteration_record) :: last
 
     self%converged = .false.

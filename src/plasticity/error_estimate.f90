@@ -6,11 +6,11 @@
 !> the rate at which they fall; its last steps are the slowest.
 module epcont_plasticity_error_estimate
   use epcont_base_kinds, only: wp
-  use epcont_linear_scene_state, only: scene_state
+  use epcont_linear_solved_state, only: solved_state
   use epcont_plasticity_observer, only: iteration_record
   implicit none
   private
-  public :: error_estimate, ratio
+  public :: error_estimate, finite_ratio
 
   type :: error_estimate
     !> The last displacements, g of x, and g - x [length] [directions, nodes]
@@ -38,7 +38,7 @@ contains
   !> The errors of a step that has led from x to g; negative where they are not known.
   subroutine estimate(self, from, to, force, mixes, now)
     class(error_estimate), intent(inout) :: self
-    type(scene_state), intent(in) :: from, to      !! x and g
+    type(solved_state), intent(in) :: from, to      !! x and g
     real(wp), intent(in) :: force(:)               !! the contact forces before [force] [pairs]
     logical, intent(in) :: mixes                   !! the iteration mixes its last states
     type(iteration_record), intent(inout) :: now   !! of this step; gets the errors
@@ -54,17 +54,17 @@ contains
     if (now%iteration > 1) then
       associate (u => to%displacement, now_force => to%contact%force)
         step = maxval(abs(self%rest - last_rest))
-        self%gain = [self%gain, ratio(maxval(abs(u - self%displacement)), step)]
-        self%force_gain = [self%force_gain, ratio(maxval([0.0_wp, abs(now_force - force)]), step)]
+        self%gain = [self%gain, finite_ratio(maxval(abs(u - self%displacement)), step)]
+        self%force_gain = [self%force_gain, finite_ratio(maxval([0.0_wp, abs(now_force - force)]), step)]
         if (largest < maxval(abs(last_rest)) .or. largest == 0.0_wp) then
           first = merge(1, max(1, size(self%gain) - 1), mixes)
           ! A step may by chance be short where much is to come: as long as stresses are off their curves, no
           ! less than the last change.
-          now%error = max(ratio(maxval(self%gain(first:))*largest, maxval(abs(u))), &
+          now%error = max(finite_ratio(maxval(self%gain(first:))*largest, maxval(abs(u))), &
                           min(now%change, now%residual))
           now%force_error = 0.0_wp
           if (any(now_force > 0.0_wp)) &
-            now%force_error = max(ratio(maxval(self%force_gain(first:))*largest, maxval(now_force)), &
+            now%force_error = max(finite_ratio(maxval(self%force_gain(first:))*largest, maxval(now_force)), &
                                   min(now%force_change, now%residual))
         end if
       end associate
@@ -73,9 +73,9 @@ contains
   end subroutine estimate
 
   !> a/b, 0 where both are 0; finite.
-  pure real(wp) function ratio(a, b)
+  pure real(wp) function finite_ratio(a, b)
     real(wp), intent(in) :: a, b
 
-    ratio = max(a, 0.0_wp)/max(b, tiny(b)*max(a, 1.0_wp))
-  end function ratio
+    finite_ratio = max(a, 0.0_wp)/max(b, tiny(b)*max(a, 1.0_wp))
+  end function finite_ratio
 end module epcont_plasticity_error_estimate

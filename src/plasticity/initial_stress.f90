@@ -3,7 +3,7 @@
 module epcont_plasticity_initial_stress
   use epcont_base_kinds, only: wp
   use epcont_linear_linear_problem, only: linear_problem
-  use epcont_linear_scene_state, only: scene_state
+  use epcont_linear_solved_state, only: solved_state
   use epcont_plasticity_secant, only: secant_method
   implicit none
   private
@@ -20,7 +20,7 @@ contains
   pure subroutine linearise(self, p, about, linear)
     class(initial_stress_method), intent(inout) :: self
     integer, intent(in) :: p                         !! the point
-    type(scene_state), intent(in) :: about           !! its strain, and its points
+    type(solved_state), intent(in) :: about           !! its strain, and its points
     type(linear_problem), intent(inout) :: linear    !! its law is set
 
     associate (law => linear%law, state => about%point(p))

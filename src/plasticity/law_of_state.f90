@@ -1,8 +1,8 @@
 !> The linear law about a state, by any method, and the stiffness that it gives.
 module epcont_plasticity_law_of_state
   use epcont_linear_linear_problem, only: linear_problem
-  use epcont_linear_scene_state, only: scene_state
-  use epcont_plan_planned_scene, only: planned_scene
+  use epcont_linear_solved_state, only: solved_state
+  use epcont_plan_planned_model, only: planned_model
   use epcont_plasticity_observer, only: observer
   use epcont_plasticity_secant, only: secant_method
   use epcont_system_stopwatch, only: stage_yielding
@@ -15,9 +15,9 @@ contains
 
   !> The law about a state.
   subroutine linearise(scene, method, about, linear, watch)
-    type(planned_scene), intent(in) :: scene           !! what is loaded
+    type(planned_model), intent(in) :: scene           !! what is loaded
     class(secant_method), intent(inout) :: method      !! how its law is made a linear one
-    type(scene_state), intent(in) :: about             !! its strains, and its points
+    type(solved_state), intent(in) :: about             !! its strains, and its points
     type(linear_problem), intent(inout) :: linear      !! its law is set
     class(observer), intent(inout) :: watch            !! takes the time
     integer :: p
@@ -32,9 +32,9 @@ contains
 
   !> The stiffness for that law, made stiffer as long as it cannot be factored.
   subroutine factor_law(scene, method, about, linear, failed_body, watch)
-    type(planned_scene), intent(in) :: scene           !! what is loaded
+    type(planned_model), intent(in) :: scene           !! what is loaded
     class(secant_method), intent(inout) :: method      !! how its law was made a linear one
-    type(scene_state), intent(in) :: about             !! its strains, and its points
+    type(solved_state), intent(in) :: about             !! its strains, and its points
     type(linear_problem), intent(inout) :: linear      !! with that law
     integer, intent(out) :: failed_body                !! has none that can be factored; 0: none
     class(observer), intent(inout) :: watch            !! takes the time

@@ -5,9 +5,9 @@ module epcont_plasticity_load_path
   use epcont_base_kinds, only: wp
   use epcont_contact_problem, only: contact_solved, pivot_record
   use epcont_linear_linear_problem, only: linear_problem
-  use epcont_linear_scene_state, only: committed_step, scene_state
+  use epcont_linear_solved_state, only: committed_step, solved_state
   use epcont_plan_iteration_plan, only: iteration_plan
-  use epcont_plan_planned_scene, only: planned_scene
+  use epcont_plan_planned_model, only: planned_model
   use epcont_plasticity_equilibrium_iteration, only: equilibrium_iteration
   use epcont_plasticity_observer, only: iteration_record, observer
   use epcont_plasticity_unloading, only: find_unloaded
@@ -17,7 +17,7 @@ module epcont_plasticity_load_path
   public :: followed_loads, follow_loads
 
   !> What came of the loads, and how: a state, the answer or what came nearest to one.
-  type, extends(scene_state) :: followed_loads
+  type, extends(solved_state) :: followed_loads
     real(wp) :: load_factor = 0.0_wp       !! part of the loads for which the state is
     logical :: converged = .false.         !! all loads, to the tolerance of the iteration
     logical :: carried = .false.           !! a part of them, to that tolerance
@@ -42,7 +42,7 @@ contains
   !> Load step by load step to the answer. Of several load cases the first is one without `linear`; the others
   !! have it from the one before, and the factors of the unloaded state.
   subroutine follow_loads(scene, plan, keeps, linear, virgin, answer, watch)
-    type(planned_scene), intent(in) :: scene                   !! what is loaded
+    type(planned_model), intent(in) :: scene                   !! what is loaded
     type(iteration_plan), intent(in) :: plan                   !! how; it may differ from the scene's
     logical, intent(in) :: keeps                               !! another load case may follow
     type(linear_problem), allocatable, intent(inout) :: linear   !! as the last solve left it
@@ -85,7 +85,7 @@ contains
   !> Take what a load step has found. Of a load that was not carried nothing is kept, if one was before.
   subroutine keep_step(self, scene, iteration, watch)
     class(followed_loads), intent(inout) :: self
-    type(planned_scene), intent(in) :: scene
+    type(planned_model), intent(in) :: scene
     type(equilibrium_iteration), intent(inout) :: iteration
     class(observer), intent(inout) :: watch
 
@@ -96,7 +96,7 @@ contains
     if (self%failed_body > 0) return
     associate (contact => iteration%state%contact)
       if (.not. (iteration%converged .or. .not. self%carried .or. contact%state /= contact_solved)) then
-        call iteration%return_to(scene, self%scene_state, watch)
+        call iteration%return_to(scene, self%solved_state, watch)
         if (iteration%failed_body > 0) self%condition = huge(1.0_wp)
         return
       end if

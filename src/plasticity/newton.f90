@@ -8,7 +8,7 @@ module epcont_plasticity_newton
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: components
   use epcont_linear_linear_problem, only: linear_problem
-  use epcont_linear_scene_state, only: scene_state
+  use epcont_linear_solved_state, only: solved_state
   use epcont_material_material_law, only: point_state
   use epcont_model_model, only: model_type
   use epcont_model_springs, only: spring_forces
@@ -43,7 +43,7 @@ contains
   pure subroutine linearise(self, p, about, linear)
     class(newton_method), intent(inout) :: self
     integer, intent(in) :: p                         !! the point
-    type(scene_state), intent(in) :: about           !! its strain, and its points
+    type(solved_state), intent(in) :: about           !! its strain, and its points
     type(linear_problem), intent(inout) :: linear    !! its law is set
     real(wp) :: matrix(components, components)
 
@@ -73,8 +73,8 @@ contains
     type(model_type), intent(in) :: model            !! the scene
     type(linear_problem), intent(in) :: linear       !! that was solved
     real(wp), intent(in) :: load_factor              !! of the loads
-    type(scene_state), intent(in) :: found           !! with its points
-    type(scene_state), intent(inout) :: about        !! displacement, strain and points
+    type(solved_state), intent(in) :: found           !! with its points
+    type(solved_state), intent(inout) :: about        !! displacement, strain and points
     type(point_state), allocatable :: point(:)
     real(wp), allocatable :: along(:, :), travel(:, :)
     real(wp) :: length

@@ -5,7 +5,7 @@
 module epcont_plasticity_secant
   use epcont_base_kinds, only: wp
   use epcont_linear_linear_problem, only: linear_problem
-  use epcont_linear_scene_state, only: scene_state
+  use epcont_linear_solved_state, only: solved_state
   use epcont_model_model, only: model_type
   use epcont_plasticity_anderson, only: anderson_mixer
   implicit none
@@ -27,7 +27,7 @@ contains
   pure subroutine linearise(self, p, about, linear)
     class(secant_method), intent(inout) :: self
     integer, intent(in) :: p                         !! the point
-    type(scene_state), intent(in) :: about           !! its strain, and its points
+    type(solved_state), intent(in) :: about           !! its strain, and its points
     type(linear_problem), intent(inout) :: linear    !! its law is set
 
     call linear%law%set_matrix( &
@@ -49,8 +49,8 @@ contains
     type(model_type), intent(in) :: model            !! the scene
     type(linear_problem), intent(in) :: linear       !! that was solved
     real(wp), intent(in) :: load_factor              !! of the loads
-    type(scene_state), intent(in) :: found           !! with its points
-    type(scene_state), intent(inout) :: about        !! displacement, strain and points
+    type(solved_state), intent(in) :: found           !! with its points
+    type(solved_state), intent(inout) :: about        !! displacement, strain and points
 
     if (allocated(self%mixer)) then
       call self%mixer%mix(model, linear%operator%volume, found, about)

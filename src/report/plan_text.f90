@@ -9,7 +9,7 @@ module epcont_report_plan_text
   use epcont_plan_iteration_plan, only: iteration_plan, many_pairs
   use epcont_plan_joining, only: many_of
   use epcont_plan_numbering, only: many_of_flexibility, many_operations
-  use epcont_plan_planned_scene, only: planned_scene
+  use epcont_plan_planned_model, only: planned_model
   use epcont_report_columns, only: column, state, table_type, whole, word
   use epcont_messages_names, only: joined, motion_name, when
   implicit none
@@ -36,7 +36,7 @@ contains
 
   !> The plan of a scene, in lines.
   function plan_text(scene, of) result(text)
-    type(planned_scene), intent(in) :: scene   !! what is to be solved, and how
+    type(planned_model), intent(in) :: scene   !! what is to be solved, and how
     character(len=*), intent(in), optional :: of   !! these load cases
     character(len=:), allocatable :: text
     type(iteration_plan) :: iteration
@@ -143,7 +143,7 @@ contains
   !> Whether the scene can yield, and how that is iterated.
   subroutine say_iteration(plan, scene, iteration)
     type(table_type), intent(inout) :: plan
-    type(planned_scene), intent(in) :: scene
+    type(planned_model), intent(in) :: scene
     type(iteration_plan), intent(in) :: iteration
 
     if (.not. iteration%yields) then
@@ -171,7 +171,7 @@ contains
   !> How the pairs in contact are found.
   subroutine say_rule(plan, scene, iteration)
     type(table_type), intent(inout) :: plan
-    type(planned_scene), intent(in) :: scene
+    type(planned_model), intent(in) :: scene
     type(iteration_plan), intent(in) :: iteration
 
     if (scene%model%pairs == 0) then
@@ -196,7 +196,7 @@ contains
   !> A contact of lines.
   subroutine say_contact(plan, scene, contact)
     type(table_type), intent(inout) :: plan
-    type(planned_scene), intent(in) :: scene
+    type(planned_model), intent(in) :: scene
     type(line_contact), intent(in) :: contact
     character(len=:), allocatable :: master
 

@@ -87,11 +87,11 @@ contains
     integer, intent(in) :: cases(:)        !! which
 
     if (.not. run%has_cases()) then
-      self%plan = plan_text(run%planned_scene)
+      self%plan = plan_text(run%planned_model)
     else if (size(cases) == size(self%case)) then
-      self%plan = plan_text(run%planned_scene, text_of(size(cases))//' load cases')
+      self%plan = plan_text(run%planned_model, text_of(size(cases))//' load cases')
     else
-      self%plan = self%plan//plan_text(run%planned_scene, &
+      self%plan = self%plan//plan_text(run%planned_model, &
                                        'SUBCASE '//joined(run%deck%subcase(cases)%id, ' ', most_named))
     end if
   end subroutine add_plan
@@ -162,7 +162,7 @@ contains
 
       call new_text_file(self%stem//'.lst', listing, error)
       if (allocated(error)) return
-      call list_scene(run, plan_text(run%planned_scene), listing)
+      call list_scene(run, plan_text(run%planned_model), listing)
       call list_case(run, figures, self%all_tables, listing)
       call listing%finish(error)
     end subroutine write_listing

@@ -7,7 +7,7 @@ module deck_faults
   use epcont_build_build, only: build_model, tell
   use epcont_model_load_cases, only: load_cases
   use epcont_model_model, only: model_type
-  use epcont_plan_planned_scene, only: planned_scene
+  use epcont_plan_planned_model, only: planned_model
   implicit none
   private
   public :: faults_of, model_of, notes_of, told
@@ -64,7 +64,7 @@ contains
     type(diagnostics), intent(out) :: faults
     type(diagnostics) :: of_pattern
     type(load_cases) :: cases
-    type(planned_scene) :: scene
+    type(planned_model) :: scene
     integer :: i, p
 
     call read_lines(cards//'ENDDATA|', deck, faults)

@@ -4,7 +4,7 @@ module small_scenes
   use epcont_base_kinds, only: wp
   use epcont_certificate_allowance, only: allowance_type
   use epcont_certificate_meeting, only: new_search, search_type
-  use epcont_certificate_scene, only: look_through, scene_type
+  use epcont_certificate_scene, only: look_through, overlaps_type
   use epcont_model_model, only: model_type
   implicit none
   private
@@ -29,7 +29,7 @@ contains
     type(model_type), intent(in) :: model
     real(wp), intent(in) :: by(2)
     integer, intent(in), optional :: last   !! the last of those nodes, not 8
-    type(scene_type) :: scene
+    type(overlaps_type) :: scene
     real(wp) :: u(2, model%nodes)
     integer :: highest, i
 
@@ -46,7 +46,7 @@ contains
   function seen(model, u) result(scene)
     type(model_type), intent(in) :: model
     real(wp), intent(in) :: u(:, :)   !! displacements
-    type(scene_type) :: scene
+    type(overlaps_type) :: scene
 
     scene = look_through(model, u, [real(wp) ::])
   end function seen

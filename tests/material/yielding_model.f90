@@ -3,7 +3,7 @@ module yielding_model
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: plane_strain, plane_stress
   use epcont_material_material_law, only: plastic_history, point_state
-  use epcont_material_scene_materials, only: scene_materials
+  use epcont_material_model_materials, only: model_materials
   use epcont_model_model, only: model_type
   use epcont_model_yield_curve, only: bilinear_curve
   implicit none
@@ -36,7 +36,7 @@ contains
 
   !> What the law of a section finds at a strain, whatever was committed.
   pure function state_at(materials, section, strain) result(state)
-    type(scene_materials), intent(in) :: materials
+    type(model_materials), intent(in) :: materials
     integer, intent(in) :: section
     real(wp), intent(in) :: strain(4)
     type(point_state) :: state

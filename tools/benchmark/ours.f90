@@ -21,7 +21,7 @@ program bench_ours
   use epcont_flexibility_flexibility, only: body_flexibility, find_flexibility, &
     gap_opening, pair_forces, see_motions
   use epcont_material_linear_law, only: elastic_law, linear_law
-  use epcont_material_scene_materials, only: find_materials, scene_materials
+  use epcont_material_model_materials, only: find_materials, model_materials
   use epcont_build_build, only: build_model
   use epcont_model_controls, only: solver_frontal
   use epcont_model_finding, only: findings
@@ -30,7 +30,7 @@ program bench_ours
   use epcont_plan_free_motion, only: find_free_motions, free_motions
   use epcont_plan_iteration_plan, only: iteration_plan, plan_iteration
   use epcont_plan_numbering, only: number_equations, numbering_type
-  use epcont_plan_planned_scene, only: planned_scene
+  use epcont_plan_planned_model, only: planned_model
   use statistics, only: argument, median
   implicit none
 
@@ -43,10 +43,10 @@ program bench_ours
   type(free_motions) :: motions
   type(strain_operator) :: operator
   type(linear_law) :: law
-  type(scene_materials) :: materials
+  type(model_materials) :: materials
   type(numbering_type) :: numbering
   type(incidence) :: pairs
-  type(planned_scene) :: scene   ! of both
+  type(planned_model) :: scene   ! of both
   type(factored_bodies) :: bodies
   type(contact_problem) :: problem
   type(contact_solution) :: solution

@@ -1,6 +1,6 @@
 !> The materials of a scene: the law of each section, what each integration point has committed, and the
 !> states of the points.
-module epcont_material_scene_materials
+module epcont_material_model_materials
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: components, plane_stress
   use epcont_material_curve, only: new_curve
@@ -10,9 +10,9 @@ module epcont_material_scene_materials
   use epcont_system_threads, only: threads_over
   implicit none
   private
-  public :: scene_materials, find_materials
+  public :: model_materials, find_materials
 
-  type :: scene_materials
+  type :: model_materials
     type(material_law), allocatable :: section(:)  !! [sections]
     integer, allocatable :: of_point(:)            !! section of each integration point [points]
     logical, allocatable :: can_yield(:)           !! the point can [points]
@@ -25,14 +25,14 @@ module epcont_material_scene_materials
     procedure :: state_at
     procedure :: states
     procedure :: measure
-  end type scene_materials
+  end type model_materials
 
 contains
 
   !> The law of each section, as the deck has it.
   pure subroutine find_materials(model, materials)
     type(model_type), intent(in) :: model             !! the scene
-    type(scene_materials), intent(out) :: materials   !! of its sections and points
+    type(model_materials), intent(out) :: materials   !! of its sections and points
     logical :: yields(size(model%young))
     integer :: s
 
@@ -54,7 +54,7 @@ contains
 
   !> An increment of the loads is over: the next one starts from its strains.
   subroutine commit(self, strain)
-    class(scene_materials), intent(inout) :: self
+    class(model_materials), intent(inout) :: self
     real(wp), intent(in) :: strain(:, :)   !! at its end [components, points]
     integer :: p
 
@@ -69,7 +69,7 @@ contains
 
   !> What a point has committed.
   pure type(plastic_history) function history(self, point)
-    class(scene_materials), intent(in) :: self
+    class(model_materials), intent(in) :: self
     integer, intent(in) :: point
 
     if (allocated(self%committed)) history = self%committed(point)
@@ -77,7 +77,7 @@ contains
 
   !> The state of a point at a strain.
   pure type(point_state) function state_at(self, point, strain) result(state)
-    class(scene_materials), intent(in) :: self
+    class(model_materials), intent(in) :: self
     integer, intent(in) :: point
     real(wp), intent(in) :: strain(components)
 
@@ -86,7 +86,7 @@ contains
 
   !> The states of all points at their strains [points].
   function states(self, strain) result(state)
-    class(scene_materials), intent(in) :: self
+    class(model_materials), intent(in) :: self
     real(wp), intent(in) :: strain(:, :)   !! [components, points]
     type(point_state), allocatable :: state(:)
     integer :: p
@@ -101,7 +101,7 @@ contains
 
   !> How far stresses are from those of the materials, by `distance`, at most, and how many elements yield.
   subroutine measure(self, model, state, stress, farthest, yielded)
-    class(scene_materials), intent(in) :: self
+    class(model_materials), intent(in) :: self
     type(model_type), intent(in) :: model        !! the scene
     type(point_state), intent(in) :: state(:)    !! [points]
     real(wp), intent(in) :: stress(:, :)         !! xx, yy, zz, xy [stress] [components, points]
@@ -125,4 +125,4 @@ contains
     end do
     !$omp end parallel do
   end subroutine measure
-end module epcont_material_scene_materials
+end module epcont_material_model_materials

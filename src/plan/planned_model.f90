@@ -1,5 +1,5 @@
 !> What every room behind the plan reads and none changes: the scene, and how it will be solved.
-module epcont_plan_planned_scene
+module epcont_plan_planned_model
   use epcont_model_finding, only: findings
   use epcont_model_model, only: model_type
   use epcont_plan_forecast, only: forecast, forecast_type
@@ -10,9 +10,9 @@ module epcont_plan_planned_scene
   use epcont_system_stopwatch, only: stage_numbering, stage_plan, stopwatch
   implicit none
   private
-  public :: planned_scene
+  public :: planned_model
 
-  type :: planned_scene
+  type :: planned_model
     type(model_type) :: model
     type(free_motions) :: motions          !! of its bodies
     type(numbering_type) :: numbering      !! of its equations
@@ -23,13 +23,13 @@ module epcont_plan_planned_scene
   contains
     procedure :: find_motions
     procedure :: make_plan
-  end type planned_scene
+  end type planned_model
 
 contains
 
   !> Find the free motions of the model's bodies.
   subroutine find_motions(self, found)
-    class(planned_scene), intent(inout) :: self
+    class(planned_model), intent(inout) :: self
     type(findings), intent(inout) :: found   !! bodies that cannot be solved for are added
 
     call find_free_motions(self%model, self%motions, found)
@@ -37,7 +37,7 @@ contains
 
   !> Plan how the model, whose free motions are known, is solved.
   subroutine make_plan(self, watch)
-    class(planned_scene), intent(inout) :: self
+    class(planned_model), intent(inout) :: self
     class(stopwatch), intent(inout) :: watch   !! takes the time
 
     self%iteration = plan_iteration(self%model, .not. self%apart .and. joins(self%model, self%motions%count))
@@ -48,4 +48,4 @@ contains
     if (self%plan_cases > 1 .and. self%iteration%yields) call self%expected%keep_unloaded()
     call watch%lap(stage_plan)
   end subroutine make_plan
-end module epcont_plan_planned_scene
+end module epcont_plan_planned_model

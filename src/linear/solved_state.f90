@@ -1,13 +1,13 @@
 !> What a linear step finds: displacements, stresses in equilibrium, contact.
-module epcont_linear_scene_state
+module epcont_linear_solved_state
   use epcont_base_kinds, only: wp
   use epcont_contact_problem, only: contact_solution
   use epcont_material_material_law, only: point_state
   implicit none
   private
-  public :: committed_step, force_change, relative_change, scene_state
+  public :: committed_step, force_change, relative_change, solved_state
 
-  type :: scene_state
+  type :: solved_state
     real(wp), allocatable :: displacement(:, :)   !! [length] [directions, nodes]
     !> Displacements before the rigid motions are added [length] [directions, nodes]
     real(wp), allocatable :: deformation(:, :)
@@ -19,20 +19,20 @@ module epcont_linear_scene_state
     type(contact_solution) :: contact
   contains
     procedure :: take
-  end type scene_state
+  end type solved_state
 
   !> The end of a load step from which the next one went on (flow theory).
   type :: committed_step
     real(wp) :: load_factor = 0.0_wp
-    real(wp), allocatable :: deformation(:, :)   !! as in `scene_state` [length] [directions, nodes]
+    real(wp), allocatable :: deformation(:, :)   !! as in `solved_state` [length] [directions, nodes]
   end type committed_step
 
 contains
 
   !> Take another state's place; that is empty then.
   pure subroutine take(self, from)
-    class(scene_state), intent(inout) :: self
-    type(scene_state), intent(inout) :: from   !! empty afterwards
+    class(solved_state), intent(inout) :: self
+    type(solved_state), intent(inout) :: from   !! empty afterwards
 
     call move_alloc(from%displacement, self%displacement)
     call move_alloc(from%deformation, self%deformation)
@@ -56,4 +56,4 @@ contains
     change = 0.0_wp
     if (any(of%force > 0.0_wp)) change = maxval(abs(after%force - before%force))/maxval(of%force)
   end function force_change
-end module epcont_linear_scene_state
+end module epcont_linear_solved_state
