@@ -166,6 +166,7 @@ contains
     pair = 0
   end function line_pair_like
 
+  !> Find the longest side and the outward normal of the boundary at each node.
   subroutine look_around_nodes(model, longest, outward)
     type(model_type), intent(in) :: model
     real(wp), intent(inout) :: longest(:), outward(:, :)

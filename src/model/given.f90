@@ -83,7 +83,7 @@ contains
                   'body_load('//text_of(i)//') is out of range', any_size())
       end associate
     end do
-    call check_ties(found, scene, nodes)
+    call check_ties(found, scene)
     do i = 1, size(scene%line)
       call fit(found, 'line('//text_of(i)//')%node', any_shape, scene%line(i)%node)
       if (allocated(scene%line(i)%node)) &
@@ -163,13 +163,13 @@ contains
   end subroutine check_shapes
 
   !> What ties freedoms names nodes that are there.
-  subroutine check_ties(found, scene, nodes)
+  subroutine check_ties(found, scene)
     type(findings), intent(inout) :: found
     type(scene_type), intent(in) :: scene
-    integer, intent(in) :: nodes
-    integer :: i
+    integer :: i, nodes
     character(len=:), allocatable :: name
 
+    nodes = size(scene%x, 2)
     do i = 1, size(scene%platen)
       name = 'platen('//text_of(i)//')%'
       call fit(found, name//'follower', any_shape, scene%platen(i)%follower)
@@ -181,7 +181,7 @@ contains
       call need(found, [all(scene%kinematics /= axisymmetric)], name//'leader would turn, and rings do not', &
                 'leader: it does not turn')
     end do
-    call check_equations(found, scene, nodes)
+    call check_equations(found, scene)
     do i = 1, size(scene%spring)
       associate (spring => scene%spring(i))
         call need(found, [any(spring%node > 0), within(spring%node + 1, nodes + 1), &
@@ -195,13 +195,14 @@ contains
     end do
   end subroutine check_ties
 
-  subroutine check_equations(found, scene, nodes)
+  !> Equations have terms, and these name nodes and components that are there.
+  subroutine check_equations(found, scene)
     type(findings), intent(inout) :: found
     type(scene_type), intent(in) :: scene
-    integer, intent(in) :: nodes
-    integer :: i
+    integer :: i, nodes
     character(len=:), allocatable :: name
 
+    nodes = size(scene%x, 2)
     do i = 1, size(scene%equation)
       name = 'equation('//text_of(i)//')%'
       call fit(found, name//'coefficient', any_shape, scene%equation(i)%coefficient)

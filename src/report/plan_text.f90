@@ -151,8 +151,7 @@ contains
       return
     end if
     call say(plan, when(scene%model%controls%flow_theory, 'flow', 'total')// &
-             ' theory of plasticity; bodies that can yield: '// &
-             text_of(count(yielding_bodies(scene%model))))
+             ' theory of plasticity; bodies that can yield: '//text_of(count(yielding_bodies(scene%model))))
     call say(plan, 'iteration '//trim(method_name(iteration%method))//': '//method_text(iteration%method))
     if (iteration%chosen_here) call say(plan, '  chosen here (AUTO): '// &
       when(iteration%method == method_newton, 'it needs the fewest factorizations', &

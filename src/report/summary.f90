@@ -240,8 +240,7 @@ contains
       call figures%put_error('approach_'//motion_key(run, k), motion_unit(run, k), &
                              'approach of '//motion_name(run, k), &
                      merge(-1.0_wp, run%accuracy%approach(k), run%accuracy%approach_unbounded(k)), &
-                     abs(run%answer%contact%approach(k)), &
-                     when(run%accuracy%approach_unbounded(k), unbounded))
+                     abs(run%answer%contact%approach(k)), when(run%accuracy%approach_unbounded(k), unbounded))
     end do
     if (run%model%pairs > 0) call figures%put_error('total_contact_force', force, 'total contact force', &
         run%accuracy%total_force, sum(run%answer%contact%force), '')

@@ -172,7 +172,7 @@ contains
     class(vtk_file), intent(inout) :: self
     type(error_type), allocatable, intent(out) :: error
 
-    call self%line('</CellData>'//newline//'</Piece>'//newline//'</UnstructuredGrid>'//newline// '</VTKFile>')
+    call self%line('</CellData>'//newline//'</Piece>'//newline//'</UnstructuredGrid>'//newline//'</VTKFile>')
     call self%finish(error)
   end subroutine end_grid
 
