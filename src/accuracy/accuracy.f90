@@ -14,6 +14,7 @@ module epcont_accuracy_accuracy
   use epcont_accuracy_zone_error, only: estimate_zone, zone_error
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: least_difference, no_effect
+  use epcont_contact_scaling, only: diagonal
   use epcont_element_kinematics, only: directions
   use epcont_linear_linear_problem, only: linear_problem
   use epcont_model_arrays, only: angle
@@ -83,7 +84,7 @@ contains
       call find_unit_loads(scene, linear, answer, kept%loads, same)
     else
       kept%loads = none%loads
-      call dense_loads(reshape([real(wp) ::], [scene%model%pairs, 0]), kept%loads%passed)
+      kept%loads%passed = dense_loads(reshape([real(wp) ::], [scene%model%pairs, 0]), [integer ::], 0)
     end if
     if (.not. same) then
       if (allocated(kept%field)) deallocate (kept%field)
@@ -231,9 +232,7 @@ contains
       end do
       associate (shifted => shifted_loads(scene%model, line, scene%motions, answer))
         do j = 1, size(kept%loads%share, 2)
-          associate (shared => kept%loads%passed%weighed(kept%loads%share(:, j)))
-            off(motions + j) = off(motions + j) + sum(abs(matmul(shared(:motions), shifted)))
-          end associate
+          off(motions + j) = off(motions + j) + sum(abs(matmul(kept%loads%passed%shared(:, j), shifted)))
         end do
       end associate
     end function errors
@@ -349,7 +348,7 @@ contains
       if (scene%numbering%joined) then
         compliance = linear%joined%compliance
       else
-        compliance = linear%problem%flexibility%diagonal()
+        compliance = diagonal(linear%problem%flexibility)
       end if
       off = 0.0_wp
       do z = 1, size(accuracy%zone)

@@ -46,7 +46,7 @@ contains
     type(body_loads) :: loads
     integer :: k
 
-    loads%pair = pack(pair, passed%level_of(pair) > 0)
+    loads%pair = pack(pair, [(any(passed%force(pair(k), :) /= 0.0_wp), k=1, size(pair))])
     call passed%find_at(loads%pair, loads%load, loads%force)
     do k = 1, size(loads%pair)
       loads%force(:, k) = loads%force(:, k)/passed%unit(loads%load)

@@ -1,17 +1,25 @@
 !> Unit loads on bodies that are one system, and what errors of the stiffness and of the gaps do to its
 !> contact forces: the figures of `unit_loads`, by solves with its factor, which they share.
 module epcont_accuracy_joined_loads
-  use epcont_accuracy_passed_loads, only: dense_loads, passed_loads
+  use epcont_accuracy_passed_loads, only: dense_loads, farthest, passed_loads
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: solved_to
   use epcont_element_kinematics, only: directions
   use epcont_flexibility_flexibility, only: terms_of_openings
+  use epcont_linear_joined_response, only: respond
+  use epcont_linear_joined_springs, only: suport_values
   use epcont_linear_linear_problem, only: linear_problem
   use epcont_plan_planned_scene, only: planned_scene
   use epcont_result_answer, only: answer_type
   implicit none
   private
   public :: contact_sensitivity, find_joined_loads
+
+  !> Openings of gaps that motions explain but for this part of them make no forces: springs of SUPORT
+  !! freedoms leave that much.
+  real(wp), parameter :: as_motions = 1.0e-5_wp
+  !> Motions up to which that is asked of all of them.
+  integer, parameter :: few_motions = 40
 
   type :: contact_sensitivity
     logical :: known = .false.
@@ -35,16 +43,18 @@ contains
     !> What the first solve has for the two columns; not allocated: nothing is known [pairs, 2]
     real(wp), allocatable, intent(inout) :: probe(:, :)
     type(contact_sensitivity), intent(out) :: sensitivity
-    real(wp) :: load(scene%motions%count, &
-                     merge(2, scene%motions%count + size(share, 2) + 2, allocated(probe)))
-    real(wp), dimension(scene%model%pairs, size(load, 2)) :: force, opening
-    real(wp) :: u(directions, size(load, 2), scene%model%nodes)
+    real(wp), allocatable :: load(:, :), force(:, :), opening(:, :), u(:, :, :)
+    integer :: columns
     !> Sums that the gaps come from, of deformations and of travels; what these change of a force, if they are
     !! as much off, of the largest [length] [pairs, 2], [2]
     real(wp) :: sums(scene%model%pairs, 2), change(2), condition
-    integer, allocatable :: pressed(:)
+    integer, allocatable :: chosen(:), pressed(:)   ! motions whose errors are told; pairs
     integer :: j, k, loads
 
+    chosen = farthest(answer%contact%approach, .not. answer%contact%motion_free)
+    columns = merge(2, size(chosen) + size(share, 2) + 2, allocated(probe))
+    allocate (load(scene%motions%count, columns), force(scene%model%pairs, columns), &
+              opening(scene%model%pairs, columns), u(directions, columns, scene%model%nodes))
     loads = size(load, 2) - 2
     pressed = pack([(k, k=1, scene%model%pairs)], answer%contact%force > 0.0_wp)
     load = 0.0_wp
@@ -52,29 +62,42 @@ contains
     force = 0.0_wp
     u = 0.0_wp
     if (.not. allocated(probe)) then
-      do j = 1, scene%motions%count
-        load(j, j) = 1.0_wp
+      do j = 1, size(chosen)
+        load(chosen(j), j) = 1.0_wp
       end do
-      opening(:, scene%motions%count + 1:loads) = -share
+      opening(:, size(chosen) + 1:loads) = -share
       call begin_probes(opening(:, loads + 1:))
-      call linear%joined%respond(scene, linear%factored_bodies, load, opening, force, u)
+      call respond(linear%joined, scene, linear%factored_bodies, load, opening, force, u)
       probe = force(:, loads + 1:)
     end if
     call turn_probes(opening(:, loads + 1:))
     force(:, loads + 1:) = 0.0_wp
     u(:, loads + 1:, :) = 0.0_wp
-    call linear%joined%respond(scene, linear%factored_bodies, load, opening, force, u)
+    call respond(linear%joined, scene, linear%factored_bodies, load, opening, force, u)
     change = max(change, maxval(abs(force(pressed, loads + 1:)), dim=1)/maxval(answer%contact%force))
     call linear%estimate_condition(scene, condition)
     sensitivity = contact_sensitivity(.true., change(1), rounding())
     if (loads == 0) return
-    do j = scene%motions%count + 1, loads
-      if (give_way(opening(:, j))) force(:, j) = 0.0_wp
+    do j = size(chosen) + 1, loads
+      if (give_way(opening(:, j), approach_of(j))) force(:, j) = 0.0_wp
     end do
-    call dense_loads(force(:, :loads), passed)
+    passed = dense_loads(force(:, :loads), [chosen, [(scene%motions%count + j, j=1, size(share, 2))]], &
+                         scene%motions%count + size(share, 2))
     passed%displacement = u(:, :loads, :)
+    allocate (passed%shared(scene%motions%count, size(share, 2)))
+    do j = 1, size(share, 2)
+      passed%shared(:, j) = approach_of(size(chosen) + j)
+    end do
 
   contains
+
+    !> What a load moves the SUPORT freedoms by.
+    function approach_of(j) result(q)
+      integer, intent(in) :: j
+      real(wp) :: q(scene%motions%count)
+
+      q = suport_values(scene, u(:, j, :))
+    end function approach_of
 
     !> What rounding may leave in a force, of the largest: what the last step of the contact has not changed
     !! is right, but for what gaps are the sum of.
@@ -112,15 +135,19 @@ contains
       end do
     end subroutine turn_probes
 
-    !> Do motions open the gaps of the pressed pairs so? Then no forces come of it. The motions' part is taken
-    !! off by Gram and Schmidt's way, twice, against rounding.
-    logical function give_way(opening)
-      real(wp), intent(in) :: opening(:)
+    !> Do motions open the gaps of the pressed pairs so? Then no forces come of it. Of many motions those that
+    !! the solve has led to are looked at; of few their part is taken off by Gram and Schmidt's way, twice,
+    !! against rounding.
+    logical function give_way(opening, q)
+      real(wp), intent(in) :: opening(:), q(:)
       real(wp), allocatable :: closing(:, :), rest(:)
-      real(wp) :: length
+      real(wp) :: all_pairs(size(opening)), length
       integer :: i, k, turn
 
-      rest = opening(pressed)
+      all_pairs = opening - linear%problem%motion%times(q)
+      rest = all_pairs(pressed)
+      give_way = norm2(rest) <= as_motions*norm2(opening(pressed))
+      if (size(q) > few_motions) return
       closing = linear%problem%motion%rows(pressed)
       do k = 1, size(closing, 2)
         length = norm2(closing(:, k))

@@ -8,7 +8,7 @@
 !> are few, else estimated from a few products (Hager 1984; Higham 1988).
 module epcont_accuracy_unit_loads
   use epcont_accuracy_joined_loads, only: contact_sensitivity, find_joined_loads
-  use epcont_accuracy_passed_loads, only: dense_loads, pass_on_loads, passed_loads
+  use epcont_accuracy_passed_loads, only: dense_loads, farthest, passed_loads
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: least_difference, solved_to
   use epcont_contact_basis, only: contact_basis, move_basis, renew_basis, respond
@@ -32,7 +32,8 @@ module epcont_accuracy_unit_loads
   integer, parameter :: few_pairs = 200
   integer, parameter :: most_products = 5
 
-  !> A unit load along each free motion, then gaps that shrink by what each pair counts in a sum of forces.
+  !> A unit load along each free motion, of which those of a few are looked at, then gaps that shrink by what
+  !! each pair counts in a sum of forces.
   type :: unit_loads
     type(scaled_problem) :: problem
     type(contact_basis) :: basis              !! of the pairs in contact
@@ -95,6 +96,8 @@ contains
     subroutine put_on_pairs()
       type(rigid_start) :: start
       integer, allocatable :: pressed(:)
+      real(wp), allocatable :: force(:, :)
+      integer, allocatable :: chosen(:)   ! motions whose unit loads are looked at
 
       loads%problem = scale_problem(linear%problem)
       if (any(answer%contact%motion_free)) then
@@ -105,16 +108,43 @@ contains
       end if
       call move_basis(linear%basis, loads%basis)
       call renew_basis(loads%basis, loads%problem, answer%contact%force > 0.0_wp)
-      associate (known => closing_forces(loads%problem, loads%basis, loads%share))
-        if (loads%basis%sound) then
-          call pass_on_loads(loads%basis, scene%motions%count, &
-                             loads%problem%motion_size(loads%problem%kept), known, loads%passed)
-        else
-          call dense_loads(reshape([(0.0_wp, j=1, scene%model%pairs*scene%motions%count), known], &
-                                   [scene%model%pairs, scene%motions%count + size(known, 2)]), loads%passed)
-        end if
+      chosen = farthest(answer%contact%approach, .not. answer%contact%motion_free)
+      associate (m => size(chosen), motions => scene%motions%count, shares => size(loads%share, 2))
+        allocate (force(scene%model%pairs, m + shares), source=0.0_wp)
+        force(:, m + 1:) = closing_forces(loads%problem, loads%basis, loads%share)
+        if (loads%basis%sound) force(loads%basis%pairs, :m) = forces_along(chosen)
+        loads%passed = dense_loads(force, [chosen, [(motions + j, j=1, shares)]], motions + shares)
+        allocate (loads%passed%shared(motions, shares), source=0.0_wp)
+        if (loads%basis%sound) loads%passed%shared(loads%problem%kept, :) = motions_by_closing()
       end associate
     end subroutine put_on_pairs
+
+    !> Forces of the pairs in contact under a unit load along each chosen motion; none if it is not kept.
+    function forces_along(chosen) result(carried)
+      integer, intent(in) :: chosen(:)
+      real(wp), allocatable :: carried(:, :), approach(:, :)
+      real(wp) :: load(loads%basis%motions, size(chosen)), opening(size(loads%basis%pairs), size(chosen))
+      integer :: k
+
+      load = 0.0_wp
+      opening = 0.0_wp
+      do k = 1, size(load, 1)
+        associate (motion => loads%basis%kept(k))
+          where (chosen == motion) load(k, :) = 1.0_wp/loads%problem%motion_size(motion)
+        end associate
+      end do
+      call respond(loads%basis, opening, load, carried, approach)
+    end function forces_along
+
+    !> What gaps that shrink by shares move the bodies by [length] [kept motions, shares].
+    function motions_by_closing() result(approach)
+      real(wp), allocatable :: carried(:, :), approach(:, :)
+      real(wp) :: load(loads%basis%motions, size(loads%share, 2))
+
+      load = 0.0_wp
+      call respond(loads%basis, -loads%share(loads%basis%pairs, :), load, carried, approach)
+      approach = approach/spread(loads%problem%motion_size(loads%basis%kept), 2, size(load, 2))
+    end function motions_by_closing
 
     !> Shares of pairs in sums of forces. Of bodies that no pair touches, though some might, nothing is known.
     subroutine find_shares()
