@@ -12,7 +12,7 @@ module epcont
   use epcont_model_arrays, only: add_elements, body_load, line_couple, linear_equation, named_line, &
       new_scene, scene_type, set_pairs, set_sections, side_pressure, spring_type, turning_platen
   use epcont_model_controls, only: controls_type, method_auto, method_inistr, method_modsec, method_newton, &
-      method_secant, rule_auto, rule_block, rule_conry, rule_joined, solver_auto, solver_band, &
+      method_secant, rule_auto, rule_conry, rule_joined, solver_auto, solver_band, &
       solver_frontal, uniaxial_curve
   use epcont_model_finding, only: findings
   use epcont_model_yield_curve, only: bilinear_curve
@@ -30,7 +30,7 @@ module epcont
   public :: plane_strain, plane_stress, axisymmetric, uniaxial_curve, bilinear_curve
   ! What a deck says by PARAM.
   public :: controls_type, method_auto, method_secant, method_modsec, method_inistr, method_newton, &
-    rule_auto, rule_conry, rule_block, rule_joined, solver_auto, solver_band, solver_frontal
+    rule_auto, rule_conry, rule_joined, solver_auto, solver_band, solver_frontal
   ! Its answer, what came of it, and what there is to say of it.
   public :: solve_scene, solution_type, outcome_type, findings
   public :: status_valid, status_no_answer, status_deck, status_usage, status_numerical, status_internal

@@ -8,13 +8,15 @@ module epcont_solution
   use epcont_certificate_scene, only: look_through
   use epcont_verdict, only: find_verdict, verdict_type
   use epcont_contact_geometry_nearness, only: find_nodes_that_came_near, pair_nodes_that_came_near
-  use epcont_contact_problem, only: contact_solved
+  use epcont_contact_problem, only: contact_solved, contact_stalled
   use epcont_flexibility_flexibility, only: pair_forces
+  use epcont_linear_joined_response, only: are_unique
   use epcont_linear_linear_problem, only: linear_problem
   use epcont_model_controls, only: method_newton
   use epcont_model_model, only: line_contact
   use epcont_plan_forecast, only: check_memory
   use epcont_plan_iteration_plan, only: iteration_plan
+  use epcont_plan_joining, only: can_join
   use epcont_plan_planned_model, only: planned_model
   use epcont_plan_side_by_side, only: plan_threads
   use epcont_plasticity_load_path, only: follow_loads
@@ -80,20 +82,23 @@ contains
     class(observer), intent(inout) :: watch               !! takes the time, and is told of each solve
     type(error_type), allocatable, intent(out) :: error   !! there is not enough memory
     type(line_contact), allocatable :: contacts(:)
-    integer :: count
+    integer :: count, failures
     logical :: failed, near
 
     self%replanned = .false.
     if (allocated(self%as_given)) deallocate (self%as_given)
-    do count = 1, most_solves + 1   ! one more, should joined bodies have to be solved apart
+    failures = 0
+    do count = 1, most_solves + 2   ! two more, should a rule find no contact
       call check_memory(self%expected%bytes, limit, error)
       if (allocated(error)) return
       self%iteration%threads = plan_threads(self%numbering, self%expected%bytes, granted_threads())
       call watch%expect(self%expected%operations)
       call analyse(self%planned_model, self%kept, self%answer, self%certificate, self%accuracy, watch, &
                    failed)
-      if (failed) then
-        self%apart = .true.
+      ! What neither rule finds, the simplex has the words for.
+      if (failed .and. (self%iteration%joined .or. failures == 0 .and. can_join(self%model))) then
+        failures = failures + 1
+        self%other_rule = .not. self%other_rule
         self%replanned = .not. allocated(self%as_given)
       else
         if (self%answer%failed_body > 0 .or. count >= most_solves) exit
@@ -143,14 +148,15 @@ contains
     type(certificate_type), intent(out) :: certificate
     type(accuracy_type), intent(out) :: accuracy
     class(observer), intent(inout) :: watch
-    logical, intent(out) :: failed      !! joined bodies are to be solved apart
+    logical, intent(out) :: failed      !! the other rule is to find the contact
 
     call follow_or_step()
     failed = kept%linear%joined%failed .or. &
-             scene%numbering%joined .and. answer%failed_body > 0 .and. .not. answer%lacks_memory
+             scene%numbering%joined .and. answer%failed_body > 0 .and. .not. answer%lacks_memory .or. &
+             .not. scene%numbering%joined .and. answer%contact%state == contact_stalled
     if (failed .or. answer%failed_body > 0 .or. answer%contact%state /= contact_solved) return
     if (scene%numbering%joined) &
-      failed = .not. kept%linear%joined%are_unique(scene, kept%linear%factored_bodies)
+      failed = .not. are_unique(kept%linear%joined, scene, kept%linear%factored_bodies)
     call watch%lap(stage_contact)
     if (failed) return
     call evaluate_refined()

@@ -29,7 +29,7 @@ from score import figures_of  # noqa: E402
 from wording import parser_of, run  # noqa: E402
 
 METHODS, TOLERANCES = ("NEWTON", "SECANT", "MODSEC", "INISTR"), ("1.E-2", "1.E-4", "1.E-8")
-RULES = "CONRY", "BLOCK"
+RULES = "CONRY", "JOINED"
 #: What everything is compared with. Scenes leave out what they have no use for.
 BASE = {"METHOD": "NEWTON", "TOL": "1.E-8", "RULE": "CONRY"}
 #: The way of the program of about 1980, whole.
@@ -215,6 +215,14 @@ def draw(found, path):
 
 #: Mechanisms that are no longer there: old and new program in turns, medians of five, one thread.
 REMOVED = [
+    ["PARAM RULE BLOCK: block pivoting of the contacts with F of each body, from 100 pairs on; an interior path",
+     "`tools/decks blocks` with 600 pairs and 24 000 nodes 0.27 s, now 0.26 (CONRY); 1000 pairs and 40 000 nodes 0.56, 0.70 (JOINED); strip of 600 pairs 0.15, 0.15",
+     "a second way to the same bits, 300 lines; its exchanges remain as the rescue of the simplex, its interior path in joined bodies. Rows of BLOCK in the "
+     "other tables of this page are of the program before"],
+    ["flexibility in levels: F and its factor as block tridiagonal matrices, unit loads passed from level to level",
+     "`tools/decks stack` (30 bodies, 42 000 nodes) 0.43 s and 158 MB, now 0.68 s and 209 MB (JOINED); 1 000 small bodies 0.66, 0.74 s; walls the other way: "
+     "16 x 16 bricks 0.57 s and 66 MB, now 0.16 s and 26 MB",
+     "900 lines; many bodies are joined, which takes springs, MPC and undetermined modes now"],
     ["PARAM PRECIS: factors in single precision, refined (MIXED) or not (SINGLE)",
      "`tools/decks hertz 42000` with PRECIS DOUBLE, MIXED, SINGLE: elastic 0.33, 0.39, 0.32 s and 141, 114, 112 MB; yielding (`--plastic`) 0.82, "
      "1.39, 0.65 s and 214, 166, 165 MB",

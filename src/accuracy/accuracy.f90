@@ -13,6 +13,7 @@ module epcont_accuracy_accuracy
   use epcont_accuracy_zone_error, only: estimate_zone, zone_error
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: least_difference, no_effect
+  use epcont_contact_scaling, only: diagonal
   use epcont_element_kinematics, only: directions
   use epcont_linear_linear_problem, only: linear_problem
   use epcont_model_arrays, only: angle
@@ -348,7 +349,7 @@ contains
       if (scene%numbering%joined) then
         compliance = linear%joined%compliance
       else
-        compliance = linear%problem%flexibility%diagonal()
+        compliance = diagonal(linear%problem%flexibility)
       end if
       off = 0.0_wp
       do z = 1, size(accuracy%zone)

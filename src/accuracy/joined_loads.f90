@@ -6,13 +6,20 @@ module epcont_accuracy_joined_loads
   use epcont_base_tolerances, only: solved_to
   use epcont_element_kinematics, only: directions
   use epcont_flexibility_flexibility, only: terms_of_openings
-  use epcont_linear_joined_springs, only: frozen_response
+  use epcont_linear_joined_response, only: frozen_response, respond
+  use epcont_linear_joined_springs, only: suport_values
   use epcont_linear_linear_problem, only: linear_problem
   use epcont_plan_planned_model, only: planned_model
   use epcont_result_answer, only: answer_type
   implicit none
   private
   public :: contact_sensitivity, find_joined_loads
+
+  !> Openings of gaps that motions explain but for this part of them make no forces: springs of SUPORT
+  !! freedoms leave that much.
+  real(wp), parameter :: as_motions = 1.0e-5_wp
+  !> Motions up to which that is asked of all of them.
+  integer, parameter :: few_motions = 40
 
   type :: contact_sensitivity
     logical :: known = .false.
@@ -55,26 +62,26 @@ contains
       end do
       found%opening(:, motions + 1:loads) = -unit_loads%share
       call begin_probes(found%opening(:, loads + 1:))
-      call linear%joined%respond(scene, linear%factored_bodies, found, at_contact=.true.)
+      call respond(linear%joined, scene, linear%factored_bodies, found, at_contact=.true.)
       probe = found%force(:, loads + 1:)
     end if
     call turn_probes(found%opening(:, loads + 1:))
     found%force(:, loads + 1:) = 0.0_wp
     found%displacement(:, loads + 1:, :) = 0.0_wp
-    call linear%joined%respond(scene, linear%factored_bodies, found, at_contact=loads == 0)
+    call respond(linear%joined, scene, linear%factored_bodies, found, at_contact=loads == 0)
     change = max(change, maxval(abs(found%force(pressed, loads + 1:)), dim=1)/maxval(answer%contact%force))
     call linear%estimate_condition(scene, condition)
     sensitivity = contact_sensitivity(.true., change(1), rounding())
     if (loads == 0) return
     do j = motions + 1, loads
-      if (give_way(found%opening(:, j))) found%force(:, j) = 0.0_wp
+      if (give_way(found%opening(:, j), suport_values(scene, found%displacement(:, j, :)))) &
+        found%force(:, j) = 0.0_wp
     end do
     unit_loads%force = found%force(:, :loads)
     unit_loads%displacement = found%displacement(:, :loads, :)
     allocate (unit_loads%shared(scene%motions%count, loads - motions))
-    do k = 1, scene%motions%count
-      unit_loads%shared(k, :) = -unit_loads%displacement(scene%motions%component(k), motions + 1:, &
-                                                         scene%motions%node(k))
+    do j = motions + 1, loads
+      unit_loads%shared(:, j - motions) = -suport_values(scene, unit_loads%displacement(:, j, :))
     end do
 
   contains
@@ -115,15 +122,19 @@ contains
       end do
     end subroutine turn_probes
 
-    !> Do motions open the gaps of the pressed pairs so? Then no forces come of it. The motions' part is taken
-    !! off by Gram and Schmidt's way, twice, against rounding.
-    logical function give_way(opening)
-      real(wp), intent(in) :: opening(:)
+    !> Do motions open the gaps of the pressed pairs so? Then no forces come of it. Of many motions those that
+    !! the solve has led to are looked at; of few their part is taken off by Gram and Schmidt's way, twice,
+    !! against rounding.
+    logical function give_way(opening, q)
+      real(wp), intent(in) :: opening(:), q(:)
       real(wp), allocatable :: closing(:, :), rest(:)
-      real(wp) :: length
+      real(wp) :: all_pairs(size(opening)), length
       integer :: i, k, turn
 
-      rest = opening(pressed)
+      all_pairs = opening - linear%problem%motion%times(q)
+      rest = all_pairs(pressed)
+      give_way = norm2(rest) <= as_motions*norm2(opening(pressed))
+      if (size(q) > few_motions) return
       closing = linear%problem%motion%rows(pressed)
       do k = 1, size(closing, 2)
         length = norm2(closing(:, k))

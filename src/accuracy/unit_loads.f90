@@ -35,7 +35,8 @@ module epcont_accuracy_unit_loads
   integer, parameter :: few_pairs = 200
   integer, parameter :: most_products = 5
 
-  !> A unit load along each free motion, then gaps that shrink by what each pair counts in a sum of forces.
+  !> A unit load along each free motion, of which those of a few are looked at, then gaps that shrink by what
+  !! each pair counts in a sum of forces.
   type :: unit_loads
     type(scaled_problem) :: problem
     type(contact_basis) :: basis              !! of the pairs in contact
@@ -98,6 +99,8 @@ contains
     subroutine put_on_pairs()
       type(rigid_start) :: start
       integer, allocatable :: pressed(:)
+      real(wp), allocatable :: force(:, :)
+      integer, allocatable :: chosen(:)   ! motions whose unit loads are looked at
 
       loads%problem = scale_problem(linear%problem)
       if (any(answer%contact%motion_free)) then

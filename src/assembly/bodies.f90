@@ -6,7 +6,9 @@ module epcont_assembly_bodies
   use epcont_element_kinematics, only: directions
   use epcont_linalg_assembled, only: sparse_rows
   use epcont_material_linear_law, only: linear_law
+  use epcont_model_arrays, only: angle
   use epcont_model_springs, only: spring_forces
+  use epcont_model_ties, only: platen_angle
   use epcont_plan_planned_model, only: planned_model
   use epcont_system_threads, only: threads_over, use_one_thread_each
   implicit none
@@ -97,23 +99,48 @@ contains
       self%settlement = self%settlement - spring_forces(scene%model, prescribed)
   end subroutine settle
 
-  !> A part of the prescribed displacements, put in its place; nothing else is touched.
+  !> Put a part of the prescribed displacements in its place. Freedoms that are sums follow; nothing else is
+  !! touched.
   pure subroutine prescribe(scene, load_factor, displacement)
     type(planned_model), intent(in) :: scene        !! that has them
     real(wp), intent(in) :: load_factor             !! of the prescribed displacements
     real(wp), intent(inout) :: displacement(:, :)   !! [length] [directions, nodes]
-    integer :: c, leader, node
+    real(wp) :: turned(size(scene%model%platen))    ! [radian]
+    integer :: c, k, node
 
-    do node = 1, scene%model%nodes
-      do c = 1, directions
-        leader = scene%model%leader(c, node)
-        if (scene%model%sum_of(c, node) > 0) then
-          displacement(c, node) = load_factor*scene%model%prescribed_sum(c, node)
-        else if (scene%model%held(c, leader)) then
-          displacement(c, node) = load_factor*scene%model%beyond_travel(c, leader)
-        end if
+    associate (model => scene%model)
+      turned = [(platen_angle(model, k, displacement), k=1, size(turned))]
+      where (model%platen%held) turned = load_factor*model%platen%prescribed
+      do node = 1, model%nodes
+        do c = 1, directions
+          if (model%sum_of(c, node) == 0 .and. model%is_held(c, node)) &
+            displacement(c, node) = load_factor*model%beyond_travel(c, model%leader(c, node))
+        end do
       end do
-    end do
+      if (size(model%sum%first) == 0) return
+      do node = 1, model%nodes
+        do c = 1, directions
+          if (model%sum_of(c, node) > 0) displacement(c, node) = sum_of_terms(model%sum_of(c, node))
+        end do
+      end do
+    end associate
+
+  contains
+
+    pure real(wp) function sum_of_terms(row) result(u)
+      integer, intent(in) :: row
+      integer :: i
+
+      u = 0.0_wp
+      associate (sums => scene%model%sum)
+        do i = sums%first(row), sums%last(row)
+          associate (of => sums%component(i), at => sums%node(i))
+            if (of == angle) u = u + sums%weight(i)*turned(at)
+            if (of /= angle) u = u + sums%weight(i)*displacement(of, at)
+          end associate
+        end do
+      end associate
+    end function sum_of_terms
   end subroutine prescribe
 
   !> Estimate of the condition of the stiffness in the 1-norm: the largest of the bodies. What has yielded is
@@ -186,7 +213,7 @@ contains
         allocate (inner(body%equations, 1), border(body%border, 1), source=0.0_wp)
         ! Equations are of one freedom each; those of the border are of many.
         !$omp parallel do private(c, own) &
-        !$omp num_threads(merge(1, threads_over(size(body%node)), body%border > 0))
+        !$omp num_threads(merge(1, threads_over(size(body%node)), size(body%tied%start) > 1))
         do i = 1, size(body%node)
           associate (node => body%node(i))
             own = force(:, node) + load_factor*self%settlement(:, node)
@@ -194,7 +221,7 @@ contains
             do c = 1, directions
               associate (number => scene%numbering%equation(c, node))
                 if (number > 0) inner(number, 1) = inner(number, 1) + own(c)
-                if (number < 0) call add_tied(body%tied, -number, own(c:c), border)
+                if (number < 0) call add_tied(body%tied, -number, own(c:c), inner, border)
               end associate
             end do
           end associate
@@ -240,7 +267,8 @@ contains
             do c = 1, directions
               associate (number => scene%numbering%equation(c, node))
                 if (number > 0) u(c, node) = merge(inner(number, 1), 0.0_wp, number >= first)
-                if (number < 0) u(c, node) = u(c, node) + sum(tied_value(body%tied, -number, border(:, 1:1)))
+                if (number < 0) &
+                  u(c, node) = u(c, node) + sum(tied_value(body%tied, -number, inner(:, 1:1), border(:, 1:1)))
               end associate
             end do
             if (axes%turn(node) > 0) u(:, node) = axes%back(node, u(:, node))
@@ -251,30 +279,34 @@ contains
     end do
   end function finish
 
-  !> Put forces on what a tied freedom is a sum of.
-  pure subroutine add_tied(tied, row, force, border)
+  !> Put forces on what a tied freedom is a sum of: of the border, or of joined bodies, which have none.
+  pure subroutine add_tied(tied, row, force, inner, border)
     type(sparse_rows), intent(in) :: tied       !! of a body
     integer, intent(in) :: row                  !! of the freedom
     real(wp), intent(in) :: force(:)            !! [fields]
-    real(wp), intent(inout) :: border(:, :)     !! [border, fields]
+    real(wp), intent(inout) :: inner(:, :), border(:, :)   !! [equations, fields], [border, fields]
     integer :: e
 
     do e = tied%start(row), tied%start(row + 1) - 1
-      border(tied%equation(e), :) = border(tied%equation(e), :) + tied%weight(e)*force
+      associate (at => tied%equation(e))
+        if (size(border, 1) == 0) inner(at, :) = inner(at, :) + tied%weight(e)*force
+        if (size(border, 1) > 0) border(at, :) = border(at, :) + tied%weight(e)*force
+      end associate
     end do
   end subroutine add_tied
 
   !> Displacements of a tied freedom [fields].
-  pure function tied_value(tied, row, border) result(u)
+  pure function tied_value(tied, row, inner, border) result(u)
     type(sparse_rows), intent(in) :: tied       !! of a body
     integer, intent(in) :: row                  !! of the freedom
-    real(wp), intent(in) :: border(:, :)        !! [border, fields]
+    real(wp), intent(in) :: inner(:, :), border(:, :)      !! [equations, fields], [border, fields]
     real(wp) :: u(size(border, 2))
     integer :: e
 
     u = 0.0_wp
     do e = tied%start(row), tied%start(row + 1) - 1
-      u = u + tied%weight(e)*border(tied%equation(e), :)
+      if (size(border, 1) == 0) u = u + tied%weight(e)*inner(tied%equation(e), :)
+      if (size(border, 1) > 0) u = u + tied%weight(e)*border(tied%equation(e), :)
     end do
   end function tied_value
 
@@ -303,7 +335,7 @@ contains
       do c = 1, directions
         associate (number => scene%numbering%equation(c, loads%node(i)))
           if (number > 0) inner(number, :) = inner(number, :) + own(c, :)
-          if (number < 0) call add_tied(scene%numbering%body(b)%tied, -number, own(c, :), border)
+          if (number < 0) call add_tied(scene%numbering%body(b)%tied, -number, own(c, :), inner, border)
         end associate
       end do
     end do
@@ -315,7 +347,7 @@ contains
       do c = 1, directions
         associate (number => scene%numbering%equation(c, node(i)))
           if (number > 0) own(c, :) = inner(number, :)
-          if (number < 0) own(c, :) = tied_value(scene%numbering%body(b)%tied, -number, border)
+          if (number < 0) own(c, :) = tied_value(scene%numbering%body(b)%tied, -number, inner, border)
         end associate
       end do
       call turn(node(i), .false.)

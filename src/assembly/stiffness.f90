@@ -14,6 +14,7 @@ module epcont_assembly_stiffness
   use epcont_linalg_panels, only: panel_matrix
   use epcont_material_linear_law, only: linear_law
   use epcont_model_controls, only: solver_frontal
+  use epcont_plan_joined_numbering, only: find_terms
   use epcont_plan_numbering, only: most_freedoms
   use epcont_plan_planned_model, only: planned_model
   !$ use omp_lib, only: omp_get_num_threads
@@ -77,7 +78,7 @@ contains
       else
         call fill(1, 1, size(body%part))
       end if
-      call add_springs()
+      if (.not. scene%numbering%joined) call add_springs()
     end associate
 
   contains
@@ -145,12 +146,30 @@ contains
 
       number = scene%numbering%of_element(scene%model, element)
       n = directions*scene%model%node_count(element)
+      if (scene%numbering%joined .and. any(number(:n) < 0)) then
+        call add_sums(element, n, number(:n))
+        return
+      end if
       if (.not. any(stale(number(:n)))) return
       call operator%element_stiffness(scene%model, element, law, n, k)
       call scene%numbering%axes%turn_stiffness(scene%model%connectivity(:, element), n, k)
       call self%matrix%add(n, number, k)
       if (size(self%schur) > 0) call add_to_border(n, number, k, scene%numbering%body(b)%tied, self)
     end subroutine add_element
+
+    !> The same where freedoms are sums of equations.
+    subroutine add_sums(element, n, of_element)
+      integer, intent(in) :: element, n, of_element(n)
+      integer, allocatable :: freedom(:), number(:)
+      real(wp), allocatable :: weight(:)
+      real(wp) :: k(n, n)
+
+      call find_terms(scene%numbering%body(1)%tied, of_element, number, freedom, weight)
+      if (.not. any(stale(number))) return
+      call operator%element_stiffness(scene%model, element, law, n, k)
+      call self%matrix%add(size(number), number, k(freedom, freedom)* &
+                           spread(weight, 2, size(weight))*spread(weight, 1, size(weight)))
+    end subroutine add_sums
 
     subroutine add_spring(k)
       integer, intent(in) :: k
@@ -212,6 +231,8 @@ contains
 
     !> The equations of elements and springs that have changed.
     subroutine find_stale()
+      integer, allocatable :: freedom(:), term(:)
+      real(wp), allocatable :: weight(:)
       integer :: e, i, number(most_freedoms)
 
       stale = .false.
@@ -222,6 +243,9 @@ contains
           do i = 1, size(number)
             stale(number(i)) = number(i) > 0
           end do
+          if (.not. scene%numbering%joined .or. all(number >= 0)) cycle
+          call find_terms(scene%numbering%body(1)%tied, number, term, freedom, weight)
+          stale(term) = .true.
         end do
       end associate
       if (.not. allocated(spring%changed)) return

@@ -99,7 +99,7 @@ contains
         value = start
         pending = 0
         motion = scaled%motion%dense()
-        settled(:, :n) = scaled%flexibility_scale*scaled%flexibility%dense()
+        settled(:, :n) = scaled%flexibility_scale*scaled%flexibility
         opening = settled(pairs, :n)
         responding = settled(:, pairs)
         load = -transpose(motion)

@@ -1,34 +1,28 @@
-!> Motions that some pairs do not hold: the x with A x = 0 in their rows.
+!> Rigid-body modes that a set of pairs does not restrain: the x with A x = 0 in the rows of these pairs.
 !>
-!> Of many bodies A is large, and its singular values would take longer than all the rest. Motions that
-!> hang together through the pairs are looked at by themselves; where the Cholesky factor of A'A, banded in
-!> the order in which they are met from pair to pair, says that all of them are held, there is nothing to
-!> look for.
+!> Of many bodies A is large, and its singular values would take longer than all the rest. Modes that hang
+!> together through the pairs form a band in the order in which they are met from pair to pair.
 module epcont_contact_loose_motions
   use epcont_base_kinds, only: wp
   use epcont_flexibility_motion_matrix, only: motion_matrix
-  use epcont_linalg_dense, only: least_eigenvalue, null_space
+  use epcont_linalg_band_rows, only: null_vectors, rotate_in
   implicit none
   private
   public :: loose_motions
 
-  !> Singular values that far above the tolerance, as the factor has them, are above it: its estimate of the
-  !! smallest is hardly ever off by 10.
-  real(wp), parameter :: clearly = 100.0_wp
-
 contains
 
-  !> Orthonormal basis of the motions that these pairs do not hold.
+  !> Find a basis of the modes that these pairs do not restrain, each of length one.
   function loose_motions(motion, pairs, tolerance) result(loose)
     type(motion_matrix), intent(in) :: motion   !! A, largest entry of each column one [n, m]
     integer, intent(in) :: pairs(:)       !! each once
-    real(wp), intent(in) :: tolerance     !! a singular value up to this is zero
+    real(wp), intent(in) :: tolerance     !! a mode is not restrained if no more is left of it
     real(wp), allocatable :: loose(:, :)  !! [m, any]
-    real(wp), allocatable :: more(:, :), own(:, :)
-    integer, allocatable :: motions(:), together(:)
+    real(wp), allocatable :: more(:, :), own(:, :), r(:, :)
+    integer, allocatable :: rows(:), together(:)   ! pairs, modes
     type(motion_matrix) :: by_pair        ! A'
     logical :: counts(motion%pairs), met(motion%motions())
-    integer :: band, j, k   ! rows of the band of A'A
+    integer :: band, j, k
 
     by_pair = motion%turned()
     counts = .false.
@@ -38,18 +32,20 @@ contains
     do j = 1, size(met)
       if (met(j)) cycle
       call meet_all(j)
-      if (are_held()) cycle
-      motions = pack([(k, k=1, size(met))], [(any(together == k), k=1, size(met))])
-      own = null_space(motion%rows(pairs, motions), tolerance)
+      allocate (r(band, size(together)), source=0.0_wp)
+      call rotate_all_in(r)
+      own = null_vectors(r, tolerance)
+      deallocate (r)
+      if (size(own, 2) == 0) cycle
       allocate (more(size(met), size(own, 2)), source=0.0_wp)
-      more(motions, :) = own
+      more(together, :) = own
       loose = reshape([loose, more], [size(met), size(loose, 2) + size(own, 2)])
       deallocate (more)
     end do
 
   contains
 
-    !> The motions that hang together with one, in the order in which they are met.
+    !> Modes that hang together with one, and their pairs, in the order in which they are met.
     subroutine meet_all(first)
       integer, intent(in) :: first
       integer :: at, i, k, last
@@ -57,12 +53,15 @@ contains
 
       queue(1) = first
       met(first) = .true.
+      rows = [integer ::]
       last = 1
       at = 1
       band = 1
       do while (at <= last)
         do i = motion%start(queue(at)), motion%start(queue(at) + 1) - 1
           if (.not. counts(motion%pair(i))) cycle
+          counts(motion%pair(i)) = .false.
+          rows = [rows, motion%pair(i)]
           do k = by_pair%start(motion%pair(i)), by_pair%start(motion%pair(i) + 1) - 1
             associate (next => by_pair%pair(k))
               if (met(next)) cycle
@@ -78,33 +77,22 @@ contains
       together = queue(:last)
     end subroutine meet_all
 
-    !> Are all singular values of these motions clearly above the tolerance?
-    logical function are_held() result(held)
-      real(wp), allocatable :: square(:, :)
-
-      square = banded_square()
-      ! A'A has its rounding, too.
-      held = least_eigenvalue(square) > clearly**2*max(tolerance**2, epsilon(1.0_wp)*maxval(square(1, :)))
-    end function are_held
-
-    !> A'A of these motions, its diagonal and what is below it [band, motions].
-    pure function banded_square() result(square)
-      real(wp), allocatable :: square(:, :)
-      integer :: place(size(met))
-      integer :: i, j, k
+    !> Rotate the rows of their pairs in, in that order: so each meets few of those before.
+    subroutine rotate_all_in(r)
+      real(wp), intent(inout) :: r(:, :)
+      real(wp) :: row(band)
+      integer :: first, i, place(size(met))
 
       place(together) = [(k, k=1, size(together))]
-      allocate (square(band, size(together)), source=0.0_wp)
-      do j = 1, size(together)
-        do i = motion%start(together(j)), motion%start(together(j) + 1) - 1
-          if (.not. counts(motion%pair(i))) cycle
-          do k = by_pair%start(motion%pair(i)), by_pair%start(motion%pair(i) + 1) - 1
-            associate (row => place(by_pair%pair(k)) - j + 1)
-              if (row >= 1) square(row, j) = square(row, j) + motion%closing(i)*by_pair%closing(k)
-            end associate
-          end do
-        end do
+      do i = 1, size(rows)
+        associate (mode => by_pair%pair(by_pair%start(rows(i)):by_pair%start(rows(i) + 1) - 1), &
+                   closing => by_pair%closing(by_pair%start(rows(i)):by_pair%start(rows(i) + 1) - 1))
+          first = minval(place(mode))
+          row = 0.0_wp
+          row(place(mode) - first + 1) = closing
+        end associate
+        call rotate_in(r, first, row)
       end do
-    end function banded_square
+    end subroutine rotate_all_in
   end function loose_motions
 end module epcont_contact_loose_motions

@@ -8,7 +8,6 @@
 !> F is symmetric and semidefinite; it may be singular.
 module epcont_contact_problem
   use epcont_base_kinds, only: wp
-  use epcont_contact_flexibility_matrix, only: flexibility_matrix
   use epcont_flexibility_motion_matrix, only: motion_matrix
   implicit none
   private
@@ -27,7 +26,7 @@ module epcont_contact_problem
   integer, parameter, public :: history_limit = 50
 
   type :: contact_problem
-    type(flexibility_matrix) :: flexibility     !! F, opening of pair i by a unit force at pair j
+    real(wp), allocatable :: flexibility(:, :)  !! F, opening of pair i by a unit force at pair j [n, n]
     type(motion_matrix) :: motion               !! A, closing of the gaps by unit rigid motions [n, m]
     real(wp), allocatable :: initial_gap(:)     !! g0, negative: an overlap [length] [n]
     real(wp), allocatable :: load_gap(:)        !! gl, opening by the loads without contact [length] [n]
@@ -65,10 +64,8 @@ module epcont_contact_problem
     logical, allocatable :: indeterminate(:)
     !> Motions that nothing determines; `approach` is one choice of many [m]
     logical, allocatable :: motion_free(:)
-    logical :: by_blocks = .false.           !! the set was found by RULE BLOCK, not by CONRY
-    logical :: joined = .false.              !! the set was found by RULE JOINED
-    !> Sets that RULE BLOCK has solved, also where CONRY had to take over; or steps of RULE JOINED
-    integer :: block_steps = 0
+    logical :: joined = .false.              !! the set was found by RULE JOINED, not by CONRY
+    integer :: joined_steps = 0              !! that RULE JOINED has taken
     integer :: pivots = 0                    !! pairs exchanged by the rule that found the set
     integer :: degenerate_pivots = 0         !! of these, without change of any variable
     integer :: restarts = 0                  !! fresh starts, after a set failed the test at full load

@@ -12,21 +12,18 @@
 module epcont_contact_scaling
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: negligible
-  use epcont_contact_flexibility_matrix, only: flexibility_matrix
   use epcont_contact_problem, only: contact_problem
   use epcont_flexibility_motion_matrix, only: motion_matrix
   implicit none
   private
-  public :: scaled_problem, scale_problem, drop_motions, measure, gaps_by_forces
+  public :: scaled_problem, scale_problem, diagonal, drop_motions, measure, gaps_by_forces
 
   !> The problem in its own units, over the motions that are kept.
   type :: scaled_problem
-    type(flexibility_matrix), pointer :: flexibility => null()   !! F, as given
+    real(wp), pointer, contiguous :: flexibility(:, :) => null()   !! F, as given [n, n]
     real(wp) :: flexibility_scale = 1.0_wp       !! rho/omega, by which entries of F are multiplied
     real(wp), allocatable :: own_flexibility(:) !! that each pair has besides F [n]
     type(motion_matrix) :: motion               !! A [n, m]
-    real(wp), allocatable :: own_stiffness(:)   !! that each motion has besides its pairs [m]
-    integer, allocatable :: motion_level(:)     !! last level of the pairs that each motion closes [m]
     real(wp), allocatable :: gap(:)             !! g, gaps under load and known forces [n]
     real(wp), allocatable :: known_force(:)     !! those, 0 where the problem has none [n]
     real(wp), allocatable :: gap_terms(:)       !! what g is the sum of [n]
@@ -66,7 +63,7 @@ contains
     scaled%motion_size = or_else(or_else(scaled%motion_size, largest_of(scaled%motion_size)), 1.0_wp)
     scaled%gap = problem%initial_gap + problem%load_gap
     scaled%unloaded_gap = max(problem%initial_gap, 0.0_wp)
-    largest = largest_of(problem%flexibility%diagonal())
+    largest = largest_of(diagonal(problem%flexibility))
 
     driving = max(largest_of(min(scaled%gap, 0.0_wp)), largest_of(problem%load_gap))
     associate (rho => scaled%force_unit, omega => scaled%gap_unit)
@@ -132,17 +129,14 @@ contains
     real(wp) :: softest
     integer :: i, j
 
-    own = scaled%flexibility%diagonal()*scaled%flexibility_scale + scaled%own_flexibility
+    own = diagonal(scaled%flexibility)*scaled%flexibility_scale + scaled%own_flexibility
     softest = or_else(largest_of(own), 1.0_wp)
     squares = 0.0_wp
-    scaled%motion_level = spread(1, 1, scaled%motion%motions())
     scaled%gamma = spread(0.0_wp, 1, scaled%motion%motions())
-    scaled%own_stiffness = scaled%gamma
-    do j = 1, size(scaled%motion_level)
+    do j = 1, size(scaled%gamma)
       do i = scaled%motion%start(j), scaled%motion%start(j + 1) - 1
         associate (k => scaled%motion%pair(i))
           squares(k) = squares(k) + scaled%motion%closing(i)**2
-          scaled%motion_level(j) = max(scaled%motion_level(j), scaled%flexibility%level_of(k))
           scaled%gamma(j) = max(scaled%gamma(j), own(k))
         end associate
       end do
@@ -172,10 +166,28 @@ contains
     real(wp), intent(in) :: force(:)              !! R [n]
     logical, intent(in), optional :: magnitudes   !! true: of F and R
     real(wp) :: gap(size(force))
+    integer :: k
+    logical :: absolute
 
-    gap = scaled%flexibility%times(scaled%flexibility_scale*force, magnitudes)
-    gap = gap + scaled%own_flexibility*force
+    absolute = .false.
+    if (present(magnitudes)) absolute = magnitudes
+    gap = 0.0_wp
+    do k = 1, size(force)
+      if (force(k) == 0.0_wp) cycle
+      if (absolute) gap = gap + abs(force(k)*scaled%flexibility(:, k))
+      if (.not. absolute) gap = gap + force(k)*scaled%flexibility(:, k)
+    end do
+    gap = scaled%flexibility_scale*gap + scaled%own_flexibility*force
   end function gaps_by_forces
+
+  !> Diagonal of a square matrix.
+  pure function diagonal(matrix)
+    real(wp), intent(in) :: matrix(:, :)
+    real(wp) :: diagonal(size(matrix, 1))
+    integer :: k
+
+    diagonal = [(matrix(k, k), k=1, size(diagonal))]
+  end function diagonal
 
   !> Largest absolute value; 0 of none.
   pure real(wp) function largest_of(values)

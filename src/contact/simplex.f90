@@ -11,10 +11,10 @@
 module epcont_contact_simplex
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: cancelled, negligible, null_component, solved_to
-  use epcont_contact_block_pivoting, only: find_by_blocks
+  use epcont_contact_block_pivoting, only: exchange_blocks
   use epcont_contact_loading, only: follow_load
   use epcont_contact_problem, only: contact_overlap, contact_solution, contact_solved, contact_stalled
-  use epcont_contact_scaling, only: gaps_by_forces, measure, scaled_problem
+  use epcont_contact_scaling, only: diagonal, gaps_by_forces, measure, scaled_problem
   use epcont_contact_state, only: basic_values, contact_state, guess_tolerance, has_right_signs, &
     renew_state, solve_set
   implicit none
@@ -96,24 +96,21 @@ contains
     subroutine exchange_afresh(found)
       logical, intent(out) :: found
       type(scaled_problem) :: softer
-      type(contact_solution) :: trial
       type(contact_state) :: better
+      integer :: exchanged
 
       softer = scaled
-      if (allocated(softer%guess)) deallocate (softer%guess)
       softer%own_flexibility = spread(attempt*own_flexibility*scaled%flexibility_scale &
-                                      *maxval([scaled%flexibility%diagonal(), 0.0_wp]), 1, size(closed))
+                                      *maxval([diagonal(scaled%flexibility), 0.0_wp]), 1, size(closed))
       call measure(softer)
-      trial%pivots = solution%pivots
-      call find_by_blocks(softer, trial, better, found)
-      if (.not. found) return
+      exchanged = solution%pivots
       closed = scaled%first_touching
-      closed(better%pairs) = .true.
-      deallocate (better%level)   ! of another flexibility
+      call exchange_blocks(softer, closed, exchanged)
+      closed = closed .or. scaled%first_touching
       call renew_state(better, scaled, closed)
       found = has_right_signs(scaled, better, solved_to)
       if (.not. found) return
-      solution%pivots = trial%pivots
+      solution%pivots = exchanged
       solution%state = contact_solved
       state = better
     end subroutine exchange_afresh

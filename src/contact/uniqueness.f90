@@ -84,7 +84,7 @@ contains
     real(wp), allocatable :: block(:, :)     ! of F_g
     real(wp), allocatable :: closing(:, :), other(:, :)   ! A gamma of the rows, A of the columns
 
-    block = scaled%flexibility_scale*scaled%flexibility%block(rows, columns)
+    block = scaled%flexibility_scale*scaled%flexibility(rows, columns)
     closing = scaled%motion%rows(rows)*spread(scaled%gamma, 1, size(rows))
     other = scaled%motion%rows(columns)
     call add_product(1.0_wp, closing, transpose(other), block)
@@ -96,7 +96,7 @@ contains
     logical, intent(in) :: indeterminate(:)    !! [n]
     real(wp), intent(inout) :: force(:)        !! [n]
     integer, allocatable :: alike(:), left(:)
-    integer :: j, k
+    integer :: k
 
     left = pack([(k, k=1, size(force))], indeterminate)
     do while (size(left) > 0)
@@ -110,12 +110,11 @@ contains
     !> Have two pairs the same flexibility and the same motion?
     pure logical function are_alike(i, k) result(alike)
       integer, intent(in) :: i, k
-      real(wp) :: opening(size(force), 2)   ! of all pairs by a unit force at one or the other
-
       alike = all(abs(problem%motion%rows([i]) - problem%motion%rows([k])) <= negligible)
       if (.not. alike) return
-      opening = problem%flexibility%block([(j, j=1, size(force))], [i, k])
-      alike = all(abs(opening(:, 1) - opening(:, 2)) <= negligible*max(opening(i, 1), opening(k, 2)))
+      associate (f => problem%flexibility)
+        alike = all(abs(f(:, i) - f(:, k)) <= negligible*max(f(i, i), f(k, k)))
+      end associate
     end function are_alike
   end subroutine share_equally
 

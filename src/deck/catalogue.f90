@@ -292,7 +292,7 @@ module epcont_deck_catalogue
   !> All PARAMs: the field VALUE for each NAME.
   character(len=*), parameter :: choices(*) = [character(len=180) :: &
     'PLANE; for=PSHELL word STRAIN STRESS; every PSHELL with blank MID2', &
-    'RULE; for=CGAP/BCONP word AUTO CONRY BLOCK JOINED; contact entry rule; default AUTO', &
+    'RULE; for=CGAP/BCONP word AUTO CONRY JOINED; contact entry rule; default AUTO', &
     'GAPGEOM; for=CGAP word NO YES; YES adds the distance of the nodes to each gap; default NO', &
     'UNITS; word; printed with the results; nothing is converted', &
     'METHOD; for=MATS1 word AUTO SECANT MODSEC INISTR NEWTON; plastic iteration; default AUTO', &

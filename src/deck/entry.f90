@@ -282,7 +282,7 @@ contains
     if (text(1:1) == '.') text = '0'//text
   end function decimal
 
-  !> `AUTO, CONRY or BLOCK` of words with blanks between.
+  !> `AUTO, CONRY or JOINED` of words with blanks between.
   pure function listed(words) result(text)
     character(len=*), intent(in) :: words
     character(len=:), allocatable :: text

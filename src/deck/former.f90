@@ -15,6 +15,8 @@ module epcont_deck_former
 
   type(former_entry), parameter :: former(*) = [ &
     former_entry('PRECIS', '', .false., 'epcont always calculates in double precision', 'remove the card'), &
+    former_entry('RULE', 'BLOCK', .false., 'AUTO finds the same answer, by CONRY or JOINED', &
+                 'remove the card'), &
     former_entry('SOLVER', 'SPARSE', .true., 'FRONTAL factors large bodies', 'AUTO, BAND or FRONTAL')]
 
 contains

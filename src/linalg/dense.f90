@@ -4,12 +4,11 @@
 !> is a fault is for the caller to say, in the words of the problem.
 module epcont_linalg_dense
   use epcont_base_kinds, only: wp
-  use epcont_linalg_lapack, only: dgemm, dgesv, dgesvd, dpbcon, dpbtrf, dpotrf, dpotri, dpotrs, dpstrf, &
-    dsyrk, dtrsm
+  use epcont_linalg_lapack, only: dgemm, dgesv, dgesvd, dpotrf, dpotri, dpotrs, dpstrf
   implicit none
   private
-  public :: cholesky_factor, cholesky_inverse, cholesky_solve, extend_cholesky
-  public :: least_eigenvalue, lu_solve, pivoted_cholesky, add_inner_products, add_product, null_space
+  public :: cholesky_factor, cholesky_inverse, cholesky_solve
+  public :: lu_solve, pivoted_cholesky, add_inner_products, add_product, null_space
 
 contains
 
@@ -18,44 +17,19 @@ contains
     real(wp), contiguous, intent(inout) :: a(:, :)   !! symmetric [n, n]
     integer, intent(out) :: info          !! 0, or the order of the first minor that is not positive
 
-    call extend_cholesky(size(a, 1), a, 0, size(a, 1), info)
+    info = 0
+    if (size(a) > 0) call dpotrf('L', size(a, 1), a, size(a, 1), info)
   end subroutine cholesky_factor
 
   !> Replace each column of `b` by the solution of LL'x = b, L being the leading rows of `factor`.
   pure subroutine cholesky_solve(factor, b)
-    !> From `cholesky_factor` or `extend_cholesky` [>= n, >= n]
+    !> From `cholesky_factor` [>= n, >= n]
     real(wp), contiguous, intent(in) :: factor(:, :)
     real(wp), contiguous, intent(inout) :: b(:, :)    !! right-hand sides, then solutions [n, k]
     integer :: info
 
     if (size(b) > 0) call dpotrs('L', size(b, 1), size(b, 2), factor, size(factor, 1), b, size(b, 1), info)
   end subroutine cholesky_solve
-
-  !> Carry a factor on: of the leading n rows of `a` the first `done` hold L, the others the matrix; then all
-  !! hold L.
-  !>
-  !>     +-----+
-  !>     | L11 |            L21 = A21 L11'^-1
-  !>     +-----+-----+
-  !>     | A21 | A22 |      L22 L22' = A22 - L21 L21'
-  !>     +-----+-----+
-  pure subroutine extend_cholesky(lda, a, done, n, info)
-    integer, intent(in) :: lda                        !! rows of `a`, at least n
-    real(wp), intent(inout) :: a(lda, *)              !! lower triangle [lda, >= n]
-    integer, intent(in) :: done, n   !! rows that are factored, and that are to be in all
-    integer, intent(out) :: info          !! 0, or the order of the first minor that is not positive
-    integer :: rest
-
-    rest = n - done
-    info = 0
-    if (rest == 0) return
-    if (done > 0) then
-      call dtrsm('R', 'L', 'T', 'N', rest, done, 1.0_wp, a, lda, a(done + 1, 1), lda)
-      call dsyrk('L', 'N', rest, done, -1.0_wp, a(done + 1, 1), lda, 1.0_wp, a(done + 1, done + 1), lda)
-    end if
-    call dpotrf('L', rest, a(done + 1, done + 1), lda, info)
-    if (info > 0) info = info + done
-  end subroutine extend_cholesky
 
   !> Replace a Cholesky factor L by the inverse of LL'.
   pure subroutine cholesky_inverse(a)
@@ -118,23 +92,6 @@ contains
     call dgemm('T', 'N', size(c, 1), size(c, 2), rows, 1.0_wp, a, size(a, 1), b, size(b, 1), &
                1.0_wp, c, size(c, 1))
   end subroutine add_inner_products
-
-  !> Smallest eigenvalue of a band matrix, but for its estimate; 0 where it is not positive definite.
-  pure real(wp) function least_eigenvalue(band) result(least)
-    real(wp), intent(in) :: band(:, :)   !! symmetric: the diagonal, then what is below it [rows, n]
-    real(wp), allocatable :: factor(:, :)
-    real(wp) :: work(3*size(band, 2))
-    integer :: info, iwork(size(band, 2))
-
-    factor = band
-    least = 0.0_wp
-    associate (rows => size(band, 1), n => size(band, 2))
-      call dpbtrf('L', n, rows - 1, factor, rows, info)
-      if (info /= 0) return
-      call dpbcon('L', n, rows - 1, factor, rows, 1.0_wp, least, work, iwork, info)
-      least = min(least, minval(factor(1, :))**2)
-    end associate
-  end function least_eigenvalue
 
   !> Orthonormal basis of the x with a x = 0.
   pure function null_space(a, tolerance) result(basis)

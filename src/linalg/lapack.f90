@@ -7,7 +7,7 @@ module epcont_linalg_lapack
   implicit none
   private
   public :: dgemm, dgemv, dsyrk, dtrsm
-  public :: dpotrf, dpotrs, dpotri, dpbtrf, dpbcon, dpstrf, dgesv, dgesvd
+  public :: dpotrf, dpotrs, dpotri, dpstrf, dgesv, dgesvd
 
   ! Products, and solution with a triangle
   interface
@@ -77,25 +77,6 @@ module epcont_linalg_lapack
       real(wp), intent(inout) :: a(lda, *)
       integer, intent(out) :: info
     end subroutine dpotri
-
-    !> Cholesky factor of a band matrix
-    pure subroutine dpbtrf(uplo, n, kd, ab, ldab, info)
-      import :: wp
-      character, intent(in) :: uplo
-      integer, intent(in) :: n, kd, ldab
-      real(wp), intent(inout) :: ab(ldab, *)
-      integer, intent(out) :: info
-    end subroutine dpbtrf
-
-    !> 1/(anorm times the norm of the inverse), estimated with the factor of dpbtrf
-    pure subroutine dpbcon(uplo, n, kd, ab, ldab, anorm, rcond, work, iwork, info)
-      import :: wp
-      character, intent(in) :: uplo
-      integer, intent(in) :: n, kd, ldab
-      real(wp), intent(in) :: ab(ldab, *), anorm
-      real(wp), intent(out) :: rcond, work(*)
-      integer, intent(out) :: iwork(*), info
-    end subroutine dpbcon
 
     !> Cholesky factor of a semidefinite matrix with complete pivoting, P'AP = LL'
     pure subroutine dpstrf(uplo, n, a, lda, piv, rank, tol, work, info)

@@ -12,9 +12,9 @@
 !>
 !> Lambda waits until the set stays: each step is one of that function, cut where full ones run in circles.
 module epcont_linear_joined_contact
-  use epcont_assembly_bodies, only: factored_bodies, force_fields, half_solved_body, prescribe
+  use epcont_assembly_bodies, only: factored_bodies, half_solved_body, prescribe
   use epcont_base_kinds, only: wp
-  use epcont_base_tolerances, only: lost_digits, negligible
+  use epcont_base_tolerances, only: lost_digits, negligible, valid_to
   use epcont_contact_equilibrium, only: find_rigid_start, rigid_start
   use epcont_contact_problem, only: contact_no_equilibrium, contact_solved, contact_stalled, new_solution
   use epcont_contact_uniqueness, only: find_undetermined_motions
@@ -22,22 +22,31 @@ module epcont_linear_joined_contact
   use epcont_flexibility_flexibility, only: gap_opening, pair_forces, terms_of_openings
   use epcont_flexibility_motion_matrix, only: motion_matrix
   use epcont_linear_contact_ends, only: reach_ends
-  use epcont_linear_joined_springs, only: find_springs, frozen_response, put_on_nodes, half_plane, of_pairs
-  use epcont_linear_line_search, only: has_settled, least_at
+  use epcont_linear_joined_path, only: joined_path
+  use epcont_linear_joined_springs, only: add_suport_forces, find_springs, half_plane, hold_suports, &
+    of_pairs, suport_values
+  use epcont_linear_line_search, only: has_settled, least_at, part_of_largest
   use epcont_linear_load_line, only: load_line
   use epcont_linear_solved_state, only: solved_state
+  use epcont_model_springs, only: spring_forces
   use epcont_plan_planned_model, only: planned_model
   use epcont_system_stopwatch, only: stage_contact, stage_factor, stopwatch
   implicit none
   private
   public :: joined_contact, new_joined
 
-  !> Full steps, then cut ones: scenes take 1 to 20.
-  integer, parameter :: full_steps = 25, step_limit = 200
+  !> Full steps; then an interior path leads to a set, which is held for some steps, and cut steps follow.
+  !! Most models take 1 to 10 steps.
+  integer, parameter :: full_steps = 12, held_steps = 4, step_limit = 200
+  !> So much stiffer are springs of SUPORT freedoms where rounding has left no pivot of a body that no pair
+  !! holds, as often as that may help: they change no answer.
+  real(wp), parameter :: stiffer = 1.0e3_wp
+  integer, parameter :: most_stiffened = 2
+  !> And so much stiffer are those of pairs if a step leaves more than this part of what is wrong of forces:
+  !! where stiff bodies bear each other by soft ones some pairs give way by far less than their softer side.
+  real(wp), parameter :: firmer = 100.0_wp, slow = 0.1_wp
   !> Forces that change by no more are good enough for displacements to follow: two steps are to come.
   real(wp), parameter :: nearly = 1.0e-3_wp
-  !> What a solve leaves of forces of size one, at most, where they open gaps.
-  real(wp), parameter :: most_left = 0.1_wp
 
   type :: joined_contact
     integer :: threads = 1                         !! that share the fronts
@@ -45,19 +54,18 @@ module epcont_linear_joined_contact
     !> What a pair gives way by under a force of its own, about [length/force] [pairs]
     real(wp), allocatable :: compliance(:)
     real(wp) :: correction = huge(1.0_wp)          !! of forces by the last step, of the largest
-    real(wp), allocatable, private :: gamma(:)     !! springs of the pairs [force/length] [pairs]
-    real(wp), allocatable, private :: hold(:)      !! springs of SUPORT freedoms [force/length] [motions]
-    logical, allocatable, private :: closed(:)     !! whose springs are to be in the factor [pairs]
+    real(wp), allocatable :: gamma(:)              !! springs of the pairs [force/length] [pairs]
+    real(wp), allocatable :: hold(:)               !! springs of SUPORT freedoms [force/length] [motions]
+    logical, allocatable :: closed(:)              !! whose springs are to be in the factor [pairs]
     type(load_line), private :: line        !! from whose states the next contact is sought
-    logical, private :: unique = .false.           !! forces are found to be, with the factor that there is
+    integer :: stiffened = 0                       !! how often gamma has grown
+    logical :: unique = .false.                    !! forces are found to be, with the factor that there is
     type(motion_matrix), private :: motion         !! A, closing of the gaps by the motions [length]
     type(rigid_start), private :: rigid            !! whether rigid bodies can carry the loads
   contains
     procedure :: take_case
     procedure :: factor
     procedure :: solve
-    procedure :: respond
-    procedure :: are_unique
     procedure, private :: find_set
     procedure, private :: settle
   end type joined_contact
@@ -99,6 +107,7 @@ contains
     end if
     if (allocated(self%line%last)) deallocate (self%line%last)
     call find_springs(scene, bodies, self%rigid%redundant, self%gamma, self%hold)
+    self%stiffened = 0
     self%compliance = half_plane*of_pairs/self%gamma
     self%closed = spread(.true., 1, scene%model%pairs)
   end subroutine take_case
@@ -111,6 +120,7 @@ contains
     logical, intent(out) :: sound                !! the factor can be solved with
     class(stopwatch), intent(inout) :: watch     !! takes the time
     real(wp) :: wanted(scene%model%pairs)
+    integer :: k
 
     sound = .true.
     if (.not. self%rigid%balanced) return
@@ -123,6 +133,12 @@ contains
     if (any(bodies%spring%changed) .or. any(bodies%law%changed)) then
       call watch%lap(stage_contact)
       call bodies%factor_system(scene, self%threads)
+      do k = 1, most_stiffened
+        if (bodies%body(1)%is_sound() .or. bodies%body(1)%lacks_memory .or. size(self%hold) == 0) exit
+        self%hold = stiffer*self%hold
+        call hold_suports(scene, self%hold, bodies)
+        call bodies%factor_system(scene, self%threads)
+      end do
       self%unique = .false.
       call watch%lap(stage_factor)
     end if
@@ -171,48 +187,55 @@ contains
     real(wp), intent(in) :: fixed_gap(:), load_factor
     type(solved_state), intent(inout) :: state
     class(stopwatch), intent(inout) :: watch
-    !> What the deformation is in equilibrium with; lambda - gamma g; what a step adds to the gaps
-    real(wp), dimension(scene%model%pairs) :: borne, gap, opening, pull
-    !> What a step adds to the approach, and forces that springs of SUPORT freedoms bore
-    real(wp), dimension(scene%motions%count) :: held, motion
+    real(wp), dimension(scene%model%pairs) :: borne, gap, opening   ! forces in balance; a step adds to gaps
+    real(wp), dimension(scene%model%pairs) :: pull                  ! lambda - gamma g
+    real(wp), dimension(scene%motions%count) :: held, motion   ! springs of SUPORT freedoms bore, a step adds
     real(wp), allocatable :: unbalanced(:, :)   ! forces on the nodes, with the displacements of `state`
     real(wp), allocatable :: step(:, :)
     logical :: wanted(scene%model%pairs)
     real(wp) :: change(2), before(2)   ! of forces and strains, in this step and the one before
     real(wp) :: length
-    integer :: taken
+    integer :: last_held, taken   ! steps until signs are judged again, and in all
     logical :: stays          ! the set, and lambda follows
     logical :: whole          ! the step is one of all displacements
+    logical :: afresh         ! it is from `state`, all forces that are not in balance there being new
     logical :: sound
 
     state%contact%state = contact_stalled
     state%contact%pivots = 0
-    state%contact%block_steps = 0
+    state%contact%joined_steps = 0
     call prescribe(scene, load_factor, state%deformation)
     state%strain = bodies%operator%strains(scene%model, state%deformation, load_factor)
-    change = huge(1.0_wp)
-    whole = .false.
-    borne = 0.0_wp
-    held = 0.0_wp
     call balance()
     call begin_at_state()
-    wanted = pull > 0.0_wp
+    call begin_afresh()
+    call find_wanted()
     if (allocated(self%line%last)) call choose_set()
     if (.not. allocated(self%line%last)) call begin_set()
+    last_held = 0
     do taken = 1, step_limit
+      if (taken == full_steps) call lead_to_set()
       call self%factor(scene, bodies, sound, watch)
       if (.not. sound) exit
       call find_step()
       before = change
       length = 1.0_wp
-      if (taken > full_steps .and. .not. whole) length = length_of_step()
+      if (taken >= full_steps + held_steps .and. .not. whole) length = length_of_step()
       call take_step()
       if (stays .and. whole) then
         call take_displacements()
         if (all(has_settled(change, before))) then
-          state%contact%state = contact_solved
           self%correction = change(1)
-          exit
+          sound = minval(state%contact%force) >= -valid_to*maxval(state%contact%force)   ! no pair pulls
+          if (taken > last_held .or. sound) state%contact%state = contact_solved
+          if (taken > last_held .or. sound) exit
+          last_held = 0
+        end if
+        if (change(1) > max(slow*before(1), lost_digits) .and. before(1) < nearly .and. &
+            self%stiffened < most_stiffened) then
+          self%stiffened = self%stiffened + 1
+          self%gamma = firmer*self%gamma
+          change(1) = huge(1.0_wp)
         end if
         call balance()
       end if
@@ -226,11 +249,11 @@ contains
     state%contact%gap = gap
 
   contains
-
     !> What is out of balance where `state` is.
     subroutine balance()
       unbalanced = load_factor*scene%model%load - &
-                   bodies%operator%nodal_forces(scene%model, bodies%law%stress(state%strain))
+                   bodies%operator%nodal_forces(scene%model, bodies%law%stress(state%strain)) - &
+                   spring_forces(scene%model, state%deformation)
     end subroutine balance
 
     !> The next step is one from there.
@@ -251,49 +274,74 @@ contains
       end associate
     end subroutine begin_set
 
-    !> The pairs that press; of those that do so by rounding alone, as they are.
-    subroutine choose_set()
+    !> Nothing is known of the steps to come.
+    subroutine begin_afresh()
+      afresh = .true.
+      whole = .false.
+      change = huge(1.0_wp)
+      borne = 0.0_wp
+      held = 0.0_wp
+    end subroutine begin_afresh
+
+    !> Full steps run in circles, as where contacts open or bodies rock: an interior path leads near the set.
+    subroutine lead_to_set()
+      type(joined_path) :: path
+
+      call begin_at_state()
+      call begin_afresh()
+      path = joined_path(gap, unbalanced, self%gamma, self%compliance)
+      call path%follow(scene, self%threads, bodies)
+      state%contact%force = path%force
+      state%contact%joined_steps = state%contact%joined_steps + path%steps
+      self%closed = path%closed
+      self%unique = .false.
+      last_held = taken + held_steps - 1
+      pull = state%contact%force - self%gamma*gap
+    end subroutine lead_to_set
+
+    !> The pairs that press; those that do so by rounding alone keep their state.
+    subroutine find_wanted()
+      wanted = pull > 0.0_wp
       where (abs(pull) <= negligible*maxval([abs(state%contact%force), tiny(1.0_wp)])) wanted = self%closed
+    end subroutine find_wanted
+
+    !> The next set has the pairs that press.
+    subroutine choose_set()
       state%contact%pivots = state%contact%pivots + count(wanted .neqv. self%closed)
       self%closed = wanted
     end subroutine choose_set
 
-    !> What is out of balance is solved for. All but the pairs is linear: after a step they, and springs of
-    !! SUPORT freedoms that have moved, alone have forces that are not borne, but for rounding.
+    !> What is out of balance is solved for: after a step that of pairs and moved SUPORT freedoms alone.
     subroutine find_step()
       type(half_solved_body), allocatable :: half(:)
       real(wp) :: force(directions, scene%model%nodes)
-      integer :: k
 
-      if (whole .or. taken == 1) then
+      if (whole .or. afresh) then
         force = unbalanced + pair_forces(scene%model, merge(pull, 0.0_wp, self%closed))
       else
         force = pair_forces(scene%model, merge(pull, 0.0_wp, self%closed) - borne)
-        associate (c => scene%motions%component, node => scene%motions%node)
-          do k = 1, size(held)
-            force(c(k), node(k)) = force(c(k), node(k)) + held(k)
-          end do
-        end associate
+        call add_suport_forces(scene, held, force)
       end if
+      afresh = .false.
       call bodies%add_forces(scene, force, 0.0_wp, half)
       step = bodies%finish(scene, half, 0.0_wp, at_contact=.not. whole)
       opening = gap_opening(scene%model, step)
-      motion = [(step(scene%motions%component(k), scene%motions%node(k)), k=1, scene%motions%count)]
+      motion = suport_values(scene, step)
     end subroutine find_step
 
-    !> Go along it; lambda follows after a full one that does not change the set, but not the first of all
-    !! displacements: these have the rounding of what they are in all.
+    !> Go along it; lambda follows a full one with the same set, but the first of all displacements.
     subroutine take_step()
       real(wp), allocatable :: next(:)
 
-      state%contact%block_steps = state%contact%block_steps + 1
+      state%contact%joined_steps = state%contact%joined_steps + 1
       associate (force => state%contact%force)
         borne = (1.0_wp - length)*borne + &
                 length*merge(force - self%gamma*(gap + opening), 0.0_wp, self%closed)
         held = (1.0_wp - length)*held + length*self%hold*motion
         gap = gap + length*opening
         pull = force - self%gamma*gap
-        wanted = pull > 0.0_wp
+        call find_wanted()
+        if (taken <= last_held) wanted = self%closed
         stays = length >= 1.0_wp .and. all(wanted .eqv. self%closed)
         if (.not. stays .or. whole .and. change(2) > 1.0_wp) return
         next = merge(pull, 0.0_wp, self%closed)
@@ -312,7 +360,9 @@ contains
       state%deformation = state%deformation + step
       state%strain = state%strain + strain
       state%contact%approach = state%contact%approach + motion
-      change(2) = maxval(abs(strain))/max(maxval(abs(state%strain)), tiny(1.0_wp))
+      ! Of stiff bodies among soft ones stresses tell what strains do not.
+      change(2) = max(part_of_largest(strain, state%strain), &
+                      part_of_largest(bodies%law%increment(strain), bodies%law%stress(state%strain)))
     end subroutine take_displacements
 
     !> How much of it makes the function least.
@@ -336,7 +386,7 @@ contains
 
     associate (contact => state%contact)
       where (contact%force <= negligible*maxval([contact%force, 0.0_wp])) contact%force = 0.0_wp
-      where (self%rigid%redundant) contact%approach = 0.0_wp
+      where (self%motion%sizes() <= 0.0_wp) contact%approach = 0.0_wp
       terms = abs(fixed_gap) + terms_of_openings(scene%model, state%deformation) + &
               self%motion%times(contact%approach, magnitudes=.true.)
       contact%touching = contact%force > 0.0_wp .or. contact%gap <= negligible*terms
@@ -344,56 +394,7 @@ contains
       contact%motion_free = find_undetermined_motions(self%motion%over(self%motion%units()), &
           contact%touching, contact%force > lost_digits*maxval([contact%force, 0.0_wp]))
       contact%joined = .true.
-      if (any(contact%motion_free .neqv. self%rigid%redundant)) contact%state = contact_stalled
     end associate
   end subroutine settle
 
-  !> Find forces and displacements under loads and openings in one solve; of what is wrong of forces as far as
-  !> known it leaves a thousandth or less. Springs at SUPORT freedoms bear what known displacements say.
-  subroutine respond(self, scene, bodies, found, at_contact)
-    class(joined_contact), intent(in) :: self
-    type(planned_model), intent(in) :: scene
-    class(factored_bodies), intent(inout) :: bodies !! factored with the set of contacts
-    type(frozen_response), intent(inout) :: found
-    logical, intent(in) :: at_contact               !! only displacements that gaps depend on are wanted
-    type(force_fields) :: loads
-    integer :: c, k
-
-    associate (force => found%force, u => found%displacement)
-      do k = 1, size(self%gamma)
-        if (self%closed(k)) force(k, :) = force(k, :) - self%gamma(k)*found%opening(k, :)
-      end do
-      call put_on_nodes(scene, self%closed, force, loads)
-      do k = 1, scene%motions%count
-        c = scene%motions%component(k)
-        loads%force(c, :, k) = found%load(k, :) + self%hold(k)*u(c, :, scene%motions%node(k))
-      end do
-      call bodies%body_displacements(scene, 1, loads, [(k, k=1, scene%model%nodes)], u, at_contact)
-      do k = 1, size(force, 2)
-        where (self%closed) force(:, k) = force(:, k) - self%gamma*gap_opening(scene%model, u(:, k, :))
-      end do
-    end associate
-  end subroutine respond
-
-  !> Are the contact forces the only ones? Forces that open no gaps are what a solve leaves of any; of two
-  !! that are given no one is likely to have none of these.
-  logical function are_unique(self, scene, bodies)
-    class(joined_contact), intent(inout) :: self
-    type(planned_model), intent(in) :: scene
-    class(factored_bodies), intent(in) :: bodies    !! factored with the set of contacts
-    type(half_solved_body), allocatable :: half(:)
-    real(wp) :: force(scene%model%pairs)
-    integer :: j, k
-
-    are_unique = .true.
-    if (self%unique) return   ! as in the load case before
-    do j = 1, 2
-      force = merge(cos([(k*sqrt(real(j, wp)), k=1, size(force))]), 0.0_wp, self%closed)
-      if (j > 1) deallocate (half)
-      call bodies%add_forces(scene, pair_forces(scene%model, force), 0.0_wp, half)
-      force = force - self%gamma*gap_opening(scene%model, bodies%finish(scene, half, 0.0_wp, .true.))
-      are_unique = are_unique .and. all(abs(force) <= most_left .or. .not. self%closed)
-    end do
-    self%unique = are_unique
-  end function are_unique
 end module epcont_linear_joined_contact

@@ -1,13 +1,15 @@
-!> How stiff the springs of joined bodies are, measured on their elements, and what pairs put on the nodes.
+!> How stiff the springs of joined bodies are, measured on their elements; what SUPORT freedoms do and bear.
 module epcont_linear_joined_springs
-  use epcont_assembly_bodies, only: factored_bodies, force_fields
+  use epcont_assembly_bodies, only: factored_bodies
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: directions
+  use epcont_model_arrays, only: angle
+  use epcont_model_ties, only: add_moment, platen_angle
   use epcont_plan_numbering, only: most_freedoms
   use epcont_plan_planned_model, only: planned_model
   implicit none
   private
-  public :: frozen_response, find_springs, put_on_nodes
+  public :: add_suport_forces, find_springs, hold_suports, suport_values
 
   !> Stiffness of a spring over that of the softer body at its pair. A step leaves 1E-3 of the gaps, mostly
   !! 1E-4; more would cost digits of the factor, of which steps bring back as many each.
@@ -20,14 +22,6 @@ module epcont_linear_joined_springs
   !> What a half-plane gives way by at a force on a node of its boundary, against what is a hundred sides
   !! below it (2 ln(200)/pi), over what the node's own stiffness would let it.
   real(wp), parameter, public :: half_plane = 3.4_wp
-
-  !> What joined bodies do under some loads, the set of contacts frozen.
-  type :: frozen_response
-    real(wp), allocatable :: load(:, :)      !! along the motions [force] [motions, any]
-    real(wp), allocatable :: opening(:, :)   !! of the gaps [length] [pairs, any]
-    real(wp), allocatable :: force(:, :)     !! [force] [pairs, any]
-    real(wp), allocatable :: displacement(:, :, :)   !! [length] [directions, any, nodes]
-  end type frozen_response
 
 contains
 
@@ -43,17 +37,20 @@ contains
     integer :: k, springs
 
     call measure(scene, bodies, stiffness, bodies%spring%norm)
-    gamma = [(of_pairs*softer_side(k), k=1, scene%model%pairs)]
     softest = stiffness_of_softest()
+    gamma = [(of_pairs*softer_side(k), k=1, scene%model%pairs)]
+    where (gamma <= 0.0_wp) gamma = of_pairs*softest   ! nothing gives way: no entry in the matrix
     springs = size(scene%numbering%body(1)%spring%start) - 1
-    bodies%spring%stiffness = spread(0.0_wp, 1, springs)
+    bodies%spring%stiffness = [spread(0.0_wp, 1, springs - size(scene%model%spring)), &
+                               scene%model%spring%stiffness]
     bodies%spring%changed = spread(.true., 1, springs)
     associate (own => stiffness(scene%motions%node))
       hold = merge(own, max(of_suport*softest, least_pivot*own), redundant)
     end associate
     do k = 1, size(hold)
-      bodies%spring%stiffness(spring_of_motion(scene, k)) = hold(k)
+      if (scene%motions%component(k) == angle) hold(k) = hold(k)*longest_arm(scene, k)**2
     end do
+    call hold_suports(scene, hold, bodies)
 
   contains
 
@@ -91,31 +88,69 @@ contains
     end function softer_side
   end subroutine find_springs
 
-  !> Forces of the chosen pairs on the nodes of their rows, behind room for one at each SUPORT freedom.
-  subroutine put_on_nodes(scene, chosen, force, loads)
-    type(planned_model), intent(in) :: scene     !! numbered as one system
-    logical, intent(in) :: chosen(:)             !! [pairs]
-    real(wp), intent(in) :: force(:, :)          !! [force] [pairs, fields]
-    type(force_fields), intent(out) :: loads     !! none at the SUPORT freedoms
-    integer, allocatable :: pair(:)
-    integer :: c, i, k, n
+  !> Have the springs of SUPORT freedoms in the next factor.
+  subroutine hold_suports(scene, hold, bodies)
+    type(planned_model), intent(in) :: scene          !! numbered as one system
+    real(wp), intent(in) :: hold(:)                   !! [force/length] [motions]
+    class(factored_bodies), intent(inout) :: bodies
+    integer :: k
 
-    pair = pack([(k, k=1, size(chosen))], chosen)
-    associate (model => scene%model, start => scene%model%row_start)
-      loads%node = [scene%motions%node, [(model%row_node(start(pair(k)):start(pair(k) + 1) - 1), &
-                                          k=1, size(pair))]]
-      allocate (loads%force(directions, size(force, 2), size(loads%node)), source=0.0_wp)
-      n = scene%motions%count
-      do k = 1, size(pair)
-        do i = start(pair(k)), start(pair(k) + 1) - 1
-          n = n + 1
-          do c = 1, directions
-            loads%force(c, :, n) = model%row_weight(i)*model%normal(c, pair(k))*force(pair(k), :)
-          end do
-        end do
-      end do
+    do k = 1, size(hold)
+      associate (spring => spring_of_motion(scene, k))
+        bodies%spring%stiffness(spring) = hold(k)
+        bodies%spring%changed(spring) = .true.
+      end associate
+    end do
+  end subroutine hold_suports
+
+  !> What displacements move SUPORT freedoms by [length, or radian] [motions].
+  function suport_values(scene, u) result(value)
+    type(planned_model), intent(in) :: scene   !! with its motions
+    real(wp), intent(in) :: u(:, :)            !! [length] [directions, nodes]
+    real(wp) :: value(scene%motions%count)
+    integer :: k
+
+    do k = 1, size(value)
+      associate (c => scene%motions%component(k), node => scene%motions%node(k))
+        if (c == angle) value(k) = platen_angle(scene%model, platen_of(scene, k), u)
+        if (c /= angle) value(k) = u(c, node)
+      end associate
+    end do
+  end function suport_values
+
+  !> Add forces, or moments, on SUPORT freedoms to those on the nodes.
+  subroutine add_suport_forces(scene, value, force)
+    type(planned_model), intent(in) :: scene     !! with its motions
+    real(wp), intent(in) :: value(:)             !! [force, or force*length] [motions]
+    real(wp), intent(inout) :: force(:, :)       !! [force] [directions, nodes]
+    integer :: k
+
+    do k = 1, size(value)
+      associate (c => scene%motions%component(k), node => scene%motions%node(k))
+        if (c == angle) call add_moment(scene%model, platen_of(scene, k), value(k), force)
+        if (c /= angle) force(c, node) = force(c, node) + value(k)
+      end associate
+    end do
+  end subroutine add_suport_forces
+
+  !> The RBE2 whose angle measures a motion.
+  pure integer function platen_of(scene, motion) result(platen)
+    type(planned_model), intent(in) :: scene
+    integer, intent(in) :: motion
+
+    platen = findloc(scene%model%platen%leader, scene%motions%node(motion), dim=1)
+  end function platen_of
+
+  !> How far the farthest of its nodes is from the leader [length].
+  pure real(wp) function longest_arm(scene, motion)
+    type(planned_model), intent(in) :: scene
+    integer, intent(in) :: motion
+
+    associate (platen => scene%model%platen(platen_of(scene, motion)))
+      longest_arm = maxval(norm2(scene%model%x(:, platen%follower) - &
+        spread(scene%model%x(:, platen%leader), 2, size(platen%follower)), dim=1))
     end associate
-  end subroutine put_on_nodes
+  end function longest_arm
 
   !> The spring of the SUPORT freedom that measures a motion.
   pure integer function spring_of_motion(scene, motion)
@@ -124,19 +159,24 @@ contains
 
     associate (reference => scene%model%reference, c => scene%motions%component(motion), &
                node => scene%motions%node(motion))
-      spring_of_motion = scene%model%pairs + count(reference(:, :node - 1)) + count(reference(:c, node))
+      if (c == angle) then
+        spring_of_motion = scene%model%pairs + count(reference) + &
+                           count(scene%model%platen(:platen_of(scene, motion))%reference)
+      else
+        spring_of_motion = scene%model%pairs + count(reference(:, :node - 1)) + count(reference(:c, node))
+      end if
     end associate
   end function spring_of_motion
 
-  !> What elements give to the diagonal of the stiffness at each node; a leader has as much as the stiffest of
-  !! its followers. And the largest sum of magnitudes of a row.
+  !> What elements and springs give to the diagonal of the stiffness at each node; what others follow has as
+  !! much as the stiffest of them. And the largest sum of magnitudes of a row.
   subroutine measure(scene, bodies, stiffness, norm)
     type(planned_model), intent(in) :: scene
     class(factored_bodies), intent(in) :: bodies
     real(wp), intent(out) :: stiffness(:)   !! [force/length] [nodes]
     real(wp), intent(out) :: norm           !! [force/length]
     real(wp) :: k(most_freedoms**2), row(directions, scene%model%nodes)
-    integer :: c, e, i, n
+    integer :: c, e, i, j, n
 
     stiffness = 0.0_wp
     row = 0.0_wp
@@ -151,11 +191,25 @@ contains
       end do
     end do
     norm = maxval(row)
+    do i = 1, size(scene%model%spring)
+      do j = 1, 2
+        associate (node => scene%model%spring(i)%node(j))
+          if (node > 0) stiffness(node) = max(stiffness(node), scene%model%spring(i)%stiffness)
+        end associate
+      end do
+    end do
     do i = 1, scene%model%nodes
       do c = 1, directions
         associate (leader => scene%model%leader(c, i))
           stiffness(leader) = max(stiffness(leader), stiffness(i))
         end associate
+        if (scene%model%sum_of(c, i) == 0) cycle
+        do j = scene%model%sum%first(scene%model%sum_of(c, i)), scene%model%sum%last(scene%model%sum_of(c, i))
+          if (scene%model%sum%component(j) == angle) cycle
+          associate (master => scene%model%sum%node(j))
+            stiffness(master) = max(stiffness(master), scene%model%sum%weight(j)**2*stiffness(i))
+          end associate
+        end do
       end do
     end do
   end subroutine measure

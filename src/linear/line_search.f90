@@ -5,7 +5,7 @@ module epcont_linear_line_search
   use epcont_base_tolerances, only: negligible, no_effect
   implicit none
   private
-  public :: has_settled, least_at
+  public :: has_settled, least_at, part_of_largest
 
   !> A step is cut where the slope at its end is more than this part of that where it begins.
   real(wp), parameter :: flat_enough = 0.1_wp
@@ -47,6 +47,13 @@ contains
       slope = t*curvature - descent - sum(max(0.0_wp, pull - t*loss)*opening)
     end function slope
   end function least_at
+
+  !> The largest of some changes, of the largest of all.
+  pure real(wp) function part_of_largest(change, whole) result(part)
+    real(wp), intent(in) :: change(:, :), whole(:, :)   !! [any, any]
+
+    part = maxval(abs(change))/max(maxval(abs(whole)), tiny(1.0_wp))
+  end function part_of_largest
 
   !> Has what steps change come to an end? The next step would change as much less, or it is rounding.
   elemental logical function has_settled(change, before)

@@ -4,14 +4,14 @@ module epcont_linear_linear_problem
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: cancelled, negligible
   use epcont_contact_basis, only: contact_basis
-  use epcont_contact_flexibility_matrix, only: flexibility_matrix, new_flexibility
+  use epcont_contact_neutral_motions, only: choose_neutral
   use epcont_contact_problem, only: contact_problem, contact_solved
   use epcont_contact_solver, only: solve_contact
   use epcont_flexibility_flexibility, only: gap_opening, pair_forces, see_motions, terms_of_openings
   use epcont_linear_borne_loads, only: borne_loads
   use epcont_linear_joined_contact, only: joined_contact, new_joined
   use epcont_linear_solved_state, only: force_change, relative_change, solved_state
-  use epcont_linear_whole_flexibility, only: add_flexibilities
+  use epcont_linear_whole_flexibility, only: add_flexibilities, complete_flexibility
   use epcont_material_model_materials, only: find_materials, model_materials
   use epcont_model_controls, only: solver_frontal
   use epcont_model_springs, only: spring_forces
@@ -29,7 +29,8 @@ module epcont_linear_linear_problem
     type(iteration_plan), private :: plan
     type(model_materials) :: materials
     type(contact_problem) :: problem
-    type(flexibility_matrix), private :: lasting_flexibility   !! of bodies that cannot yield, if others can
+    !> Of bodies that cannot yield, if others can [length/force] [pairs, pairs]
+    real(wp), allocatable, private :: lasting_flexibility(:, :)
     type(contact_basis) :: basis   !! of the last contact with this flexibility
     logical, allocatable :: touching(:)      !! pairs in contact then: the next begins with them [pairs]
     type(borne_loads) :: borne               !! in a load case before
@@ -95,7 +96,7 @@ contains
       return
     end if
     associate (yields => scene%numbering%body%can_yield, &
-               first => .not. allocated(self%problem%flexibility%level))
+               first => .not. allocated(self%problem%flexibility), n => scene%model%pairs)
       call factor_bodies(yields .or. first)
       self%law%changed = .false.
       call watch%lap(stage_factor)
@@ -103,16 +104,16 @@ contains
       call self%settle(scene)
       call watch%lap(stage_displacements)
       if (first) then
-        self%problem%flexibility = new_flexibility(scene%model%bodies_of_pairs(), scene%model%bodies)
+        allocate (self%problem%flexibility(n, n), source=0.0_wp)
         call add_flexibilities(scene, self%body, .not. yields, self%plan%threads, self%problem%flexibility)
         if (any(yields) .and. .not. all(yields)) self%lasting_flexibility = self%problem%flexibility
       else if (all(yields)) then
-        call self%problem%flexibility%clear()
+        self%problem%flexibility = 0.0_wp
       else if (any(yields)) then
         self%problem%flexibility = self%lasting_flexibility
       end if
       call add_flexibilities(scene, self%body, yields, self%plan%threads, self%problem%flexibility)
-      call self%problem%flexibility%complete()
+      call complete_flexibility(self%problem%flexibility)
     end associate
     call watch%lap(stage_flexibility)
 
@@ -135,7 +136,7 @@ contains
       integer, allocatable :: body(:)
       integer :: i, threads
 
-      if (allocated(self%basis%level)) deallocate (self%basis%level)   ! of the flexibility before
+      if (allocated(self%basis%factor)) deallocate (self%basis%factor)   ! of the flexibility before
       body = pack([(i, i=1, size(chosen))], chosen)
       body = body(heaviest_first(scene%numbering%body(body)%operations))
       operations = scene%numbering%body(body)%operations
@@ -193,7 +194,7 @@ contains
       self%problem%load_gap = opening + load_factor*self%travel_gap
       self%problem%resultant = load_factor*self%resultant
       call watch%lap(stage_displacements)
-      call solve_contact(self%problem, state%contact, start, self%plan%by_blocks, self%basis)
+      call solve_contact(self%problem, state%contact, start, self%basis)
       call watch%lap(stage_contact)
       if (state%contact%state /= contact_solved) return
       call self%add_forces(scene, pair_forces(scene%model, state%contact%force), 0.0_wp, half)
@@ -278,10 +279,10 @@ contains
                opening => gap_opening(scene%model, state%deformation) + load_factor*self%travel_gap)
       problem%known_force = force
       problem%known_gap = problem%initial_gap + opening
-      problem%load_gap = opening - problem%flexibility%times(force)
+      problem%load_gap = opening - matmul(problem%flexibility, force)
       problem%resultant = load_factor*self%resultant
     end associate
-    call solve_contact(self%problem, state%contact, guess, self%plan%by_blocks, self%basis)
+    call solve_contact(self%problem, state%contact, guess, self%basis)
   end subroutine correct_contact
 
   !> What follows from deformation, strains and contact: stresses, displacements and gaps.
@@ -295,11 +296,16 @@ contains
     integer :: i
 
     state%point_stress = self%law%stress(state%strain)
-    state%displacement = state%deformation + load_factor*scene%model%travel
-    call scene%motions%add(scene%model, state%contact%approach, state%displacement)
     associate (contact => state%contact, travel => load_factor*self%travel_gap, motion => self%problem%motion)
       gap = self%problem%initial_gap + (gap_opening(scene%model, state%deformation) + travel) - &
             motion%times(contact%approach)
+      if (any(contact%motion_free)) then
+        contact%gap = merge(0.0_wp, gap, contact%force > 0.0_wp)
+        call choose_neutral(self%problem, contact)
+        gap = contact%gap
+      end if
+      state%displacement = state%deformation + load_factor*scene%model%travel
+      call scene%motions%add(scene%model, contact%approach, state%displacement)
       ! A pair without force touches where its gap is none but for rounding, as the displacements have it,
       ! whatever a rule makes of it by the flexibility.
       off = 0.0_wp

@@ -3,14 +3,16 @@ module epcont_linear_whole_flexibility
   use epcont_assembly_stiffness, only: body_stiffness
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
-  use epcont_contact_flexibility_matrix, only: flexibility_matrix
   use epcont_flexibility_flexibility, only: body_flexibility, find_flexibility
   use epcont_plan_planned_model, only: planned_model
   use epcont_plan_side_by_side, only: threads_for
   use epcont_system_threads, only: use_one_thread_each
   implicit none
   private
-  public :: add_flexibilities
+  public :: add_flexibilities, add_part, complete_flexibility
+
+  !> Rows and columns that are copied across the diagonal at once: both places fit into the nearest cache.
+  integer, parameter :: tile = 32
 
 contains
 
@@ -21,7 +23,7 @@ contains
     type(body_stiffness), intent(in) :: body(:)       !! factored
     logical, intent(in) :: chosen(:)                  !! [bodies]
     integer, intent(in) :: threads                    !! that share the bodies
-    type(flexibility_matrix), intent(inout) :: flexibility   !! is added to
+    real(wp), intent(inout) :: flexibility(:, :)      !! its lower triangle is added to [pairs, pairs]
     type(body_flexibility) :: own
     type(incidence) :: pair   ! of each body
     integer :: b, many
@@ -35,10 +37,38 @@ contains
         call use_one_thread_each()
         if (chosen(b)) call find_flexibility(model, numbering, b, pair%of(b), body(b), own)
         !$omp ordered
-        if (chosen(b)) call flexibility%add(own%pair, own%matrix)
+        if (chosen(b)) call add_part(own, flexibility)
         !$omp end ordered
       end do
       !$omp end parallel do
     end associate
   end subroutine add_flexibilities
+
+  !> Add what one body gives, whose pairs ascend.
+  pure subroutine add_part(own, flexibility)
+    type(body_flexibility), intent(in) :: own
+    real(wp), intent(inout) :: flexibility(:, :)   !! [pairs, pairs]
+    integer :: k
+
+    do k = 1, size(own%pair)
+      associate (column => flexibility(:, own%pair(k)))
+        column(own%pair(k:)) = column(own%pair(k:)) + own%matrix(k:, k)
+      end associate
+    end do
+  end subroutine add_part
+
+  !> When all parts have been added: copy the lower triangle to the upper one.
+  pure subroutine complete_flexibility(f)
+    real(wp), intent(inout) :: f(:, :)   !! [pairs, pairs]
+    integer :: i, j, k, n
+
+    n = size(f, 1)
+    do k = 1, n, tile
+      do i = k, n, tile
+        do j = k, min(k + tile - 1, n)
+          f(j, max(i, j + 1):min(i + tile - 1, n)) = f(max(i, j + 1):min(i + tile - 1, n), j)
+        end do
+      end do
+    end do
+  end subroutine complete_flexibility
 end module epcont_linear_whole_flexibility

@@ -12,9 +12,9 @@ module epcont_model_controls
   character(len=*), parameter, public :: method_name(0:4) = ['AUTO  ', 'SECANT', 'MODSEC', 'INISTR', 'NEWTON']
 
   !> PARAM RULE.
-  integer, parameter, public :: rule_auto = 0, rule_conry = 1, rule_block = 2, rule_joined = 3
+  integer, parameter, public :: rule_auto = 0, rule_conry = 1, rule_joined = 2
   !> Their names in a deck, from rule_auto on.
-  character(len=*), parameter, public :: rule_name(0:3) = ['AUTO  ', 'CONRY ', 'BLOCK ', 'JOINED']
+  character(len=*), parameter, public :: rule_name(0:2) = ['AUTO  ', 'CONRY ', 'JOINED']
 
   !> PARAM SOLVER.
   integer, parameter, public :: solver_auto = 0, solver_band = 1, solver_frontal = 2

@@ -98,7 +98,6 @@ module epcont_model_model
     procedure :: is_tied
     procedure :: is_rigid
     procedure :: platen_of
-    procedure :: prescribed_sum
     procedure :: can_yield
     procedure :: has_flat_curve
     procedure :: bodies_of_pairs
@@ -272,24 +271,6 @@ contains
 
     is_held = self%held(component, self%leader(component, node))
   end function is_held
-
-  !> What supports prescribe of a freedom that is a sum, beyond the travel of its body [length].
-  pure real(wp) function prescribed_sum(self, component, node) result(u)
-    class(model_type), intent(in) :: self
-    integer, intent(in) :: component, node   !! 1: x, 2: y
-    integer :: i
-
-    u = 0.0_wp
-    do i = self%sum%first(self%sum_of(component, node)), self%sum%last(self%sum_of(component, node))
-      associate (c => self%sum%component(i), at => self%sum%node(i))
-        if (c == angle) then
-          if (self%platen(at)%held) u = u + self%sum%weight(i)*self%platen(at)%prescribed
-        else if (self%held(c, at)) then
-          u = u + self%sum%weight(i)*self%beyond_travel(c, at)
-        end if
-      end associate
-    end do
-  end function prescribed_sum
 
   !> The bodies that each pair has nodes of; 0 ends them [any, pairs].
   pure function bodies_of_pairs(self) result(body)

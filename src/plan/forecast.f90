@@ -4,7 +4,6 @@ module epcont_plan_forecast
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: i8, wp
   use epcont_base_text, only: short_real
-  use epcont_linalg_levels, only: levels_of_pairs
   use epcont_model_controls, only: solver_frontal
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
@@ -35,15 +34,11 @@ module epcont_plan_forecast
   !! (`tests/plan`).
   integer(i8), parameter :: of_process = 7700000, of_node = 980, of_point = 250, of_node_of_point = 50, &
       of_yielding_point = 400
-  !> Matrices over all pairs that are there at once while the contact is solved, of many bodies over those of
-  !! a few that follow each other: F, factors of those that touch, here half of them to all, and F of the
-  !! bodies that cannot yield where others can.
+  !> Matrices over all pairs that are there at once while the contact is solved: F, the tableau, factors of
+  !! those that touch, here half of them to all, and F of the bodies that cannot yield where others can.
   real(wp), parameter :: pair_matrices = 2.6_wp
-  !> And over pairs and free motions; of many bodies over pairs and those of the largest level, beyond which
-  !! few unit loads are told apart (measured: stacks, walls), if not over motions twice, for the rigid start.
-  integer(i8), parameter :: motion_matrices = 8, level_matrices = 12
-  !> Sets of many bodies that are factored while the first contact is solved; an interior path has 10 to 30.
-  integer, parameter :: path_sets = 8
+  !> And over pairs and free motions, if not over motions twice, for the rigid start.
+  integer(i8), parameter :: motion_matrices = 8
   !> Unit loads along free motions whose strains are there at once, of one body, when the figures are
   !! assessed: all that a body feels may take more memory than its factor. And what each takes of a node and
   !! of an element [bytes].
@@ -53,7 +48,9 @@ module epcont_plan_forecast
   !> Of joined bodies, further sets of contacts and the steps with them: factors made again, over the first,
   !! and what an entry of the factor takes in operations of the same time.
   real(wp), parameter :: of_sets = 1.0_wp, of_solves = 150.0_wp
-  !> Sums of forces that errors are told of, mostly: of all, and along x and y on two bodies.
+  !> Motions whose errors are told, at most, and sums of forces, mostly: of all, and along x and y on two
+  !! bodies.
+  integer, parameter, public :: most_assessed = 12
   integer, parameter :: usual_sums = 4
 
   !> Least number of cases of a stream, in cases and in square roots of all cases: copying the factors at its
@@ -127,21 +124,6 @@ contains
     if (self%streams(cases) > 1) peak = self%bytes + self%kept_bytes
   end function peak
 
-  !> By blocks, level by level (`contact/level_factor.f90`), each of which has a part in the next. A full set
-  !! of one or two bodies is factored twice, and the sets on the way to it are smaller, or little of them is
-  !! factored; of many bodies an interior path of full sets may be needed. A pivot of CONRY runs over the
-  !! whole tableau, about one pivot a pair.
-  pure real(wp) function contact_operations(level, by_blocks) result(operations)
-    integer, intent(in) :: level(:)      !! pairs of each
-    logical, intent(in) :: by_blocks     !! RULE BLOCK, else CONRY
-    real(wp), dimension(size(level)) :: own, next
-
-    own = level
-    next = [level(2:), 0]
-    operations = merge(2, path_sets, size(level) == 1)*sum(own*(own**2/3 + own*next + next**2))
-    if (.not. by_blocks) operations = 2*sum(own)**3
-  end function contact_operations
-
   !> What a scene will take.
   function forecast(model, motions, numbering, plan) result(expected)
     type(model_type), intent(in) :: model   !! the scene
@@ -151,14 +133,11 @@ contains
     type(forecast_type) :: expected
     type(incidence) :: of_bodies              ! pairs that have nodes in each
     integer(i8), allocatable :: own_pairs(:)
-    integer, allocatable :: level(:)          ! pairs of each
     integer(i8) :: coupled, done_with, entries, factor, flexibility, last, pairs, passing, unit_loads
     integer :: b
 
     pairs = model%pairs
-    level = sizes_of(levels_of_pairs(model%bodies_of_pairs(), model%bodies))
-    ! Entries of F, by levels.
-    coupled = sum(int(level, i8)*(level + [level(2:), 0]))
+    coupled = pairs**2
     if (plan%joined) then
       call foresee_joined()
       return
@@ -200,34 +179,23 @@ contains
     end do
     entries = entries + max(int(pair_matrices*coupled, i8), flexibility + coupled, passing) + &
               max(int(motions%count, i8)**2, &
-                  pairs*min(motion_matrices*motions%count, level_matrices*maxval(level)))
+                  pairs*motion_matrices*motions%count)
     expected%bytes = real_bytes*entries + beside_matrices() + unit_loads
-    expected%operations = expected%operations + contact_operations(level, plan%by_blocks)
+    ! About one pivot a pair, each over the whole tableau.
+    expected%operations = expected%operations + 2*real(pairs, wp)**3
 
   contains
 
     !> What joined bodies take: one factor, and a part of it again with each set of contacts; solves, which
     !! wait for memory; and all unit loads at once, of motions and of sums of forces.
     subroutine foresee_joined()
-      associate (fronts => numbering%body(1)%fronts, loads => motions%count + usual_sums)
+      associate (fronts => numbering%body(1)%fronts, loads => min(most_assessed, motions%count) + usual_sums)
         entries = fronts%entries(kept=.true.)
         expected%bytes = real_bytes*entries + beside_matrices() + load_of_node*model%nodes*loads
         expected%apart_bytes = expected%bytes + int(pair_matrices*coupled, i8)*real_bytes
         expected%operations = (1.0_wp + of_sets)*fronts%operations() + of_solves*entries
       end associate
     end subroutine foresee_joined
-
-    !> How many pairs are in each level.
-    pure function sizes_of(level) result(pairs)
-      integer, intent(in) :: level(:)   !! of each pair
-      integer :: pairs(maxval([level, 1]))
-      integer :: k
-
-      pairs = 0
-      do k = 1, size(level)
-        pairs(level(k)) = pairs(level(k)) + 1
-      end do
-    end function sizes_of
 
     !> What a run holds besides its matrices [bytes].
     pure integer(i8) function beside_matrices() result(bytes)

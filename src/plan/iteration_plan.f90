@@ -2,8 +2,7 @@
 !> why.
 module epcont_plan_iteration_plan
   use epcont_base_kinds, only: wp
-  use epcont_model_controls, only: method_auto, method_newton, method_secant, rule_auto, rule_block, &
-      rule_conry
+  use epcont_model_controls, only: method_auto, method_newton, method_secant, rule_auto
   use epcont_model_model, only: model_type
   implicit none
   private
@@ -21,11 +20,6 @@ module epcont_plan_iteration_plan
   !! hides the strains in them, stresses may still be far off: they may be by no more than this times TOL.
   real(wp), parameter :: looseness = 10.0_wp
 
-  !> Pairs from which on AUTO is BLOCK, which is level with CONRY there and faster from 200 on (`tools/bench
-  !! --part 2`). Below, both take less than a fifth of a millisecond, and each pivot of CONRY is an event of
-  !! the growing load that the listing can show.
-  integer, parameter, public :: many_pairs = 100
-
   type :: iteration_plan
     logical :: yields = .false.            !! there is something that can yield; else there is no iteration
     integer :: load_steps = 1              !! more than one only where something can yield
@@ -34,8 +28,7 @@ module epcont_plan_iteration_plan
     !> Largest change, and largest estimated error, of a displacement that ends the iteration.
     real(wp) :: tolerance = 0.0_wp
     integer :: threads = 1                 !! that bodies may be worked on by, side by side
-    logical :: by_blocks = .false.         !! contact by RULE BLOCK, else CONRY
-    logical :: joined = .false.            !! or by RULE JOINED: then neither
+    logical :: joined = .false.            !! contact by RULE JOINED, else CONRY
     logical :: rule_chosen_here = .false.  !! the deck leaves that to us
     logical :: from_first_pivot = .false.  !! each contact problem, not from the last set of contacts
     real(wp) :: off_curve = 0.0_wp         !! largest distance of a stress from its curve that does, with it
@@ -53,8 +46,6 @@ contains
 
     associate (asked => model%controls)
       plan%rule_chosen_here = asked%rule == rule_auto
-      plan%by_blocks = asked%rule == rule_block .or. &   ! joined bodies that are taken apart, as AUTO has it
-                       (asked%rule /= rule_conry .and. model%pairs >= many_pairs)
       plan%joined = joined
       plan%from_first_pivot = asked%original
       plan%yields = any([(model%can_yield(e), e=1, model%elements)])

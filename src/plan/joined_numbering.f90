@@ -1,28 +1,33 @@
 !> Numbers of the equations of all bodies as one system, where pairs join them (`linear/joined_contact.f90`).
 !> SUPORT freedoms have equations too, and what gaps depend on stands where the dissection has it.
 !>
-!> A spring of this system is one of a pair or of a SUPORT freedom: a row of weights, whose product with
-!> itself, times a stiffness, is added to the matrix.
+!> A spring of this system is one of a pair, of a SUPORT freedom or of the scene: a row of weights, whose
+!> product with itself, times a stiffness, is added to the matrix. Dependent freedoms (MPC, RBE2 that turns)
+!> are sums of equations: elements and springs at them act on these.
 module epcont_plan_joined_numbering
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: directions
   use epcont_linalg_assembled, only: sparse_rows
+  use epcont_model_arrays, only: angle
   use epcont_model_model, only: model_type
   use epcont_plan_dissection, only: dissect, dissection
   implicit none
   private
-  public :: number_joined, spring_rows
+  public :: find_terms, number_joined, spring_rows
 
 contains
 
   !> Number all free freedoms in nested fronts: first those into which nothing is eliminated that pairs and
   !! SUPORT freedoms act on. Freedoms that others follow, which are coupled with whole lines of nodes, come
-  !! last.
-  subroutine number_joined(model, equation, node, first, first_contact)
+  !! last, with the angles of RBE2 that turn.
+  subroutine number_joined(model, equation, angles, tied, node, first, first_contact)
     type(model_type), intent(in) :: model   !! the scene
-    !> Of each freedom; of a tied one that of its leader; 0: held [directions, nodes]
+    !> Of each freedom; of a tied one that of its leader; 0: held; negative: a row of `tied`
+    !! [directions, nodes]
     integer, allocatable, intent(out) :: equation(:, :)
+    integer, intent(out) :: angles(:)                !! equation of each angle; 0: held [platens]
+    type(sparse_rows), intent(out) :: tied           !! freedoms that are sums of equations
     integer, allocatable, intent(out) :: node(:)     !! in the order of elimination [nodes]
     integer, allocatable, intent(out) :: first(:)    !! equation of each front, and one behind [fronts + 1]
     integer, intent(out) :: first_contact            !! first equation of the others
@@ -43,6 +48,7 @@ contains
     apart = count(.not. acted)
     order = [pack([(p, p=1, size(acted))], .not. acted), pack([(p, p=1, size(acted))], acted)]
     allocate (equation(directions, model%nodes), source=0)
+    angles = 0
     allocate (node(model%nodes), first(size(order) + 1))
     begun = 0
     last = 0
@@ -58,24 +64,88 @@ contains
     end do
     first(p) = last + 1
     first = pack(first, [first(2:) > first(:size(first) - 1), .true.])
+    call tie_sums(model, angles, equation, tied)
     do i = 1, model%nodes
       equation(:, i) = [equation(1, model%leader(1, i)), equation(2, model%leader(2, i))]
     end do
 
   contains
 
-    !> The free freedoms of a node are next.
+    !> The free freedoms of a node are next, and the angle that it leads.
     subroutine number_node(own)
       integer, intent(in) :: own
-      integer :: c
+      integer :: c, k
 
       do c = 1, directions
-        if (model%held(c, own) .or. model%leader(c, own) /= own) cycle
+        if (model%held(c, own) .or. model%leader(c, own) /= own .or. model%sum_of(c, own) > 0) cycle
         last = last + 1
         equation(c, own) = last
       end do
+      do k = 1, size(angles)
+        if (model%platen(k)%leader /= own .or. model%platen(k)%held) cycle
+        last = last + 1
+        angles(k) = last
+      end do
     end subroutine number_node
   end subroutine number_joined
+
+  !> Rows of the freedoms that are sums; none where nothing in a sum is free.
+  subroutine tie_sums(model, angles, equation, tied)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: angles(:)             !! equation of each angle [platens]
+    integer, intent(inout) :: equation(:, :)     !! of those that are none; then the others', negative
+    type(sparse_rows), intent(out) :: tied
+    integer :: c, e, i, last, number, row
+
+    row = 0
+    last = 0
+    allocate (tied%start(size(model%sum%first) + 1), source=1)
+    allocate (tied%equation(size(model%sum%node)), tied%weight(size(model%sum%node)))
+    do i = 1, model%nodes
+      do c = 1, directions
+        if (model%leader(c, i) /= i .or. model%sum_of(c, i) == 0) cycle
+        do e = model%sum%first(model%sum_of(c, i)), model%sum%last(model%sum_of(c, i))
+          associate (of => model%sum%component(e), node => model%sum%node(e))
+            if (of == angle) number = angles(node)
+            if (of /= angle) number = equation(of, node)
+          end associate
+          if (number == 0) cycle
+          last = last + 1
+          tied%equation(last) = number
+          tied%weight(last) = model%sum%weight(e)
+        end do
+        if (last < tied%start(row + 1)) cycle
+        row = row + 1
+        tied%start(row + 1) = last + 1
+        equation(c, i) = -row
+      end do
+    end do
+    tied = sparse_rows(tied%start(:row + 1), tied%equation(:last), tied%weight(:last))
+  end subroutine tie_sums
+
+  !> The equations that the freedoms of an element are sums of: of each term the equation, the freedom among
+  !! those of the element, and its weight.
+  pure subroutine find_terms(tied, number, equation, freedom, weight)
+    type(sparse_rows), intent(in) :: tied     !! sums
+    integer, intent(in) :: number(:)          !! of each freedom: an equation, 0, or negative: a sum
+    integer, allocatable, intent(out) :: equation(:), freedom(:)   !! [terms]
+    real(wp), allocatable, intent(out) :: weight(:)                !! [terms]
+    integer :: i
+
+    allocate (equation(0), freedom(0), weight(0))
+    do i = 1, size(number)
+      if (number(i) > 0) then
+        equation = [equation, number(i)]
+        weight = [weight, 1.0_wp]
+      else if (number(i) < 0) then
+        associate (from => tied%start(-number(i)), to => tied%start(1 - number(i)) - 1)
+          equation = [equation, tied%equation(from:to)]
+          weight = [weight, tied%weight(from:to)]
+        end associate
+      end if
+      freedom = [freedom, spread(i, 1, size(equation) - size(freedom))]
+    end do
+  end subroutine find_terms
 
   !> Do pairs or SUPORT freedoms act on each node? [nodes]
   pure function acted_on(model) result(acts)
@@ -98,45 +168,73 @@ contains
         if (model%leader(c, i) /= i) leads(model%leader(c, i)) = .true.
       end do
     end do
+    leads(model%platen%leader) = .true.
+    leads(pack(model%sum%node, model%sum%component /= angle)) = .true.
   end function followed_nodes
 
-  !> Springs of all pairs, then of all SUPORT freedoms, node by node.
-  type(sparse_rows) function spring_rows(model, equation) result(spring)
+  !> Springs of all pairs, then of all SUPORT freedoms, node by node and angles behind, and of the scene.
+  type(sparse_rows) function spring_rows(model, equation, angles, tied) result(spring)
     type(model_type), intent(in) :: model    !! the scene
-    integer, intent(in) :: equation(:, :)    !! of each freedom, or 0 [directions, nodes]
-    integer :: i, k, last
+    integer, intent(in) :: equation(:, :)    !! of each freedom, as `number_joined` has it [directions, nodes]
+    integer, intent(in) :: angles(:)         !! the same [platens]
+    type(sparse_rows), intent(in) :: tied    !! the same
+    integer :: i, k, last, longest, row
 
-    allocate (spring%start(model%pairs + count(model%reference) + 1), source=1)
-    allocate (spring%equation(directions*size(model%row_node) + count(model%reference)))
-    allocate (spring%weight(size(spring%equation)))
+    longest = maxval([1, tied%start(2:) - tied%start(:size(tied%start) - 1)])   ! entries of a freedom
+    associate (suports => count(model%reference) + count(model%platen%reference))
+      allocate (spring%start(model%pairs + suports + size(model%spring) + 1), source=1)
+      k = longest*(directions*size(model%row_node) + suports + 2*size(model%spring))
+      allocate (spring%equation(k), spring%weight(k))
+    end associate
+    row = 0
     last = 0
     do k = 1, model%pairs
       do i = model%row_start(k), model%row_start(k + 1) - 1
         call put(equation(1, model%row_node(i)), model%row_weight(i)*model%normal(1, k))
         call put(equation(2, model%row_node(i)), model%row_weight(i)*model%normal(2, k))
       end do
-      spring%start(k + 1) = last + 1
+      call end_row()
     end do
-    associate (at_suport => pack(equation, model%reference))
+    associate (at_suport => [pack(equation, model%reference), pack(angles, model%platen%reference)])
       do i = 1, size(at_suport)
         call put(at_suport(i), 1.0_wp)
-        spring%start(model%pairs + i + 1) = last + 1
+        call end_row()
       end do
     end associate
+    do k = 1, size(model%spring)
+      do i = 1, 2
+        if (model%spring(k)%node(i) > 0) &
+          call put(equation(model%spring(k)%component(i), model%spring(k)%node(i)), 2*i - 3.0_wp)
+      end do
+      call end_row()
+    end do
     spring%equation = spring%equation(:last)
     spring%weight = spring%weight(:last)
 
   contains
 
-    !> One more entry of a row, unless the freedom is held.
-    subroutine put(number, weight)
+    !> One more entry of a row, or all of a sum; none if the freedom is held.
+    recursive subroutine put(number, weight)
       integer, intent(in) :: number
       real(wp), intent(in) :: weight
+      integer :: e
 
       if (number == 0 .or. weight == 0.0_wp) return
+      if (number < 0) then
+        do e = tied%start(-number), tied%start(1 - number) - 1
+          call put(tied%equation(e), weight*tied%weight(e))
+        end do
+        return
+      end if
       last = last + 1
       spring%equation(last) = number
       spring%weight(last) = weight
     end subroutine put
+
+    !> Entries from now on are of the next row.
+    subroutine end_row()
+      row = row + 1
+      spring%start(row + 1) = last + 1
+    end subroutine end_row
   end function spring_rows
 end module epcont_plan_joined_numbering

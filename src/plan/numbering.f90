@@ -13,7 +13,7 @@ module epcont_plan_numbering
   use epcont_plan_border, only: number_border
   use epcont_plan_contact_axes, only: contact_axes, new_contact_axes
   use epcont_plan_dissection, only: dissect, dissection
-  use epcont_plan_joined_numbering, only: number_joined, spring_rows
+  use epcont_plan_joined_numbering, only: find_terms, number_joined, spring_rows
   implicit none
   private
   public :: body_numbering, numbering_type, number_equations
@@ -23,8 +23,7 @@ module epcont_plan_numbering
   real(wp), parameter, public :: many_operations = 2.0e8_wp
   !> Operations of the flexibility by a band from which on it may be FRONTAL for their sake, if fronts take
   !! fewer in all. Measured with factor and numbering, on two strips of 50 to 800 pairs, 4 to 14 elements
-  !! high: level at 1e7, 1.2 times as fast at 3e7, 1.5 at 1e8, 2.4 at 2e9. (A second makes 35e9 operations
-  !! of substitution or 45e9 of inversion, but 5e9 to 20e9 of factors.)
+  !! high: level at 1e7, 1.2 times as fast at 3e7, 1.5 at 1e8, 2.4 at 2e9.
   real(wp), parameter, public :: many_of_flexibility = 2.0e7_wp
 
   !> One body's system of equations.
@@ -121,11 +120,11 @@ contains
     subroutine number_all(all)
       type(body_numbering), intent(inout) :: all
       integer, allocatable :: first(:)
+      integer :: angles(size(model%platen))
 
       call numbering%axes%ask_nothing()
-      call number_joined(model, numbering%equation, all%node, first, all%first_contact)
-      all%tied%start = [1]
-      all%spring = spring_rows(model, numbering%equation)
+      call number_joined(model, numbering%equation, angles, all%tied, all%node, first, all%first_contact)
+      all%spring = spring_rows(model, numbering%equation, angles, all%tied)
       all%element = [(i, i=1, model%elements)]
       all%equations = first(size(first)) - 1
       all%can_yield = any(model%can_yield(all%element))
@@ -137,23 +136,35 @@ contains
       all%element = pack(all%part, all%part <= model%elements)
     end subroutine number_all
 
-    !> Equations of some elements [any, elements].
+    !> Equations of some elements, zeros behind [any, elements].
     function numbers_of(element) result(numbers)
       integer, intent(in) :: element(:)
-      integer, allocatable :: numbers(:, :)
-      integer :: i, number(most_freedoms)
+      integer, allocatable :: number(:), numbers(:, :)
+      integer :: i, most
 
-      allocate (numbers(directions*maxval(model%node_count(element)), size(element)))
+      most = directions*maxval(model%node_count(element))
+      if (numbering%joined) most = maxval([most, (size(numbers_of_one(element(i))), i=1, size(element))])
+      allocate (numbers(most, size(element)), source=0)
       do i = 1, size(element)
-        number = numbering%of_element(model, element(i))
-        numbers(:, i) = number(:size(numbers, 1))
+        number = numbers_of_one(element(i))
+        numbers(:size(number), i) = number
       end do
     end function numbers_of
 
-    !> Number a body for nested fronts, the freedoms that gaps depend on in the last of them, the others of
-    !! the contact nodes where the dissection has these. It is parted along x, y, their diagonals and the
-    !! distance from the contact, in elements: there they are the smallest, mostly, and what lies around it
-    !! has the shortest edge.
+    !> Those of one; if its freedoms are sums, of joined bodies, the equations that these are sums of.
+    function numbers_of_one(element) result(number)
+      integer, intent(in) :: element
+      integer, allocatable :: freedom(:), number(:)
+      real(wp), allocatable :: weight(:)
+
+      number = numbering%of_element(model, element)
+      number = number(:directions*model%node_count(element))
+      if (numbering%joined .and. any(number < 0)) &
+        call find_terms(numbering%body(1)%tied, (number), number, freedom, weight)
+    end function numbers_of_one
+
+    !> Number a body for nested fronts, freedoms that gaps depend on in the last of them. It is parted along
+    !! x, y, their diagonals and the distance from the contact, in elements: there they are the smallest.
     subroutine number_fronts(body)
       type(body_numbering), intent(inout) :: body
       type(level_order) :: outward
@@ -175,7 +186,7 @@ contains
         call number_panels(found%node, body)
         return
       end if
-      ! A front's equations follow on one another, and some fronts have none; the last has the contact's.
+      ! Some fronts have no equations; the last has the contact's.
       allocate (first(size(found%first) + 1), source=1)
       do i = 2, size(found%first)
         associate (node => found%node(found%first(i - 1):found%first(i) - 1))
@@ -187,7 +198,6 @@ contains
       body%fronts = new_front_layout(pack(first, [first(2:) > first(:size(first) - 1), .true.]), &
                                      numbers_of(body%element))
       body%operations = body%fronts%operations() + of_inversion*real(body%contact_equations, wp)**3
-      ! What is assembled together stands together in memory.
       body%element = body%element(body%fronts%element)
     end subroutine number_fronts
 

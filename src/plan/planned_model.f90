@@ -5,7 +5,7 @@ module epcont_plan_planned_model
   use epcont_plan_forecast, only: forecast, forecast_type
   use epcont_plan_free_motion, only: find_free_motions, free_motions
   use epcont_plan_iteration_plan, only: iteration_plan, plan_iteration
-  use epcont_plan_joining, only: joins
+  use epcont_plan_joining, only: can_join, joins
   use epcont_plan_numbering, only: number_equations, numbering_type
   use epcont_system_stopwatch, only: stage_numbering, stage_plan, stopwatch
   implicit none
@@ -18,7 +18,7 @@ module epcont_plan_planned_model
     type(numbering_type) :: numbering      !! of its equations
     type(iteration_plan) :: iteration      !! how contact and yielding are found
     type(forecast_type) :: expected        !! memory and work
-    logical :: apart = .false.             !! bodies are not joined, whatever the scene is like
+    logical :: other_rule = .false.        !! not the one that suits the scene, which has failed
     integer :: plan_cases = 1              !! load cases that share the plan
   contains
     procedure :: find_motions
@@ -40,7 +40,8 @@ contains
     class(planned_model), intent(inout) :: self
     class(stopwatch), intent(inout) :: watch   !! takes the time
 
-    self%iteration = plan_iteration(self%model, .not. self%apart .and. joins(self%model, self%motions%count))
+    self%iteration = plan_iteration(self%model, can_join(self%model) .and. &
+                                                (joins(self%model) .neqv. self%other_rule))
     self%numbering = number_equations(self%model, self%iteration%joined)
     call watch%lap(stage_numbering)
     self%expected = forecast(self%model, self%motions, self%numbering, self%iteration)

@@ -198,11 +198,9 @@ contains
     call listing%line('')
     associate (contact => run%answer%contact)
       text = '  '//plural(contact%pivots, 'pivot')//', '//text_of(contact%degenerate_pivots)// &
-             ' degenerate'//when(contact%block_steps > 0, ' (CONRY, after '// &
-                                 plural(contact%block_steps, 'set')//' of block pivoting)')
-      if (contact%by_blocks .or. contact%joined) &
-        text = '  '//when(contact%joined, 'joined bodies: ', 'block pivoting: ')// &
-               plural(contact%block_steps, 'set')//', '//plural(contact%pivots, 'exchange')//' of pairs'
+             ' degenerate'
+      if (contact%joined) text = '  joined bodies: '//plural(contact%joined_steps, 'set')//', '// &
+                                 plural(contact%pivots, 'exchange')//' of pairs'
       call listing%line(text//when(size(run%answer%history) > 1, ', in the last solve'))
       if (size(contact%history) > 0) call put_table(run, 'pivots', listing)
       if (size(contact%history) > 0 .and. contact%pivots > size(contact%history)) &

@@ -6,7 +6,7 @@ module epcont_report_plan_text
   use epcont_model_controls, only: method_inistr, method_name, method_newton, rule_joined, solver_auto, &
       solver_band, solver_frontal, solver_name
   use epcont_model_model, only: line_contact, model_type
-  use epcont_plan_iteration_plan, only: iteration_plan, many_pairs
+  use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_plan_joining, only: many_of
   use epcont_plan_numbering, only: many_of_flexibility, many_operations
   use epcont_plan_planned_model, only: planned_model
@@ -179,17 +179,11 @@ contains
       call say(plan, 'contact by joined bodies, one system below, without their flexibility (JOINED)')
       if (iteration%rule_chosen_here) call say(plan, '  chosen here (AUTO): faster where the '// &
         'flexibility takes more than '//short_real(many_of(scene%model))//' operations a node')
-    else if (.not. iteration%by_blocks) then
-      call say(plan, 'contact by the simplex with contact entry rule (CONRY)')
     else
-      call say(plan, 'contact by block pivoting of the contacts (BLOCK)')
-      if (iteration%rule_chosen_here) &
-        call say(plan, '  chosen here (AUTO): the faster rule from '//text_of(many_pairs)//' pairs on')
+      call say(plan, 'contact by the simplex with contact entry rule (CONRY)')
     end if
-    if (scene%model%controls%rule == rule_joined .and. .not. (iteration%joined .or. scene%apart)) &
-      call say(plan, '  not JOINED: '//when(size(scene%model%sum%first) + size(scene%model%spring) > 0, &
-        'freedoms that follow others (MPC, RBE2 that turns) or have springs are not joined', &
-        'at some pairs nothing gives way'))
+    if (scene%model%controls%rule == rule_joined .and. .not. (iteration%joined .or. scene%other_rule)) &
+      call say(plan, '  not JOINED: nothing gives way at any pair')
   end subroutine say_rule
 
   !> A contact of lines.

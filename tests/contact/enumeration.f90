@@ -41,7 +41,7 @@ contains
     m = size(problem%resultant)
     s = size(closed)
     allocate (matrix(s + m, s + m), right(s + m, 1), source=0.0_wp)
-    matrix(:s, :s) = problem%flexibility%level(1)%within(closed, closed)
+    matrix(:s, :s) = problem%flexibility(closed, closed)
     matrix(:s, s + 1:) = -problem%motion%rows(closed)
     matrix(s + 1:, :s) = transpose(problem%motion%rows(closed))
     gap = problem%initial_gap + problem%load_gap
@@ -54,7 +54,7 @@ contains
     if (maxval([abs(right), 0.0_wp]) > 1.0e8_wp) return   ! singular but for rounding
     if (any(right(:s, 1) < -tolerance)) return
     force(closed) = right(:s, 1)
-    gap = gap + matmul(problem%flexibility%level(1)%within, force(:n)) - problem%motion%times(right(s + 1:, 1))
+    gap = gap + matmul(problem%flexibility, force(:n)) - problem%motion%times(right(s + 1:, 1))
     if (all(gap >= -tolerance)) force = force(:n)
   end function answer_of_set
 end module enumeration

@@ -1,7 +1,6 @@
 !> Large contact problems of the kinds that make a solver stumble, with a kernel like that of a half-plane.
 module hard_problem
   use epcont_base_kinds, only: wp
-  use epcont_contact_flexibility_matrix, only: dense_flexibility
   use epcont_contact_problem, only: contact_problem
   use epcont_flexibility_motion_matrix, only: dense_motions
   use random_problem, only: generator
@@ -26,7 +25,7 @@ contains
     integer :: i, k
 
     place = [((2*i - n - 1.0_wp)/n, i=1, n)]
-    problem%flexibility = dense_flexibility(kernel(n))
+    problem%flexibility = kernel(n)
     problem%motion = dense_motions(reshape([(1.0_wp, i=1, n)], [n, 1]))
     problem%initial_gap = place**2*(0.5_wp + random%uniform())
     allocate (problem%load_gap(n), source=0.0_wp)
@@ -38,14 +37,14 @@ contains
       problem%initial_gap = real(nint(8*abs(place)), wp)/64
     case ('twice')
       do k = 2, n, 3
-        problem%flexibility%level(1)%within(k, :) = problem%flexibility%level(1)%within(k - 1, :)
-        problem%flexibility%level(1)%within(:, k) = problem%flexibility%level(1)%within(:, k - 1)
+        problem%flexibility(k, :) = problem%flexibility(k - 1, :)
+        problem%flexibility(:, k) = problem%flexibility(:, k - 1)
         problem%initial_gap(k) = problem%initial_gap(k - 1)
       end do
     case ('badly scaled')   ! half of the pairs almost rigid, on a stiff body
       do k = 1, n, 2
-        problem%flexibility%level(1)%within(k, :) = problem%flexibility%level(1)%within(k, :)*1.0e-3_wp
-        problem%flexibility%level(1)%within(:, k) = problem%flexibility%level(1)%within(:, k)*1.0e-3_wp
+        problem%flexibility(k, :) = problem%flexibility(k, :)*1.0e-3_wp
+        problem%flexibility(:, k) = problem%flexibility(:, k)*1.0e-3_wp
       end do
     case ('three motions')   ! along the normal, a rotation, and half of the pairs by themselves
       problem%motion = dense_motions(reshape([[(1.0_wp, i=1, n)], place, merge(1.0_wp, 0.0_wp, place > 0)], [n, 3]))
@@ -67,8 +66,8 @@ contains
     case ('smooth twice')
       call load_half(place, 5.0_wp, problem)
       do k = 2, n, 5
-        problem%flexibility%level(1)%within(k, :) = problem%flexibility%level(1)%within(k - 1, :)
-        problem%flexibility%level(1)%within(:, k) = problem%flexibility%level(1)%within(:, k - 1)
+        problem%flexibility(k, :) = problem%flexibility(k - 1, :)
+        problem%flexibility(:, k) = problem%flexibility(:, k - 1)
         problem%initial_gap(k) = problem%initial_gap(k - 1)
       end do
     case ('overlaps')
@@ -87,11 +86,11 @@ contains
 
     n = size(place)
     do j = 1, n
-      problem%flexibility%level(1)%within(:, j) = log(40.0_wp) - log(hypot(place - place(j), 2*depth/n))
+      problem%flexibility(:, j) = log(40.0_wp) - log(hypot(place - place(j), 2*depth/n))
     end do
     force = merge(1 + cos(2*pi*place), 0.0_wp, abs(place) < 0.5_wp)
     problem%initial_gap = merge(0.0_wp, sum(force)*1.0e-3_wp*(0.1_wp + abs(place)), abs(place) < 0.5_wp) &
-                          - matmul(problem%flexibility%level(1)%within, force)
+                          - matmul(problem%flexibility, force)
     problem%initial_gap = problem%initial_gap - minval(problem%initial_gap)
     problem%resultant = [sum(force)]
   end subroutine load_half

@@ -1,7 +1,6 @@
 !> Random contact problems for the tests, the same in every run, and the conditions their answers must meet.
 module random_problem
   use epcont_base_kinds, only: i8, wp
-  use epcont_contact_flexibility_matrix, only: dense_flexibility
   use epcont_contact_problem, only: contact_problem, contact_solution
   use epcont_flexibility_motion_matrix, only: dense_motions
   implicit none
@@ -60,7 +59,7 @@ contains
     if (random%chance(0.5_wp)) motion = abs(motion)
     if (m > 0 .and. random%chance(0.5_wp)) motion(:, 1) = 1.0_wp
     problem%motion = dense_motions(motion)
-    problem%flexibility = dense_flexibility(semidefinite(random, n, whole))
+    problem%flexibility = semidefinite(random, n, whole)
     problem%initial_gap = gaps(random, n, whole)
     allocate (problem%load_gap(n), source=0.0_wp)
     if (random%chance(0.3_wp)) problem%load_gap = pack(matrix(random, n, 1, whole), .true.)
@@ -137,16 +136,16 @@ contains
     from = 1 + random%below(n)
     to = 1 + random%below(n)
     if (random%chance(0.2_wp)) then
-      problem%flexibility%level(1)%within(to, :) = problem%flexibility%level(1)%within(from, :)
-      problem%flexibility%level(1)%within(:, to) = problem%flexibility%level(1)%within(:, from)
+      problem%flexibility(to, :) = problem%flexibility(from, :)
+      problem%flexibility(:, to) = problem%flexibility(:, from)
       motion = problem%motion%dense()
       motion(to, :) = motion(from, :)
       problem%motion = dense_motions(motion)
       problem%load_gap(to) = problem%load_gap(from)
       if (random%chance(0.7_wp)) problem%initial_gap(to) = problem%initial_gap(from)
     else if (random%chance(0.1_wp)) then
-      problem%flexibility%level(1)%within(to, :) = 0.0_wp
-      problem%flexibility%level(1)%within(:, to) = 0.0_wp
+      problem%flexibility(to, :) = 0.0_wp
+      problem%flexibility(:, to) = 0.0_wp
     end if
   end subroutine spoil
 
@@ -159,18 +158,18 @@ contains
     real(wp), allocatable :: gap_error(:), load_error(:)
     real(wp) :: gap_size, force_size, load_size
 
-    gap_error = problem%initial_gap + problem%load_gap + matmul(problem%flexibility%level(1)%within, solution%force) &
+    gap_error = problem%initial_gap + problem%load_gap + matmul(problem%flexibility, solution%force) &
                 - problem%motion%times(solution%approach) - solution%gap
     load_error = problem%motion%carried(solution%force) - problem%resultant
     force_size = largest(solution%force)
     gap_size = maxval([largest(problem%initial_gap), largest(problem%load_gap), tiny(1.0_wp), &
-                       largest(pack(problem%flexibility%level(1)%within, .true.))*force_size, &
+                       largest(pack(problem%flexibility, .true.))*force_size, &
                        largest(problem%motion%closing)*largest(solution%approach)])
     ! Nothing has a length: no gap, no flexibility. What rounding leaves of zero has no measure.
     if (max(largest(problem%initial_gap), largest(problem%load_gap), &
-            largest(pack(problem%flexibility%level(1)%within, .true.))) <= 0.0_wp) gap_size = huge(1.0_wp)
-    if (any(problem%flexibility%level(1)%within /= 0.0_wp)) then
-      force_size = max(force_size, gap_size/largest(pack(problem%flexibility%level(1)%within, .true.)))
+            largest(pack(problem%flexibility, .true.))) <= 0.0_wp) gap_size = huge(1.0_wp)
+    if (any(problem%flexibility /= 0.0_wp)) then
+      force_size = max(force_size, gap_size/largest(pack(problem%flexibility, .true.)))
     end if
     force_size = max(force_size, tiny(1.0_wp))
     load_size = max(largest(problem%resultant), force_size*largest(problem%motion%closing), tiny(1.0_wp))
@@ -207,7 +206,7 @@ contains
     type(contact_problem) :: other
 
     other = problem
-    other%flexibility = dense_flexibility(problem%flexibility%level(1)%within*(gap_factor/force_factor))
+    other%flexibility = problem%flexibility*(gap_factor/force_factor)
     other%initial_gap = problem%initial_gap*gap_factor
     other%load_gap = problem%load_gap*gap_factor
     other%resultant = problem%resultant*force_factor

@@ -145,7 +145,7 @@ CARDS = {
 }
 #: The same for each PARAM.
 PARAMETERS = {
-    "PLANE": ("ctria3", "STRAIN", CHANGES), "RULE": ("plane", "BLOCK", LISTED), "GAPGEOM": ("plane", "YES", CHANGES), "UNITS": ("plane", "MM", LISTED),
+    "PLANE": ("ctria3", "STRAIN", CHANGES), "RULE": ("plane", "JOINED", LISTED), "GAPGEOM": ("plane", "YES", CHANGES), "UNITS": ("plane", "MM", LISTED),
     "METHOD": ("yield", "SECANT", LISTED), "TOL": ("yield", ".1", LISTED), "MAXIT": ("yield", "7", LISTED), "MUP": ("yield", "PAPER", LISTED),
     "ORIGINAL": ("plane", "YES", LISTED), "NLOAD": ("yield", "2", LISTED), "SEARCH": ("feet", ".1", CHANGES), "SOLVER": ("plane", "FRONTAL", LISTED),
     "FLEXIB": ("strip", "INVERT", LISTED), "ACCURACY": ("plane", ".1", LISTED), "THEORY": ("flow", "TOTAL", CHANGES), "CORNER": ("lines", "170.", LISTED),

@@ -126,8 +126,8 @@ class Choices(Case):
                    "(PARAM MAXIT: more of them; no ORIGINAL: another way)")
 
     def test_no_table_of_nothing(self):
-        """Block pivoting has no pivots of a simplex."""
-        for rule in ("CONRY", "BLOCK"):
+        """Joined bodies have no pivots of a simplex."""
+        for rule in ("CONRY", "JOINED"):
             self.check(self.run_with("PARAM,ORIGINAL,YES", f"PARAM,RULE,{rule}"), 0)
             self.assertEqual(rule == "CONRY", "deck.pivots.csv" in self.files(self.directory))
 

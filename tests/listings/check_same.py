@@ -49,9 +49,10 @@ def real(word):
 
 
 def scale(name, column, row, rows):
-    """The largest magnitude that a number is compared with; a row of the summary has one of its own."""
-    if name == "summary":
-        return abs(real(row[column]))
+    """The largest magnitude that a number is compared with; a row of the summary has one of its own, approaches that of all."""
+    if name == "summary":   # one that is far below the others has their rounding
+        alike = [other for other in rows[1:] if other[0].startswith("approach_")] if row[0].startswith("approach_") else [row]
+        return max(abs(real(other[column]) or 0.0) for other in alike)
     kind = next((kind for kind in KINDS if rows[0][column] in kind), {rows[0][column]})
     members = [k for k, title in enumerate(rows[0]) if title in kind]
     return max(abs(real(other[k]) or 0.0) for other in rows[1:] for k in members)

@@ -1,14 +1,13 @@
 !> Times epcont's contact solver alone: bench_contact PROBLEM FORCES RULE REPEATS
 !>
 !> PROBLEM is a stream: n, m (4-byte integers), then doubles: F [n, n], A [n, m], g0 [n], P [m]. FORCES gets R [n], q [m].
-!> RULE: CONRY, BLOCK, WARM (BLOCK from the right set), or DGEMM, one product of matrices as large as F and nothing else.
+!> RULE: CONRY, WARM (CONRY from the right set), or DGEMM, one product of matrices as large as F and nothing else.
 !> Prints: seconds of processor (median of the repeats, after one that does not count), largest violation of the
-!> conditions, pairs exchanged, sets solved by BLOCK, state, and 1 where the set was found by BLOCK.
+!> conditions, pairs exchanged, and state.
 program bench_contact
   use, intrinsic :: iso_fortran_env, only: int32
   use epcont_base_kinds, only: wp
   use epcont_system_memory, only: prepare_heap
-  use epcont_contact_flexibility_matrix, only: dense_flexibility
   use epcont_contact_problem, only: contact_problem, contact_solution
   use epcont_contact_solver, only: solve_contact
   use epcont_flexibility_motion_matrix, only: dense_motions
@@ -31,9 +30,9 @@ program bench_contact
   do k = 0, repeats
     call cpu_time(begun)
     if (rule == 'DGEMM') then
-      call add_product(1.0_wp, problem%flexibility%level(1)%within, problem%flexibility%level(1)%within, product)
+      call add_product(1.0_wp, problem%flexibility, problem%flexibility, product)
     else
-      call solve_contact(problem, solution, start, rule /= 'CONRY')
+      call solve_contact(problem, solution, start)
     end if
     call cpu_time(ended)
     seconds(k) = ended - begun
@@ -44,8 +43,7 @@ program bench_contact
     stop
   end if
   call write_forces(argument(2), solution)
-  print '(2es12.4,4i8)', median(seconds(1:)), violation(problem, solution), solution%pivots, solution%block_steps, &
-    solution%state, merge(1, 0, solution%by_blocks)
+  print '(2es12.4,2i8)', median(seconds(1:)), violation(problem, solution), solution%pivots, solution%state
 
 contains
 
@@ -68,7 +66,7 @@ contains
     allocate (problem%load_gap(n), source=0.0_wp)
     read (unit) flexibility, motion, problem%initial_gap, problem%resultant
     close (unit)
-    problem%flexibility = dense_flexibility(flexibility)
+    problem%flexibility = flexibility
     problem%motion = dense_motions(motion)
   end subroutine read_problem
 
@@ -90,8 +88,8 @@ contains
     real(wp) :: rho, omega
 
     rho = maxval(abs(solution%force))
-    omega = rho*maxval(abs(problem%flexibility%level(1)%within))
-    associate (gap => problem%initial_gap + matmul(problem%flexibility%level(1)%within, solution%force) &
+    omega = rho*maxval(abs(problem%flexibility))
+    associate (gap => problem%initial_gap + matmul(problem%flexibility, solution%force) &
                - problem%motion%times(solution%approach))
       violation = maxval(abs(min(solution%force/rho, gap/omega)))
     end associate

@@ -13,13 +13,13 @@ program bench_ours
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
   use epcont_system_memory, only: prepare_heap
-  use epcont_contact_flexibility_matrix, only: new_flexibility
   use epcont_contact_problem, only: contact_problem, contact_solution, contact_solved
   use epcont_contact_solver, only: solve_contact
   use epcont_deck_deck, only: deck_type, read_deck
   use epcont_base_diagnostic, only: diagnostics
   use epcont_flexibility_flexibility, only: body_flexibility, find_flexibility, &
     gap_opening, pair_forces, see_motions
+  use epcont_linear_whole_flexibility, only: add_part, complete_flexibility
   use epcont_material_linear_law, only: elastic_law, linear_law
   use epcont_material_model_materials, only: find_materials, model_materials
   use epcont_build_build, only: build_model
@@ -141,17 +141,18 @@ contains
       call bodies%body(b)%factor()
       spent(factor) = spent(factor) + lap()
     end do
-    problem%flexibility = new_flexibility(model%bodies_of_pairs(), model%bodies)
+    if (allocated(problem%flexibility)) deallocate (problem%flexibility)
+    allocate (problem%flexibility(model%pairs, model%pairs), source=0.0_wp)
     pairs = new_incidence(model%bodies_of_pairs(), model%bodies)
     do b = 1, model%bodies
       call find_flexibility(model, numbering, b, pairs%of(b), bodies%body(b), part)
-      call problem%flexibility%add(part%pair, part%matrix)
+      call add_part(part, problem%flexibility)
     end do
-    call problem%flexibility%complete()
+    call complete_flexibility(problem%flexibility)
     spent(flexibility) = lap()
     problem%load_gap = gap_opening(model, bodies%displacements(scene, model%load, 1.0_wp))
     spent(load_gap) = lap()
-    call solve_contact(problem, solution, start, plan%by_blocks)
+    call solve_contact(problem, solution, start)
     spent(contact) = lap()
     if (solution%state /= contact_solved) error stop 'no contact found'
     displacement = bodies%displacements(scene, model%load + pair_forces(model, solution%force), 1.0_wp)

@@ -98,7 +98,7 @@ def small_scene(pick):
         scene.add("PARAM", "PLANE", scene.plane)
     if pick.random() < 0.5:
         scene.add("PARAM", "GAPGEOM", "YES")
-    for name, values in (("METHOD", ["AUTO", "SECANT", "MODSEC", "INISTR", "NEWTON"]), ("RULE", ["AUTO", "CONRY", "BLOCK"]),
+    for name, values in (("METHOD", ["AUTO", "SECANT", "MODSEC", "INISTR", "NEWTON"]), ("RULE", ["AUTO", "CONRY", "JOINED"]),
                          ("TOL", ["1.-3", "1.-6", "0.5"]), ("MAXIT", ["1", "5", "60"]), ("NLOAD", ["1", "2", "5"]),
                          ("MUP", ["EXACT", "PAPER"]), ("SOLVER", ["AUTO", "BAND", "FRONTAL"]), ("UNITS", ["N-MM"]),
                          ("FLEXIB", ["AUTO", "INVERT"]), ("ORIGINAL", ["NO", "YES"])):
