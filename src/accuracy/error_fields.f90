@@ -48,210 +48,239 @@ module epcont_accuracy_error_fields
     real(wp), allocatable :: missing(:)     !! part of the energy of each unit load [loads]
   end type error_fields
 
+  !> A comparison of fields, body by body.
+  type :: comparison
+    type(planned_model), pointer :: scene => null()
+    type(linear_problem), pointer :: linear => null()          !! of its last solve
+    class(solved_state), pointer :: answer => null()
+    type(patch_table), pointer :: table => null()              !! of its elements
+    type(contact_loads), pointer :: unit_loads => null()       !! contact forces under these
+    integer :: b = 0                         !! the body
+    integer, allocatable :: element(:)       !! its elements
+    type(body_loads) :: loads
+    type(body_fields) :: now                 !! of these loads
+    type(body_samples) :: samples            !! of its strains
+    real(wp), allocatable :: total(:, :)     !! what `field_sums` has of all bodies [4, loads]
+  end type comparison
+
 contains
 
   !> Errors of the answer's strains, and what they have in common with those of unit loads.
   subroutine compare_fields(scene, linear, answer, table, unit_loads, known, field)
-    type(planned_model), intent(in) :: scene     !! that was solved
-    type(linear_problem), intent(inout) :: linear   !! of the last solve
-    class(solved_state), intent(in) :: answer     !! to it
-    type(patch_table), intent(in) :: table       !! of its elements
-    type(contact_loads), intent(in) :: unit_loads   !! contact forces under these
+    type(planned_model), target, intent(in) :: scene     !! that was solved
+    type(linear_problem), target, intent(inout) :: linear   !! of the last solve
+    class(solved_state), target, intent(in) :: answer     !! to it
+    type(patch_table), target, intent(in) :: table       !! of its elements
+    type(contact_loads), target, intent(in) :: unit_loads   !! contact forces under these
     type(body_fields), intent(inout) :: known(:) !! of the load case before, if the same; of these [bodies]
     type(error_fields), intent(out) :: field     !! what is off
     type(incidence) :: elements, pairs           ! of each body
-    type(body_loads) :: loads
-    type(body_fields) :: now                     ! of the body
-    type(body_samples) :: samples
+    type(comparison) :: work
     real(wp) :: kept                             ! for the next load case [bytes]
-    real(wp) :: total(4, size(unit_loads%unit))  ! what `field_sums` has of all bodies, of each load
-    integer, allocatable :: element(:)           ! of the body
     integer :: b, k
 
+    work%scene => scene
+    work%linear => linear
+    work%answer => answer
+    work%table => table
+    work%unit_loads => unit_loads
     allocate (field%smooth(components, table%places), field%element(scene%model%elements), &
               field%missing(size(unit_loads%unit)), source=0.0_wp)
     pairs = new_incidence(scene%model%bodies_of_pairs(), scene%model%bodies)
-    total = 0.0_wp
+    allocate (work%total(4, size(unit_loads%unit)), source=0.0_wp)
     kept = 0.0_wp
     if (scene%numbering%joined) elements = scene%model%elements_of_bodies()
     do b = 1, scene%model%bodies
+      work%b = b
       if (scene%numbering%joined) then
-        element = elements%of(b)
+        work%element = elements%of(b)
       else
-        element = scene%numbering%body(b)%element
+        work%element = scene%numbering%body(b)%element
       end if
-      if (size(element) == 0) cycle
+      if (size(work%element) == 0) cycle
       if (allocated(known(b)%smooth)) then
-        call known(b)%hand_over(now)
-        call compare_on_body(element, table%of_body%of(b))
+        call known(b)%hand_over(work%now)
+        call compare_on_body(work, field, table%of_body%of(b))
       else
-        loads = new_body_loads(pairs%of(b), unit_loads)
+        work%loads = new_body_loads(pairs%of(b), unit_loads)
         do k = 1, size(unit_loads%unit) + 1
-          call find_fields(table%of_body%of(b))
-          call compare_on_body(element, table%of_body%of(b))
-          if (size(loads%load) == 0) exit
+          call find_fields(work, table%of_body%of(b))
+          call compare_on_body(work, field, table%of_body%of(b))
+          if (size(work%loads%load) == 0) exit
         end do
         if (k > 1) cycle
       end if
-      kept = kept + real_bytes*(size(now%u) + size(now%sample) + size(now%smooth))
-      if (linear%borne%keeps .and. kept <= part_of_memory*scene%expected%bytes) call now%hand_over(known(b))
+      kept = kept + real_bytes*(size(work%now%u) + size(work%now%sample) + size(work%now%smooth))
+      if (linear%borne%keeps .and. kept <= part_of_memory*scene%expected%bytes) &
+        call work%now%hand_over(known(b))
     end do
-    total = total*spread(unit_loads%unit, 1, 4)**spread([1, 1, 2, 2], 2, size(unit_loads%unit))
-    field%along = total(:2, :)
-    where (total(3, :) > 0.0_wp) field%missing = total(3, :)/(total(3, :) + total(4, :))
+    work%total = work%total*spread(unit_loads%unit, 1, 4)**spread([1, 1, 2, 2], 2, size(unit_loads%unit))
+    field%along = work%total(:2, :)
+    where (work%total(3, :) > 0.0_wp) field%missing = work%total(3, :)/(work%total(3, :) + work%total(4, :))
     field%energy = sum(linear%operator%volume*sum(answer%strain*answer%point_stress, dim=1))
-
-  contains
-
-    !> The next batch of loads, and displacements under its fields; of joined bodies these are known.
-    subroutine find_fields(place)
-      integer, intent(in) :: place(:)   !! of the body
-      integer :: f
-
-      if (allocated(now%smooth)) deallocate (now%sample, now%smooth)   ! of the batch before
-      call choose_fields(loads, now%batch)
-      if (.not. scene%numbering%joined) then
-        call find_displacements(scene, linear, b, loads%pair, now%batch, table%node(place), now%u)
-        return
-      end if
-      now%u = unit_loads%displacement(:, now%batch%field, table%node(place))
-      do f = 1, size(now%u, 2)
-        now%u(:, f, :) = now%u(:, f, :)/unit_loads%unit(now%batch%field(f))
-      end do
-    end subroutine find_fields
-
-    !> What the elements of a body add, under a batch of loads. Threads share them by parts, always the same,
-    !! whose sums are added in their order.
-    subroutine compare_on_body(element, place)
-      integer, intent(in) :: element(:), place(:)   !! those of the body
-      type(field_sums) :: part, sums
-      integer :: fields, first, width
-      logical :: told   ! all but what is of the answer is known
-
-      fields = size(now%u, 2)
-      width = components*(1 + fields)
-      told = allocated(now%smooth)
-      sums = new_field_sums(now%batch%share, 0)
-      call place_samples(scene%model, element, samples)
-      if (.not. told) allocate (now%sample(components, 0:fields, size(samples%x, 2)), &
-                                now%smooth(components, 0:fields, size(place)))
-      if (told) fields = 0
-      !$omp parallel do num_threads(threads_over(size(element)))
-      do first = 1, size(element), at_once
-        call sample_elements(element(first:min(first + at_once - 1, size(element))), fields, width, &
-                             now%sample)
-      end do
-      !$omp end parallel do
-      call recover(scene%model, table, b, samples, fields, now%sample, now%smooth)
-      !$omp parallel do num_threads(threads_over(size(element))) schedule(dynamic) ordered private(part)
-      do first = 1, size(element), at_once
-        call use_one_thread_each()
-        part = new_field_sums(now%batch%share, min(at_once, size(element) - first + 1))
-        part%finds_energies = .not. told
-        call compare_elements(element(first:min(first + at_once - 1, size(element))), width, now%sample, &
-                              now%smooth, part)
-        !$omp ordered
-        call sums%include(part)
-        !$omp end ordered
-      end do
-      !$omp end parallel do
-      field%smooth(:, place) = now%smooth(:, 0, :)
-      if (width == components) return
-      call sums%finish()
-      if (.not. told) now%energy = sums%energy
-      total(:2, now%batch%load) = total(:2, now%batch%load) + sums%along
-      total(3:, now%batch%load) = total(3:, now%batch%load) + now%energy
-    end subroutine compare_on_body
-
-    !> The strains of some elements at their samples, of the answer and so many fields.
-    subroutine sample_elements(element, fields, width, sample)
-      integer, intent(in) :: element(:)   !! these
-      integer, intent(in) :: fields       !! none or all: others stay as they are
-      integer, intent(in) :: width        !! components of all fields
-      real(wp), intent(inout) :: sample(width, *)   !! of the body
-      real(wp) :: strain(width, most_points)
-      integer :: i
-
-      do i = 1, size(element)
-        associate (e => element(i), kind => scene%model%kinds(scene%model%kind(element(i))))
-          if (kind%points == 1) then
-            call find_strains(e, fields, sample(1, samples%before(e) + 1))
-          else if (kind%degree == 1) then
-            call find_means(e, fields, sample(1, samples%before(e) + 1))
-          else
-            call find_strains(e, size(now%u, 2), strain)
-            call samples%take(kind, e, width, strain, sample)
-          end if
-        end associate
-      end do
-    end subroutine sample_elements
-
-    !> The errors of some elements. Strains are found again: kept at all points they would be the largest
-    !! array of all.
-    subroutine compare_elements(element, width, sample, smooth, sums)
-      integer, intent(in) :: element(:)            !! these
-      integer, intent(in) :: width                 !! components of all fields
-      real(wp), intent(in) :: sample(width, *), smooth(width, *)   !! of the body
-      type(field_sums), intent(inout) :: sums      !! they are added
-      type(element_errors) :: errors
-      real(wp) :: strain(width, most_points)
-      integer :: i
-
-      errors = new_element_errors(size(now%u, 2))
-      do i = 1, size(element)
-        associate (e => element(i), kind => scene%model%kinds(scene%model%kind(element(i))), &
-                   first => scene%model%first_point(element(i)))
-          if (kind%points == 1) then
-            strain(:, 1) = sample(:, samples%before(e) + 1)
-          else
-            call find_strains(e, size(now%u, 2), strain)
-          end if
-          call errors%compare(kind, linear%operator%volume(first), strain, places_of(e), smooth)
-          call errors%find_stress(kind, linear%materials, first, answer%point)
-          field%element(e) = errors%energy(0)
-          if (size(now%u, 2) > 0) call sums%add(errors, linear%materials%section(scene%model%section(e)))
-        end associate
-      end do
-    end subroutine compare_elements
-
-    !> The places of an element's nodes, among those of the body.
-    pure function places_of(e) result(own)
-      integer, intent(in) :: e
-      integer :: own(most_nodes), k
-
-      do k = 1, scene%model%node_count(e)
-        own(k) = table%own(table%place(k, e))
-      end do
-    end function places_of
-
-    !> Strains of an element, of the answer and of no fields or all.
-    subroutine find_strains(e, fields, strain)
-      integer, intent(in) :: e, fields
-      real(wp), intent(inout) :: strain(components*(1 + size(now%u, 2)), *)   !! at its points
-      integer :: p
-
-      do p = scene%model%first_point(e), scene%model%first_point(e + 1) - 1
-        strain(:components, p - scene%model%first_point(e) + 1) = answer%strain(:, p)
-      end do
-      call linear%operator%add_fields(scene%model, e, places_of(e), fields, now%u, strain)
-    end subroutine find_strains
-
-    !> Means of these over the element, its one sample.
-    subroutine find_means(e, fields, strain)
-      integer, intent(in) :: e, fields
-      real(wp), intent(inout) :: strain(components*(1 + size(now%u, 2)))
-      integer :: p
-
-      strain(:components) = 0.0_wp
-      associate (first => scene%model%first_point(e), last => scene%model%first_point(e + 1) - 1, &
-                 volume => linear%operator%volume)
-        do p = first, last
-          strain(:components) = strain(:components) + volume(p)/sum(volume(first:last))*answer%strain(:, p)
-        end do
-      end associate
-      call linear%operator%add_means(scene%model, e, places_of(e), fields, now%u, strain)
-    end subroutine find_means
   end subroutine compare_fields
+
+  !> The next batch of loads, and displacements under its fields; of joined bodies these are known.
+  subroutine find_fields(work, place)
+    type(comparison), intent(inout) :: work
+    integer, intent(in) :: place(:)   !! of the body
+    integer :: f
+
+    if (allocated(work%now%smooth)) deallocate (work%now%sample, work%now%smooth)   ! of the batch before
+    call choose_fields(work%loads, work%now%batch)
+    if (.not. work%scene%numbering%joined) then
+      call find_displacements(work%scene, work%linear, work%b, work%loads%pair, work%now%batch, &
+          work%table%node(place), work%now%u)
+      return
+    end if
+    work%now%u = work%unit_loads%displacement(:, work%now%batch%field, work%table%node(place))
+    do f = 1, size(work%now%u, 2)
+      work%now%u(:, f, :) = work%now%u(:, f, :)/work%unit_loads%unit(work%now%batch%field(f))
+    end do
+  end subroutine find_fields
+
+  !> What the elements of a body add, under a batch of loads. Threads share them by parts, always the same,
+  !! whose sums are added in their order.
+  subroutine compare_on_body(work, field, place)
+    type(comparison), intent(inout) :: work
+    type(error_fields), intent(inout) :: field      !! errors are added
+    integer, intent(in) :: place(:)   !! those of the body
+    type(field_sums) :: part, sums
+    integer :: fields, first, width
+    logical :: told   ! all but what is of the answer is known
+
+    fields = size(work%now%u, 2)
+    width = components*(1 + fields)
+    told = allocated(work%now%smooth)
+    sums = new_field_sums(work%now%batch%share, 0)
+    call place_samples(work%scene%model, work%element, work%samples)
+    if (.not. told) allocate (work%now%sample(components, 0:fields, size(work%samples%x, 2)), &
+                              work%now%smooth(components, 0:fields, size(place)))
+    if (told) fields = 0
+    !$omp parallel do num_threads(threads_over(size(work%element)))
+    do first = 1, size(work%element), at_once
+      call sample_elements(work, work%element(first:min(first + at_once - 1, size(work%element))), &
+          fields, width, &
+                           work%now%sample)
+    end do
+    !$omp end parallel do
+    call recover(work%scene%model, work%table, work%b, work%samples, fields, work%now%sample, work%now%smooth)
+    !$omp parallel do num_threads(threads_over(size(work%element))) schedule(dynamic) ordered private(part)
+    do first = 1, size(work%element), at_once
+      call use_one_thread_each()
+      part = new_field_sums(work%now%batch%share, min(at_once, size(work%element) - first + 1))
+      part%finds_energies = .not. told
+      call compare_elements(work, field, work%element(first:min(first + at_once - 1, &
+          size(work%element))), width, work%now%sample, &
+                            work%now%smooth, part)
+      !$omp ordered
+      call sums%include(part)
+      !$omp end ordered
+    end do
+    !$omp end parallel do
+    field%smooth(:, place) = work%now%smooth(:, 0, :)
+    if (width == components) return
+    call sums%finish()
+    if (.not. told) work%now%energy = sums%energy
+    work%total(:2, work%now%batch%load) = work%total(:2, work%now%batch%load) + sums%along
+    work%total(3:, work%now%batch%load) = work%total(3:, work%now%batch%load) + work%now%energy
+  end subroutine compare_on_body
+
+  !> The strains of some elements at their samples, of the answer and so many fields.
+  subroutine sample_elements(work, element, fields, width, sample)
+    type(comparison), intent(in) :: work
+    integer, intent(in) :: element(:)   !! these
+    integer, intent(in) :: fields       !! none or all: others stay as they are
+    integer, intent(in) :: width        !! components of all fields
+    real(wp), intent(inout) :: sample(width, *)   !! of the body
+    real(wp) :: strain(width, most_points)
+    integer :: i
+
+    do i = 1, size(element)
+      associate (e => element(i), kind => work%scene%model%kinds(work%scene%model%kind(element(i))))
+        if (kind%points == 1) then
+          call find_strains(work, e, fields, sample(1, work%samples%before(e) + 1))
+        else if (kind%degree == 1) then
+          call find_means(work, e, fields, sample(1, work%samples%before(e) + 1))
+        else
+          call find_strains(work, e, size(work%now%u, 2), strain)
+          call work%samples%take(kind, e, width, strain, sample)
+        end if
+      end associate
+    end do
+  end subroutine sample_elements
+
+  !> The errors of some elements. Strains are found again: kept at all points they would be the largest
+  !! array of all.
+  subroutine compare_elements(work, field, element, width, sample, smooth, sums)
+    type(comparison), intent(in) :: work
+    type(error_fields), intent(inout) :: field      !! errors are added
+    integer, intent(in) :: element(:)            !! these
+    integer, intent(in) :: width                 !! components of all fields
+    real(wp), intent(in) :: sample(width, *), smooth(width, *)   !! of the body
+    type(field_sums), intent(inout) :: sums      !! they are added
+    type(element_errors) :: errors
+    real(wp) :: strain(width, most_points)
+    integer :: i
+
+    errors = new_element_errors(size(work%now%u, 2))
+    do i = 1, size(element)
+      associate (e => element(i), kind => work%scene%model%kinds(work%scene%model%kind(element(i))), &
+                 first => work%scene%model%first_point(element(i)))
+        if (kind%points == 1) then
+          strain(:, 1) = sample(:, work%samples%before(e) + 1)
+        else
+          call find_strains(work, e, size(work%now%u, 2), strain)
+        end if
+        call errors%compare(kind, work%linear%operator%volume(first), strain, places_of(work, e), smooth)
+        call errors%find_stress(kind, work%linear%materials, first, work%answer%point)
+        field%element(e) = errors%energy(0)
+        if (size(work%now%u, 2) > 0) call sums%add(errors, &
+            work%linear%materials%section(work%scene%model%section(e)))
+      end associate
+    end do
+  end subroutine compare_elements
+
+  !> The places of an element's nodes, among those of the body.
+  pure function places_of(work, e) result(own)
+    type(comparison), intent(in) :: work
+    integer, intent(in) :: e
+    integer :: own(most_nodes), k
+
+    do k = 1, work%scene%model%node_count(e)
+      own(k) = work%table%own(work%table%place(k, e))
+    end do
+  end function places_of
+
+  !> Strains of an element, of the answer and of no fields or all.
+  subroutine find_strains(work, e, fields, strain)
+    type(comparison), intent(in) :: work
+    integer, intent(in) :: e, fields
+    real(wp), intent(inout) :: strain(components*(1 + size(work%now%u, 2)), *)   !! at its points
+    integer :: p
+
+    do p = work%scene%model%first_point(e), work%scene%model%first_point(e + 1) - 1
+      strain(:components, p - work%scene%model%first_point(e) + 1) = work%answer%strain(:, p)
+    end do
+    call work%linear%operator%add_fields(work%scene%model, e, places_of(work, e), fields, work%now%u, strain)
+  end subroutine find_strains
+
+  !> Means of these over the element, its one sample.
+  subroutine find_means(work, e, fields, strain)
+    type(comparison), intent(in) :: work
+    integer, intent(in) :: e, fields
+    real(wp), intent(inout) :: strain(components*(1 + size(work%now%u, 2)))
+    integer :: p
+
+    strain(:components) = 0.0_wp
+    associate (first => work%scene%model%first_point(e), last => work%scene%model%first_point(e + 1) - 1, &
+               volume => work%linear%operator%volume)
+      do p = first, last
+        strain(:components) = strain(:components) + volume(p)/sum(volume(first:last))*work%answer%strain(:, p)
+      end do
+    end associate
+    call work%linear%operator%add_means(work%scene%model, e, places_of(work, e), fields, work%now%u, strain)
+  end subroutine find_means
 
   !> Give all that is known to another.
   subroutine hand_over(self, to)

@@ -6,7 +6,7 @@ module epcont_accuracy_joined_loads
   use epcont_base_tolerances, only: solved_to
   use epcont_element_kinematics, only: directions
   use epcont_flexibility_flexibility, only: terms_of_openings
-  use epcont_linear_joined_response, only: frozen_response, respond
+  use epcont_linear_joined_response, only: frozen_response, respond_joined
   use epcont_linear_joined_springs, only: suport_values
   use epcont_linear_linear_problem, only: linear_problem
   use epcont_plan_planned_model, only: planned_model
@@ -62,13 +62,13 @@ contains
       end do
       found%opening(:, motions + 1:loads) = -unit_loads%share
       call begin_probes(found%opening(:, loads + 1:))
-      call respond(linear%joined, scene, linear%factored_bodies, found, at_contact=.true.)
+      call respond_joined(linear%joined, scene, linear%factored_bodies, found, at_contact=.true.)
       probe = found%force(:, loads + 1:)
     end if
     call turn_probes(found%opening(:, loads + 1:))
     found%force(:, loads + 1:) = 0.0_wp
     found%displacement(:, loads + 1:, :) = 0.0_wp
-    call respond(linear%joined, scene, linear%factored_bodies, found, at_contact=loads == 0)
+    call respond_joined(linear%joined, scene, linear%factored_bodies, found, at_contact=loads == 0)
     change = max(change, maxval(abs(found%force(pressed, loads + 1:)), dim=1)/maxval(answer%contact%force))
     call linear%estimate_condition(scene, condition)
     sensitivity = contact_sensitivity(.true., change(1), rounding())

@@ -95,8 +95,7 @@ contains
     real(wp), allocatable :: load(:, :)
     real(wp) :: aside
     integer, allocatable :: beside(:), zones(:)
-    integer :: body, i, k, m, z
-    integer :: bearing(size(answer%zones))   ! pairs of each zone
+    integer :: bearing(size(answer%zones)), body, i, k, m, z   ! the first: pairs of each zone
 
     bearing = [(bearing_pairs(model, answer%contact%force(answer%zones(z)%pairs)), z=1, size(bearing))]
     zones = pack([(z, z=1, size(bearing))], bearing <= narrow)

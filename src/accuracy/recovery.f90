@@ -26,6 +26,16 @@ module epcont_accuracy_recovery
     procedure :: take
   end type body_samples
 
+  !> Smooth strains of one body, in the making.
+  type :: recovery_type
+    type(model_type), pointer :: model => null()
+    type(patch_table), pointer :: table => null()   !! of its elements
+    integer :: fields = 0                           !! how many, besides the answer's
+    integer, allocatable :: fits(:)   !! of a node between corners: polynomials that reach it; of others -1
+    integer, allocatable :: places(:)   !! those of the body
+    logical :: any_curved = .false.   !! elements of the body have nodes between their corners
+  end type recovery_type
+
   !> Terms of a quadratic polynomial: 1, x, y, x**2, xy, y**2.
   integer, parameter :: quadratic = 6
   !> Samples that a patch must have for each number of terms, or it is widened.
@@ -102,190 +112,217 @@ contains
 
   !> Smooth strains at the places of a body, of the answer and some fields at once.
   subroutine recover(model, table, b, samples, fields, strain, smooth)
-    type(model_type), intent(in) :: model        !! the scene
-    type(patch_table), intent(in) :: table       !! of its elements
+    type(model_type), target, intent(in) :: model        !! the scene
+    type(patch_table), target, intent(in) :: table       !! of its elements
     integer, intent(in) :: b                     !! the body
     type(body_samples), intent(in) :: samples   !! of its elements
     integer, intent(in) :: fields                !! how many, besides the answer's: others stay as they are
     real(wp), contiguous, intent(in) :: strain(:, 0:, :)        !! [components, fields or more, samples]
     real(wp), contiguous, intent(inout) :: smooth(:, 0:, :)     !! [components, fields or more, its places]
-    integer, allocatable :: fits(:)   !! of a node between corners: polynomials that reach it; of others -1
+    type(recovery_type) :: work
     integer :: i
-    logical :: any_curved             ! elements of the body have nodes between their corners
 
+    work%model => model
+    work%table => table
+    work%fields = fields
+    work%places = table%of_body%of(b)
     smooth(:, :fields, :) = 0.0_wp
-    allocate (fits(size(smooth, 3)), source=-1)
-    call find_middles()
-    associate (places => table%of_body%group(table%of_body%start(b):table%of_body%start(b + 1) - 1))
+    allocate (work%fits(size(smooth, 3)), source=-1)
+    call find_middles(work, samples)
+    associate (places => work%places)
       ! What is about a corner adds to the nodes between it and others: one thread.
-      !$omp parallel do num_threads(merge(1, threads_over(size(places)), any_curved))
+      !$omp parallel do num_threads(merge(1, threads_over(size(places)), work%any_curved))
       do i = 1, size(places)
-        if (fits(i) < 0) call recover_place(i, places(i))
+        if (work%fits(i) < 0) call recover_place(work, samples, strain, smooth, i)
       end do
       !$omp end parallel do
     end associate
-    do i = 1, size(fits)
-      if (fits(i) > 0) smooth(:, :fields, i) = smooth(:, :fields, i)/fits(i)
+    do i = 1, size(work%fits)
+      if (work%fits(i) > 0) smooth(:, :fields, i) = smooth(:, :fields, i)/work%fits(i)
     end do
+  end subroutine recover
 
-  contains
+  !> The nodes between corners.
+  subroutine find_middles(work, samples)
+    type(recovery_type), intent(inout) :: work
+    type(body_samples), intent(in) :: samples   !! of the body
+    integer :: e, j, k
 
-    !> The nodes between corners.
-    subroutine find_middles()
-      integer :: e, j, k
-
-      any_curved = has_curved(samples%element)
-      if (.not. any_curved) return
-      do j = 1, size(samples%element)
-        e = samples%element(j)
-        do k = model%corners(e) + 1, model%node_count(e)
-          fits(table%own(table%place(k, e))) = 0
-        end do
+    work%any_curved = has_curved(work, samples%element)
+    if (.not. work%any_curved) return
+    do j = 1, size(samples%element)
+      e = samples%element(j)
+      do k = work%model%corners(e) + 1, work%model%node_count(e)
+        work%fits(work%table%own(work%table%place(k, e))) = 0
       end do
-    end subroutine find_middles
+    end do
+  end subroutine find_middles
 
-    !> Is any of these elements one with nodes between its corners?
-    pure logical function has_curved(elements)
-      integer, intent(in) :: elements(:)
-      integer :: k
+  !> Is any of these elements one with nodes between its corners?
+  pure logical function has_curved(work, elements)
+    type(recovery_type), intent(in) :: work
+    integer, intent(in) :: elements(:)
+    integer :: k
 
-      has_curved = .false.
-      do k = 1, size(elements)
-        has_curved = has_curved .or. model%kinds(model%kind(elements(k)))%degree > 1
-      end do
-    end function has_curved
+    has_curved = .false.
+    do k = 1, size(elements)
+      has_curved = has_curved .or. work%model%kinds(work%model%kind(elements(k)))%degree > 1
+    end do
+  end function has_curved
 
-    !> The polynomials about a place, the i-th of the body.
-    subroutine recover_place(i, p)
-      integer, intent(in) :: i, p
-      integer, allocatable :: patch(:)
-      logical :: curved
+  !> The polynomials about a place, the i-th of the body.
+  subroutine recover_place(work, samples, strain, smooth, i)
+    type(recovery_type), intent(inout) :: work
+    type(body_samples), intent(in) :: samples   !! of the body
+    real(wp), contiguous, intent(in) :: strain(:, 0:, :)        !! at these
+    real(wp), contiguous, intent(inout) :: smooth(:, 0:, :)     !! at its places
+    integer, intent(in) :: i
+    integer, allocatable :: patch(:)
+    logical :: curved
 
-      associate (first => table%around%start(p), last => table%around%start(p + 1) - 1)
+    associate (p => work%places(i), around => work%table%around)
+      associate (first => around%start(p), last => around%start(p + 1) - 1)
         if (last < first) return
-        curved = any_curved
-        if (any_curved) curved = has_curved(table%around%group(first:last))
-        if (table%inside(p) .and. last - first + 1 >= merge(least_quadratic/3, least_linear, curved)) then
-          call fit(i, p, curved, table%around%group(first:last))
+        curved = work%any_curved
+        if (work%any_curved) curved = has_curved(work, around%group(first:last))
+        if (work%table%inside(p) .and. &
+            last - first + 1 >= merge(least_quadratic/3, least_linear, curved)) then
+          call fit(work, samples, strain, smooth, i, curved, around%group(first:last))
         else
-          call wide_patch(model, table, p, patch)
-          call fit(i, p, curved, patch)
+          call wide_patch(work%model, work%table, p, patch)
+          call fit(work, samples, strain, smooth, i, curved, patch)
         end if
       end associate
-    end subroutine recover_place
+    end associate
+  end subroutine recover_place
 
-    subroutine fit(i, p, curved, patch)
-      integer, intent(in) :: i, p, patch(:)
-      logical, intent(in) :: curved   !! elements of the patch have nodes between their corners
+  !> The polynomials about the i-th place, by the samples of a patch.
+  subroutine fit(work, samples, strain, smooth, i, curved, patch)
+    type(recovery_type), intent(inout) :: work
+    type(body_samples), intent(in) :: samples   !! of the body
+    real(wp), contiguous, intent(in) :: strain(:, 0:, :)        !! at these
+    real(wp), contiguous, intent(inout) :: smooth(:, 0:, :)     !! at its places
+    integer, intent(in) :: i, patch(:)
+    logical, intent(in) :: curved   !! elements of the patch have nodes between their corners
 
-      if (curved) then
-        call fit_quadratic(i, p, patch)
-      else
-        call fit_linear(patch, model%x(1, table%node(p)), model%x(2, table%node(p)), smooth(:, :fields, i))
-      end if
-    end subroutine fit
+    if (curved) then
+      call fit_quadratic(work, samples, strain, smooth, i, patch)
+    else
+      associate (x => work%model%x(:, work%table%node(work%places(i))))
+        call fit_linear(work, samples, strain, patch, x(1), x(2), smooth(:, :work%fields, i))
+      end associate
+    end if
+  end subroutine fit
 
-    !> The value at a place of the linear polynomials of one sample an element: a sum of the samples. A
-    !! direction in which they do not spread is constant.
-    subroutine fit_linear(patch, x, y, here)
-      integer, intent(in) :: patch(:)   !! elements
-      real(wp), intent(in) :: x, y
-      real(wp), intent(inout) :: here(components, 0:fields)   !! zero before
-      real(wp) :: determinant, dx, dy, slope(2), weight
-      real(wp) :: mx, my, xx, xy, yy   !! moments of the samples about the place, then about their middle
-      integer :: f, k, n
+  !> The value at a place of the linear polynomials of one sample an element: a sum of the samples. A
+  !! direction in which they do not spread is constant.
+  subroutine fit_linear(work, samples, strain, patch, x, y, here)
+    type(recovery_type), intent(inout) :: work
+    type(body_samples), intent(in) :: samples   !! of the body
+    real(wp), contiguous, intent(in) :: strain(:, 0:, :)        !! at these
+    integer, intent(in) :: patch(:)   !! elements
+    real(wp), intent(in) :: x, y
+    real(wp), intent(inout) :: here(components, 0:work%fields)   !! zero before
+    real(wp) :: determinant, dx, dy, slope(2), weight
+    real(wp) :: mx, my, xx, xy, yy   !! moments of the samples about the place, then about their middle
+    integer :: f, k, n
 
-      n = size(patch)
-      mx = 0.0_wp
-      my = 0.0_wp
-      xx = 0.0_wp
-      xy = 0.0_wp
-      yy = 0.0_wp
-      do k = 1, n
-        dx = samples%x(1, samples%before(patch(k)) + 1) - x
-        dy = samples%x(2, samples%before(patch(k)) + 1) - y
-        mx = mx + dx
-        my = my + dy
-        xx = xx + dx*dx
-        xy = xy + dx*dy
-        yy = yy + dy*dy
+    n = size(patch)
+    mx = 0.0_wp
+    my = 0.0_wp
+    xx = 0.0_wp
+    xy = 0.0_wp
+    yy = 0.0_wp
+    do k = 1, n
+      dx = samples%x(1, samples%before(patch(k)) + 1) - x
+      dy = samples%x(2, samples%before(patch(k)) + 1) - y
+      mx = mx + dx
+      my = my + dy
+      xx = xx + dx*dx
+      xy = xy + dx*dy
+      yy = yy + dy*dy
+    end do
+    mx = mx/n
+    my = my/n
+    xx = xx - n*mx*mx
+    xy = xy - n*mx*my
+    yy = yy - n*my*my
+    determinant = xx*yy - xy*xy
+    slope = 0.0_wp
+    if (determinant > lost_digits*(xx + yy)**2) slope = [mx*yy - my*xy, my*xx - mx*xy]/determinant
+    do k = 1, n
+      associate (at => samples%before(patch(k)) + 1)
+        weight = 1.0_wp/n - slope(1)*(samples%x(1, at) - x - mx) - slope(2)*(samples%x(2, at) - y - my)
+        do f = 0, work%fields
+          here(:, f) = here(:, f) + weight*strain(:, f, at)
+        end do
+      end associate
+    end do
+  end subroutine fit_linear
+
+  !> The quadratic polynomials about a corner: their values there, and added at the nodes on the sides that
+  !! meet there.
+  subroutine fit_quadratic(work, samples, strain, smooth, i, patch)
+    type(recovery_type), intent(inout) :: work
+    type(body_samples), intent(in) :: samples   !! of the body
+    real(wp), contiguous, intent(in) :: strain(:, 0:, :)        !! at these
+    real(wp), contiguous, intent(inout) :: smooth(:, 0:, :)     !! at its places
+    integer, intent(in) :: i, patch(:)
+    real(wp) :: matrix(quadratic, quadratic), term(quadratic)
+    real(wp) :: coefficient(components, 0:work%fields, quadratic)
+    real(wp) :: centre(2), near, reach
+    integer :: e, j, k, n, p, s
+
+    p = work%places(i)
+    centre = work%model%x(:, work%table%node(p))
+    reach = 0.0_wp
+    n = 0
+    do k = 1, size(patch)   ! in any direction, all samples alike: scenes and elements may be turned
+      do s = samples%before(patch(k)) + 1, samples%before(patch(k)) + samples_of(work, patch(k))
+        reach = reach + sum((samples%x(:, s) - centre)**2)
+        n = n + 1
       end do
-      mx = mx/n
-      my = my/n
-      xx = xx - n*mx*mx
-      xy = xy - n*mx*my
-      yy = yy - n*my*my
-      determinant = xx*yy - xy*xy
-      slope = 0.0_wp
-      if (determinant > lost_digits*(xx + yy)**2) slope = [mx*yy - my*xy, my*xx - mx*xy]/determinant
-      do k = 1, n
-        associate (at => samples%before(patch(k)) + 1)
-          weight = 1.0_wp/n - slope(1)*(samples%x(1, at) - x - mx) - slope(2)*(samples%x(2, at) - y - my)
-          do f = 0, fields
-            here(:, f) = here(:, f) + weight*strain(:, f, at)
-          end do
-        end associate
-      end do
-    end subroutine fit_linear
-
-    !> The quadratic polynomials about a corner: their values there, and added at the nodes on the sides that
-    !! meet there.
-    subroutine fit_quadratic(i, p, patch)
-      integer, intent(in) :: i, p, patch(:)
-      real(wp) :: matrix(quadratic, quadratic), term(quadratic)
-      real(wp) :: coefficient(components, 0:fields, quadratic)
-      real(wp) :: centre(2), near, reach
-      integer :: e, j, k, n, s
-
-      centre = model%x(:, table%node(p))
-      reach = 0.0_wp
-      n = 0
-      do k = 1, size(patch)   ! in any direction, all samples alike: scenes and elements may be turned
-        do s = samples%before(patch(k)) + 1, samples%before(patch(k)) + samples_of(patch(k))
-          reach = reach + sum((samples%x(:, s) - centre)**2)
-          n = n + 1
+    end do
+    reach = sqrt(reach/n)
+    matrix = 0.0_wp
+    coefficient = 0.0_wp
+    do k = 1, size(patch)
+      do s = samples%before(patch(k)) + 1, samples%before(patch(k)) + samples_of(work, patch(k))
+        term = terms((samples%x(:, s) - centre)/reach)
+        near = 1.0_wp/(0.1_wp + sum(term(2:3)**2))**2
+        do j = 1, quadratic
+          matrix(:, j) = matrix(:, j) + term*term(j)*near
+          coefficient(:, :, j) = coefficient(:, :, j) + strain(:, :work%fields, s)*(term(j)*near)
         end do
       end do
-      reach = sqrt(reach/n)
-      matrix = 0.0_wp
-      coefficient = 0.0_wp
-      do k = 1, size(patch)
-        do s = samples%before(patch(k)) + 1, samples%before(patch(k)) + samples_of(patch(k))
-          term = terms((samples%x(:, s) - centre)/reach)
-          near = 1.0_wp/(0.1_wp + sum(term(2:3)**2))**2
-          do j = 1, quadratic
-            matrix(:, j) = matrix(:, j) + term*term(j)*near
-            coefficient(:, :, j) = coefficient(:, :, j) + strain(:, :fields, s)*(term(j)*near)
-          end do
+    end do
+    if (n < least_quadratic) matrix(:, 4:) = 0.0_wp   ! linear
+    call solve(matrix, components*(1 + work%fields), coefficient)
+    smooth(:, :work%fields, i) = coefficient(:, :, 1)
+    do j = work%table%around%start(p), work%table%around%start(p + 1) - 1
+      e = work%table%around%group(j)
+      associate (place => work%table%place(:, e), corners => work%model%corners(e))
+        do k = corners + 1, work%model%node_count(e)
+          if (place(k - corners) /= p .and. place(mod(k - corners, corners) + 1) /= p) cycle
+          term = terms((work%model%x(:, work%table%node(place(k))) - centre)/reach)
+          associate (own => work%table%own(place(k)))
+            do n = 1, quadratic
+              smooth(:, :work%fields, own) = smooth(:, :work%fields, own) + coefficient(:, :, n)*term(n)
+            end do
+            work%fits(own) = work%fits(own) + 1
+          end associate
         end do
-      end do
-      if (n < least_quadratic) matrix(:, 4:) = 0.0_wp   ! linear
-      call solve(matrix, components*(1 + fields), coefficient)
-      smooth(:, :fields, i) = coefficient(:, :, 1)
-      do j = table%around%start(p), table%around%start(p + 1) - 1
-        e = table%around%group(j)
-        associate (place => table%place(:, e), corners => model%corners(e))
-          do k = corners + 1, model%node_count(e)
-            if (place(k - corners) /= p .and. place(mod(k - corners, corners) + 1) /= p) cycle
-            term = terms((model%x(:, table%node(place(k))) - centre)/reach)
-            associate (own => table%own(place(k)))
-              do n = 1, quadratic
-                smooth(:, :fields, own) = smooth(:, :fields, own) + coefficient(:, :, n)*term(n)
-              end do
-              fits(own) = fits(own) + 1
-            end associate
-          end do
-        end associate
-      end do
-    end subroutine fit_quadratic
+      end associate
+    end do
+  end subroutine fit_quadratic
 
-    !> How many samples an element has.
-    pure integer function samples_of(element)
-      integer, intent(in) :: element
+  !> How many samples an element has.
+  pure integer function samples_of(work, element)
+    type(recovery_type), intent(in) :: work
+    integer, intent(in) :: element
 
-      samples_of = model%kinds(model%kind(element))%samples
-    end function samples_of
-  end subroutine recover
+    samples_of = work%model%kinds(work%model%kind(element))%samples
+  end function samples_of
 
   !> Terms of a quadratic polynomial at a place.
   pure function terms(x) result(term)

@@ -74,6 +74,17 @@ module epcont_certificate_certificate
     'rigid motions strain the bodies; their roundings are', &
     'what RBE2 or MPC ties is apart by']
 
+  !> What is summed up of all elements and pairs.
+  type :: balance_type
+    real(wp), allocatable :: residual(:, :)      !! out of balance [force] [directions, nodes]
+    !> Sum of the sizes of the elements' forces at each node [force] [nodes]
+    real(wp), allocatable :: element_force(:)
+    real(wp) :: stored = 0.0_wp, work = 0.0_wp   !! work of the stresses, and of the forces [energy]
+    real(wp) :: terms = 0.0_wp                   !! sum of the sizes of all that these two are sums of
+    type(expansion_type) :: expansion
+    real(wp) :: strained = 0.0_wp                !! volume times the largest strain, of all points [length**3]
+  end type balance_type
+
 contains
 
   !> Of an answer the certificate takes the displacements, with rigid motions and without, the reactions, the
@@ -83,167 +94,177 @@ contains
     type(answer_type), intent(in) :: answer   !! what is to be checked
     real(wp), intent(in) :: curve_tolerance   !! how far off its curve the iteration may leave a stress
     type(certificate_type), intent(out) :: found   !! the certificate, without its scene
-    real(wp), dimension(directions, model%nodes) :: load, residual   ! the latter: out of balance [force]
-    real(wp) :: element_force(model%nodes)   ! sum of the sizes of the elements' forces at each node
-    real(wp) :: stored, work                 ! work of the stresses, and of the forces
-    type(expansion_type) :: expansion
-    real(wp) :: terms                        ! sum of the sizes of all that these two are sums of
+    real(wp) :: load(directions, model%nodes)
+    type(balance_type) :: total
     real(wp) :: forces, largest_force, largest_stress, length
     real(wp), dimension(size(model%platen)) :: torque, turn   ! of those that turn
-    real(wp) :: strained      ! volume times the largest strain, of all points [length**3]
     real(wp) :: given_force   ! largest load or spring force [force]
     real(wp) :: face          ! of the largest element [length**2]
     logical :: unstressed     ! stresses and forces are rounding errors of zero
 
     load = answer%load_factor*given_load(model)
-    residual = 0.0_wp
-    element_force = 0.0_wp
-    stored = 0.0_wp
-    strained = 0.0_wp
-    call check_springs(model, answer%displacement, residual, element_force, stored)
-    given_force = max(maxval(abs(load)), maxval(element_force))
+    allocate (total%residual(directions, model%nodes), total%element_force(model%nodes), source=0.0_wp)
+    call check_springs(model, answer%displacement, total%residual, total%element_force, total%stored)
+    given_force = max(maxval(abs(load)), maxval(total%element_force))
     face = largest_face(model)
     largest_stress = max(largest_of(size(answer%point_stress), answer%point_stress), &
                          part_of_held*held_stress(model, answer%load_factor), given_force/face)
-    call add_elements()
-    residual = residual - load - answer%reaction
+    call add_elements(model, answer, largest_stress, total, found)
+    total%residual = total%residual - load - answer%reaction
     unstressed = given_force == 0.0_wp .and. found%stress_roundings <= most_roundings
     if (unstressed) found%off_curve = 0.0_wp
     ! A rigid travel says nothing of how exact the gaps must be: only what the bodies give way does.
     ! Nor does a load that a support takes at once.
     forces = sum(abs(load + answer%reaction)) + sum(abs(answer%contact%force))
-    length = ratio(max(abs(stored), stored - expansion%work), forces)
+    length = ratio(max(abs(total%stored), total%stored - total%expansion%work), forces)
     associate (u => answer%displacement, reaction => answer%reaction)
       ! Where stops take all loads at once, nothing moves but by rounding of what the forces would push in.
-      if (maxval(abs(u)) <= roundings*epsilon(1.0_wp)*least_indentation()) length = least_indentation()
+      if (maxval(abs(u)) <= roundings*epsilon(1.0_wp)*least_indentation(model, &
+          answer)) length = least_indentation(model, answer)
       ! Bodies without forces do not deform: rigid-body displacements close the gaps.
       if (unstressed) length = maxval(abs(u))
-      if (expansion%held_work > 0.0_wp) length = max(length, part_of_held*maxval(abs(answer%deformation)))
+      if (total%expansion%held_work > 0.0_wp) length = max(length, &
+          part_of_held*maxval(abs(answer%deformation)))
       found%length_scale = max(length, least_length)
-      work = sum(load*u) + sum(reaction*u)
-      terms = sum(abs(load*u)) + sum(abs(reaction*u)) + abs(stored) + &
-              part_of_held*expansion%held_work
+      total%work = sum(load*u) + sum(reaction*u)
+      total%terms = sum(abs(load*u)) + sum(abs(reaction*u)) + abs(total%stored) + &
+              part_of_held*total%expansion%held_work
     end associate
-    if (model%pairs > 0) call add_pairs()
-    largest_force = max(maxval(element_force), maxval(abs(load)), part_of_held*expansion%held_force)
+    if (model%pairs > 0) call add_pairs(model, answer, load, total, found)
+    largest_force = max(maxval(total%element_force), maxval(abs(load)), &
+        part_of_held*total%expansion%held_force)
     if (any(answer%contact%force > 0.0_wp)) largest_force = max(largest_force, found%force_scale)
     if (unstressed) then   ! forces and their work are compared with rounding errors, not with each other
       largest_force = most_roundings*found%rounding_stress*face/valid_to
-      terms = terms + largest_force*maxval(abs(answer%displacement))
+      total%terms = total%terms + largest_force*maxval(abs(answer%displacement))
     end if
-    call gather_ties(model, residual, torque)
+    call gather_ties(model, total%residual, torque)
     call check_ties(model, answer%displacement, turn, found%ties)
-    work = work + sum(answer%moment*turn)
-    terms = terms + sum(abs(answer%moment*turn))
+    total%work = total%work + sum(answer%moment*turn)
+    total%terms = total%terms + sum(abs(answer%moment*turn))
     found%equilibrium = maxval([ratio(abs(torque - answer%moment), largest_force*longest_arms(model)), &
                                 0.0_wp])
-    found%equilibrium = max(found%equilibrium, ratio(maxval(abs(residual)), largest_force))
+    found%equilibrium = max(found%equilibrium, ratio(maxval(abs(total%residual)), largest_force))
     ! On its curve no stress does less than no work; as far off it as the iteration may leave it, it can.
     ! Of bodies that travel far and expand freely all work is that of the stress which rounding makes.
-    found%energy = ratio(max(abs(work - stored), expansion%work - stored) - found%rounding_stress*strained, &
-                         terms)
+    found%energy = ratio(max(abs(total%work - total%stored), total%expansion%work - total%stored) - &
+        found%rounding_stress*total%strained, &
+                         total%terms)
     found%curve_tolerance = max(valid_to, curve_tolerance)
     found%off_curve_limit = found%curve_tolerance + min(several*found%lost_stress, found%curve_tolerance)
     found%valid = all(within_limits(found))
     found%balanced = all(within_limits(found) .or. figure_name == off_the_curve)
-
-  contains
-
-    !> The largest contact force over the largest depth and modulus: how far it pushes in, at least.
-    pure real(wp) function least_indentation() result(length)
-      real(wp) :: stiffest   ! [force/length]
-      integer :: e
-
-      stiffest = 0.0_wp
-      do e = 1, model%elements
-        associate (nodes => model%connectivity(:model%node_count(e), e))
-          stiffest = max(stiffest, model%young(model%section(e))*model%depth(e, maxval(model%x(1, nodes))))
-        end associate
-      end do
-      length = 0.0_wp
-      if (stiffest > 0.0_wp) length = maxval([answer%contact%force, 0.0_wp])/stiffest
-    end function least_indentation
-
-    !> Internal forces at the nodes and work of the stresses on the strains; the stresses' largest distance
-    !! from the curve and what roundings and rigid motions strain go into the certificate. Threads share the
-    !! elements by parts, which are summed up one after the other.
-    subroutine add_elements()
-      real(wp) :: slope(directions, most_nodes, most_points, size(model%kinds))
-      type(checked_elements) :: part
-      integer :: first, k
-
-      do k = 1, size(model%kinds)
-        call find_slopes(model%kinds(k), slope(:, :, :, k))
-      end do
-      !$omp parallel do num_threads(threads_over(model%elements)) schedule(dynamic) ordered private(part)
-      do first = 1, model%elements, at_once
-        call check_elements(model, answer, largest_stress, first, min(first + at_once - 1, model%elements), &
-                            slope, part)
-        !$omp ordered
-        call add_part(first, part)
-        !$omp end ordered
-      end do
-      !$omp end parallel do
-    end subroutine add_elements
-
-    !> What has been found of elements from `first` on.
-    subroutine add_part(first, part)
-      integer, intent(in) :: first
-      type(checked_elements), intent(in) :: part
-      integer :: e, k, p
-
-      do e = first, first + size(part%force, 3) - 1
-        do k = 1, model%node_count(e)
-          associate (node => model%connectivity(k, e), force => part%force(:, k, e))
-            residual(:, node) = residual(:, node) + force
-            element_force(node) = element_force(node) + maxval(abs(force))
-          end associate
-        end do
-        do p = model%first_point(e), model%first_point(e + 1) - 1
-          stored = stored + part%work(p)
-        end do
-      end do
-      strained = strained + part%strained
-      call expansion%include(part%expansion)
-      found%off_curve = max(found%off_curve, part%off_curve)
-      found%motion_strain = max(found%motion_strain, part%motion_strain)
-      found%lost_stress = max(found%lost_stress, part%lost_stress)
-      found%rounding_stress = max(found%rounding_stress, part%rounding_stress)
-      found%stress_roundings = max(found%stress_roundings, part%stress_roundings)
-    end subroutine add_part
-
-    !> Smallest force and gap, largest product; the work of the pairs' forces, which are taken off the
-    !! residual.
-    subroutine add_pairs()
-      real(wp) :: apart(directions), gap, opening, rounding, travel
-      integer :: i, k, node
-
-      found%smallest_force = minval(answer%contact%force)
-      found%smallest_gap = huge(1.0_wp)
-      found%force_scale = max(maxval(abs(answer%contact%force)), maxval(abs(load)), tiny(1.0_wp))
-      do k = 1, model%pairs
-        associate (force => answer%contact%force(k), normal => model%normal(:, k))
-          apart = 0.0_wp
-          travel = 0.0_wp
-          do i = model%row_start(k), model%row_start(k + 1) - 1
-            node = model%row_node(i)
-            apart = apart + model%row_weight(i)*answer%displacement(:, node)
-            travel = max(travel, maxval(abs(answer%displacement(:, node))))
-            residual(:, node) = residual(:, node) - model%row_weight(i)*force*normal
-          end do
-          opening = sum(normal*apart)
-          work = work + force*opening
-          terms = terms + abs(force*opening)
-          rounding = roundings*epsilon(1.0_wp)*max(abs(model%initial_gap(k)), travel)
-          if (force > 0.0_wp) found%gap_rounding = max(found%gap_rounding, rounding)
-          gap = model%initial_gap(k) + opening
-          found%smallest_gap = min(found%smallest_gap, gap)
-          found%overlap = max(found%overlap, -gap - rounding)
-          found%force_gap = max(found%force_gap, abs(gap*force))
-        end associate
-      end do
-    end subroutine add_pairs
   end subroutine certify
+
+  !> The largest contact force over the largest depth and modulus: how far it pushes in, at least.
+  pure real(wp) function least_indentation(model, answer) result(length)
+    type(model_type), intent(in) :: model        !! the model
+    type(answer_type), intent(in) :: answer      !! what is to be checked
+    real(wp) :: stiffest   ! [force/length]
+    integer :: e
+
+    stiffest = 0.0_wp
+    do e = 1, model%elements
+      associate (nodes => model%connectivity(:model%node_count(e), e))
+        stiffest = max(stiffest, model%young(model%section(e))*model%depth(e, maxval(model%x(1, nodes))))
+      end associate
+    end do
+    length = 0.0_wp
+    if (stiffest > 0.0_wp) length = maxval([answer%contact%force, 0.0_wp])/stiffest
+  end function least_indentation
+
+  !> Internal forces at the nodes and work of the stresses on the strains; the stresses' largest distance
+  !! from the curve and what roundings and rigid motions strain go into the certificate. Threads share the
+  !! elements by parts, which are summed up one after the other.
+  subroutine add_elements(model, answer, largest_stress, total, found)
+    type(model_type), intent(in) :: model        !! the model
+    type(answer_type), intent(in) :: answer      !! what is to be checked
+    real(wp), intent(in) :: largest_stress       !! of the model [stress]
+    type(balance_type), intent(inout) :: total   !! sums to add to
+    type(certificate_type), intent(inout) :: found
+    real(wp) :: slope(directions, most_nodes, most_points, size(model%kinds))
+    type(checked_elements) :: part
+    integer :: first, k
+
+    do k = 1, size(model%kinds)
+      call find_slopes(model%kinds(k), slope(:, :, :, k))
+    end do
+    !$omp parallel do num_threads(threads_over(model%elements)) schedule(dynamic) ordered private(part)
+    do first = 1, model%elements, at_once
+      call check_elements(model, answer, largest_stress, first, min(first + at_once - 1, model%elements), &
+                          slope, part)
+      !$omp ordered
+      call add_part(model, total, found, first, part)
+      !$omp end ordered
+    end do
+    !$omp end parallel do
+  end subroutine add_elements
+
+  !> What has been found of elements from `first` on.
+  subroutine add_part(model, total, found, first, part)
+    type(model_type), intent(in) :: model        !! the model
+    type(balance_type), intent(inout) :: total   !! sums to add to
+    type(certificate_type), intent(inout) :: found
+    integer, intent(in) :: first
+    type(checked_elements), intent(in) :: part
+    integer :: e, k, p
+
+    do e = first, first + size(part%force, 3) - 1
+      do k = 1, model%node_count(e)
+        associate (node => model%connectivity(k, e), force => part%force(:, k, e))
+          total%residual(:, node) = total%residual(:, node) + force
+          total%element_force(node) = total%element_force(node) + maxval(abs(force))
+        end associate
+      end do
+      do p = model%first_point(e), model%first_point(e + 1) - 1
+        total%stored = total%stored + part%work(p)
+      end do
+    end do
+    total%strained = total%strained + part%strained
+    call total%expansion%include(part%expansion)
+    found%off_curve = max(found%off_curve, part%off_curve)
+    found%motion_strain = max(found%motion_strain, part%motion_strain)
+    found%lost_stress = max(found%lost_stress, part%lost_stress)
+    found%rounding_stress = max(found%rounding_stress, part%rounding_stress)
+    found%stress_roundings = max(found%stress_roundings, part%stress_roundings)
+  end subroutine add_part
+
+  !> Smallest force and gap, largest product; the work of the pairs' forces, which are taken off the
+  !! residual.
+  subroutine add_pairs(model, answer, load, total, found)
+    type(model_type), intent(in) :: model        !! the model
+    type(answer_type), intent(in) :: answer      !! what is to be checked
+    real(wp), intent(in) :: load(:, :)           !! [force] [directions, nodes]
+    type(balance_type), intent(inout) :: total   !! sums to add to
+    type(certificate_type), intent(inout) :: found
+    real(wp) :: apart(directions), gap, opening, rounding, travel
+    integer :: i, k, node
+
+    found%smallest_force = minval(answer%contact%force)
+    found%smallest_gap = huge(1.0_wp)
+    found%force_scale = max(maxval(abs(answer%contact%force)), maxval(abs(load)), tiny(1.0_wp))
+    do k = 1, model%pairs
+      associate (force => answer%contact%force(k), normal => model%normal(:, k))
+        apart = 0.0_wp
+        travel = 0.0_wp
+        do i = model%row_start(k), model%row_start(k + 1) - 1
+          node = model%row_node(i)
+          apart = apart + model%row_weight(i)*answer%displacement(:, node)
+          travel = max(travel, maxval(abs(answer%displacement(:, node))))
+          total%residual(:, node) = total%residual(:, node) - model%row_weight(i)*force*normal
+        end do
+        opening = sum(normal*apart)
+        total%work = total%work + force*opening
+        total%terms = total%terms + abs(force*opening)
+        rounding = roundings*epsilon(1.0_wp)*max(abs(model%initial_gap(k)), travel)
+        if (force > 0.0_wp) found%gap_rounding = max(found%gap_rounding, rounding)
+        gap = model%initial_gap(k) + opening
+        found%smallest_gap = min(found%smallest_gap, gap)
+        found%overlap = max(found%overlap, -gap - rounding)
+        found%force_gap = max(found%force_gap, abs(gap*force))
+      end associate
+    end do
+  end subroutine add_pairs
 
   !> All figures and the largest of each in a valid answer, as `figure_name` has them.
   pure subroutine figures(self, figure, largest)

@@ -54,193 +54,217 @@ contains
     scene%moved = search%moved
     near = 1
     do side = 1, model%body_outline%sides
-      call look_at_side(side)
+      call look_at_side(search, scene, near, side)
     end do
     do part = 1, model%body_outline%parts
-      call look_at_middle(part)
+      call look_at_middle(search, scene, near, part)
     end do
-    call look_at_pairs()
+    call look_at_pairs(model, force, search, scene)
     call look_at_ways(search, scene)
-    call look_beyond()
+    call look_beyond(model, displacement, search, scene)
     scene%changed_side = maxloc(search%allowance%change, dim=1)
     scene%change = search%allowance%change(scene%changed_side)
-
-  contains
-
-    !> The points of a side, in the bodies whose boxes it meets.
-    subroutine look_at_side(side)
-      integer, intent(in) :: side
-      real(wp), allocatable :: crossing(:), s(:)
-      integer, allocatable :: others(:), parts(:)
-      integer :: b, k
-      real(wp) :: h, high(directions), low(directions)
-
-      low = search%now%low(:, side)
-      high = search%now%high(:, side)
-      parts = search%now%part_tree%meeting(box_query(low, high))
-      do b = 1, size(parts)
-        if (parts(b) == search%now%outline%part(side)) cycle
-        crossing = crossings(search%now, side, parts(b))
-        s = [quarters, 0.5_wp*(crossing(:size(crossing) - 1) + crossing(2:))]
-        do k = 1, size(s)
-          call look_at_point(point_on(search, side, s(k)), parts(b))
-        end do
-      end do
-      h = 0.5_wp*norm2(search%now%chord(side))
-      others = sides_meeting(search%now, search%now%outline%part(side), box_query(low - h, high + h))
-      do b = 1, size(others)
-        call look_at_itself(side, others(b))
-      end do
-    end subroutine look_at_side
-
-    !> A point within a part, in the others whose boxes it meets: of bodies with one outline no point of that
-    !! lies inside.
-    subroutine look_at_middle(part)
-      integer, intent(in) :: part
-      integer, allocatable :: parts(:)
-      integer :: b
-
-      parts = search%now%part_tree%meeting(box_query(search%middle(part)%x, search%middle(part)%x))
-      do b = 1, size(parts)
-        if (parts(b) /= part) call look_at_point(search%middle(part), parts(b))
-      end do
-    end subroutine look_at_middle
-
-    !> One point of a body, in another.
-    subroutine look_at_point(point, part)
-      type(point_type), intent(in) :: point
-      integer, intent(in) :: part
-      type(near_place) :: place
-
-      if (search%now%side_tree(part)%away(1, point%x) > 0.0_wp) return
-      place = search%now%nearest_place(part, point%x, near)
-      near = place%side
-      if (place%inside) &
-        call keep(search, meet(search, point, place), scene%inside, scene%deepest, scene%deep)
-    end subroutine look_at_point
-
-    !> The points of a side, behind another side of its own body, before which they were drawn.
-    subroutine look_at_itself(side, other)
-      integer, intent(in) :: side, other
-      type(near_place) :: place
-      type(point_type) :: point
-      type(overlap_place) :: found
-      real(wp) :: drawn
-      integer :: k
-
-      associate (node => search%now%outline%node, was => search%drawn)
-        if (any(node(1, side) == node(:2, other)) .or. any(node(2, side) == node(:2, other))) return
-        do k = 1, size(quarters)
-          point = point_on(search, side, quarters(k))
-          place = search%now%near_side(other, point%x)
-          if (place%s <= 0.0_wp .or. place%s >= 1.0_wp .or. .not. search%now%is_inside(place, point%x)) cycle
-          if (2.0_wp*place%distance > norm2(search%now%chord(side))) cycle
-          found = meet(search, point, place)
-          ! How far it was drawn behind that side: where the body lies between the two, all of its thickness.
-          drawn = cross_product(was%chord(other), point%drawn - was%x(:, 1, other))/norm2(was%chord(other))
-          if (drawn <= found%allowed .and. is_worse(found, scene%itself)) scene%itself = rated(found)
-        end do
-      end associate
-    end subroutine look_at_itself
-
-    !> All pressed pairs of two bodies.
-    subroutine look_at_pairs()
-      real(wp) :: least
-      integer :: k, side, side_of(model%nodes)
-
-      least = no_effect*maxval(force)
-      associate (node => model%body_outline%node, part_of => model%body_outline%part_of)
-        side_of = 0
-        do side = 1, size(node, 2)
-          if (node(3, side) > 0) side_of(node(3, side)) = side
-          side_of(node(1, side)) = side
-        end do
-        do k = 1, model%pairs
-          associate (part => part_of(model%pair_node(1, k)), b => model%pair_node(2, k))
-            if (force(k) <= least .or. side_of(b) == 0 .or. part == 0 .or. part == part_of(b)) cycle
-            side = side_of(b)
-            call look_at_pair(k, point_on(search, side, merge(0.0_wp, 0.5_wp, node(1, side) == b)), part)
-          end associate
-        end do
-      end associate
-    end subroutine look_at_pairs
-
-    !> One pressed pair: its node B, at the part that A is of.
-    subroutine look_at_pair(pair, point, part)
-      integer, intent(in) :: pair, part
-      type(point_type), intent(in) :: point
-      type(near_place) :: place
-      type(overlap_place) :: found, slid
-      real(wp) :: apart(directions), off
-
-      place = search%now%nearest_place(part, point%x)
-      found = meet(search, point, place)
-      found%pair = pair
-      slid = found
-      apart = point%motion - motion_at(search, place%side, place%s)
-      ! At a corner the nearest side may be the one that is not pressed: to close a gap is no slide.
-      slid%depth = min(part_along(search%now, place%side, place%s, apart), &
-                       abs(cross_product(model%normal(:, pair), apart)))
-      slid%allowed = max(part_of_side*maxval(search%allowance%length([found%side, found%other])), &
-                         part_of_body*minval(search%width([part, search%now%outline%part(found%side)])))
-      if (is_worse(slid, scene%slid)) scene%slid = rated(slid)
-      if (place%inside) return
-      found%depth = abs(dot_product(point%x - place%x, model%normal(:, pair)))
-      off = abs(cross_product(point%x - place%x, model%normal(:, pair)))
-      if (off <= found%depth) then
-        call keep(search, found, scene%apart, scene%widest, scene%wide)
-      else   ! the other body ends before it
-        found%depth = off
-        found%allowed = found%allowed + slid%allowed
-        if (is_worse(found, scene%beside)) scene%beside = rated(found)
-      end if
-    end subroutine look_at_pair
-
-    !> Of rings: the node of least radius, if that is below 0. Of all bodies: the node farthest beyond a line
-    !! along which all of an end of its body is held across and somewhere free.
-    subroutine look_beyond()
-      type(beyond_place) :: found
-      integer :: c, node, part, way
-
-      if (model%has_rings()) then
-        node = minloc(model%x(1, :) + displacement(1, :), dim=1, mask=model%body_outline%part_of > 0)
-        found = beyond_place(-(model%x(1, node) + displacement(1, node)), 0.0_wp, 1, node)
-        if (found%depth > search%least) scene%axis = found
-      end if
-      do c = 1, directions
-        do way = -1, 1, 2
-          do part = 1, model%body_outline%parts
-            found = beyond_end(part, c, way)
-            if (found%depth > max(search%least, scene%mirror%depth)) scene%mirror = found
-          end do
-        end do
-      end do
-    end subroutine look_beyond
-
-    !> The node farthest beyond the end of a part towards lower coordinates (`way` 1), or towards higher ones
-    !! (-1), where all that was drawn on that line is held there, and is free to slide along it somewhere;
-    !! else none, 0 deep.
-    pure type(beyond_place) function beyond_end(part, c, way) result(place)
-      integer, intent(in) :: part, c, way
-      real(wp), allocatable :: u(:), x(:)
-      real(wp) :: edge
-      integer :: farthest
-
-      associate (first => model%body_outline%first(part), last => model%body_outline%first(part + 1) - 1)
-        associate (node => model%body_outline%node(1, first:last), &
-                   next => model%body_outline%node(2, first:last))
-          x = way*model%x(c, node)
-          u = way*displacement(c, node)
-          edge = minval(x) + search%least
-          if (.not. all(x > edge .or. model%is_held(c, node) .and. abs(u) <= search%least)) return
-          if (all(x > edge .or. way*model%x(c, next) > edge &
-                  .or. model%is_held(3 - c, node) .and. model%is_held(3 - c, next))) return
-          farthest = minloc(x + u, dim=1)
-          place = beyond_place(minval(x) - (x(farthest) + u(farthest)), way*minval(x), c, node(farthest))
-        end associate
-      end associate
-    end function beyond_end
   end function look_through
+
+  !> The points of a side, in the bodies whose boxes it meets.
+  subroutine look_at_side(search, scene, near, side)
+    type(search_type), intent(in) :: search      !! its outlines
+    type(overlaps_type), intent(inout) :: scene     !! what is found is added
+    integer, intent(inout) :: near              !! side nearest to the point before
+    integer, intent(in) :: side
+    real(wp), allocatable :: crossing(:), s(:)
+    integer, allocatable :: others(:), parts(:)
+    integer :: b, k
+    real(wp) :: h, high(directions), low(directions)
+
+    low = search%now%low(:, side)
+    high = search%now%high(:, side)
+    parts = search%now%part_tree%meeting(box_query(low, high))
+    do b = 1, size(parts)
+      if (parts(b) == search%now%outline%part(side)) cycle
+      crossing = crossings(search%now, side, parts(b))
+      s = [quarters, 0.5_wp*(crossing(:size(crossing) - 1) + crossing(2:))]
+      do k = 1, size(s)
+        call look_at_point(search, scene, near, point_on(search, side, s(k)), parts(b))
+      end do
+    end do
+    h = 0.5_wp*norm2(search%now%chord(side))
+    others = sides_meeting(search%now, search%now%outline%part(side), box_query(low - h, high + h))
+    do b = 1, size(others)
+      call look_at_itself(search, scene, side, others(b))
+    end do
+  end subroutine look_at_side
+
+  !> A point within a part, in the others whose boxes it meets: of bodies with one outline no point of that
+  !! lies inside.
+  subroutine look_at_middle(search, scene, near, part)
+    type(search_type), intent(in) :: search      !! its outlines
+    type(overlaps_type), intent(inout) :: scene     !! what is found is added
+    integer, intent(inout) :: near              !! side nearest to the point before
+    integer, intent(in) :: part
+    integer, allocatable :: parts(:)
+    integer :: b
+
+    parts = search%now%part_tree%meeting(box_query(search%middle(part)%x, search%middle(part)%x))
+    do b = 1, size(parts)
+      if (parts(b) /= part) call look_at_point(search, scene, near, search%middle(part), parts(b))
+    end do
+  end subroutine look_at_middle
+
+  !> One point of a body, in another.
+  subroutine look_at_point(search, scene, near, point, part)
+    type(search_type), intent(in) :: search      !! its outlines
+    type(overlaps_type), intent(inout) :: scene     !! what is found is added
+    integer, intent(inout) :: near              !! side nearest to the point before
+    type(point_type), intent(in) :: point
+    integer, intent(in) :: part
+    type(near_place) :: place
+
+    if (search%now%side_tree(part)%away(1, point%x) > 0.0_wp) return
+    place = search%now%nearest_place(part, point%x, near)
+    near = place%side
+    if (place%inside) &
+      call keep(search, meet(search, point, place), scene%inside, scene%deepest, scene%deep)
+  end subroutine look_at_point
+
+  !> The points of a side, behind another side of its own body, before which they were drawn.
+  subroutine look_at_itself(search, scene, side, other)
+    type(search_type), intent(in) :: search      !! its outlines
+    type(overlaps_type), intent(inout) :: scene     !! what is found is added
+    integer, intent(in) :: side, other
+    type(near_place) :: place
+    type(point_type) :: point
+    type(overlap_place) :: found
+    real(wp) :: drawn
+    integer :: k
+
+    associate (node => search%now%outline%node, was => search%drawn)
+      if (any(node(1, side) == node(:2, other)) .or. any(node(2, side) == node(:2, other))) return
+      do k = 1, size(quarters)
+        point = point_on(search, side, quarters(k))
+        place = search%now%near_side(other, point%x)
+        if (place%s <= 0.0_wp .or. place%s >= 1.0_wp .or. .not. search%now%is_inside(place, point%x)) cycle
+        if (2.0_wp*place%distance > norm2(search%now%chord(side))) cycle
+        found = meet(search, point, place)
+        ! How far it was drawn behind that side: where the body lies between the two, all of its thickness.
+        drawn = cross_product(was%chord(other), point%drawn - was%x(:, 1, other))/norm2(was%chord(other))
+        if (drawn <= found%allowed .and. is_worse(found, scene%itself)) scene%itself = rated(found)
+      end do
+    end associate
+  end subroutine look_at_itself
+
+  !> All pressed pairs of two bodies.
+  subroutine look_at_pairs(model, force, search, scene)
+    type(model_type), intent(in) :: model        !! the model
+    real(wp), intent(in) :: force(:)             !! contact forces [pairs]
+    type(search_type), intent(in) :: search      !! its outlines
+    type(overlaps_type), intent(inout) :: scene     !! what is found is added
+    real(wp) :: least
+    integer :: k, side, side_of(model%nodes)
+
+    least = no_effect*maxval(force)
+    associate (node => model%body_outline%node, part_of => model%body_outline%part_of)
+      side_of = 0
+      do side = 1, size(node, 2)
+        if (node(3, side) > 0) side_of(node(3, side)) = side
+        side_of(node(1, side)) = side
+      end do
+      do k = 1, model%pairs
+        associate (part => part_of(model%pair_node(1, k)), b => model%pair_node(2, k))
+          if (force(k) <= least .or. side_of(b) == 0 .or. part == 0 .or. part == part_of(b)) cycle
+          side = side_of(b)
+          call look_at_pair(model, search, scene, k, point_on(search, side, merge(0.0_wp, 0.5_wp, node(1, &
+              side) == b)), part)
+        end associate
+      end do
+    end associate
+  end subroutine look_at_pairs
+
+  !> One pressed pair: its node B, at the part that A is of.
+  subroutine look_at_pair(model, search, scene, pair, point, part)
+    type(model_type), intent(in) :: model        !! the model
+    type(search_type), intent(in) :: search      !! its outlines
+    type(overlaps_type), intent(inout) :: scene     !! what is found is added
+    integer, intent(in) :: pair, part
+    type(point_type), intent(in) :: point
+    type(near_place) :: place
+    type(overlap_place) :: found, slid
+    real(wp) :: apart(directions), off
+
+    place = search%now%nearest_place(part, point%x)
+    found = meet(search, point, place)
+    found%pair = pair
+    slid = found
+    apart = point%motion - motion_at(search, place%side, place%s)
+    ! At a corner the nearest side may be the one that is not pressed: to close a gap is no slide.
+    slid%depth = min(part_along(search%now, place%side, place%s, apart), &
+                     abs(cross_product(model%normal(:, pair), apart)))
+    slid%allowed = max(part_of_side*maxval(search%allowance%length([found%side, found%other])), &
+                       part_of_body*minval(search%width([part, search%now%outline%part(found%side)])))
+    if (is_worse(slid, scene%slid)) scene%slid = rated(slid)
+    if (place%inside) return
+    found%depth = abs(dot_product(point%x - place%x, model%normal(:, pair)))
+    off = abs(cross_product(point%x - place%x, model%normal(:, pair)))
+    if (off <= found%depth) then
+      call keep(search, found, scene%apart, scene%widest, scene%wide)
+    else   ! the other body ends before it
+      found%depth = off
+      found%allowed = found%allowed + slid%allowed
+      if (is_worse(found, scene%beside)) scene%beside = rated(found)
+    end if
+  end subroutine look_at_pair
+
+  !> Of rings: the node of least radius, if that is below 0. Of all bodies: the node farthest beyond a line
+  !! along which all of an end of its body is held across and somewhere free.
+  subroutine look_beyond(model, displacement, search, scene)
+    type(model_type), intent(in) :: model        !! the model
+    real(wp), intent(in) :: displacement(:, :)   !! [length] [directions, nodes]
+    type(search_type), intent(in) :: search      !! its outlines
+    type(overlaps_type), intent(inout) :: scene     !! what is found is added
+    type(beyond_place) :: found
+    integer :: c, node, part, way
+
+    if (model%has_rings()) then
+      node = minloc(model%x(1, :) + displacement(1, :), dim=1, mask=model%body_outline%part_of > 0)
+      found = beyond_place(-(model%x(1, node) + displacement(1, node)), 0.0_wp, 1, node)
+      if (found%depth > search%least) scene%axis = found
+    end if
+    do c = 1, directions
+      do way = -1, 1, 2
+        do part = 1, model%body_outline%parts
+          found = beyond_end(model, displacement, search, part, c, way)
+          if (found%depth > max(search%least, scene%mirror%depth)) scene%mirror = found
+        end do
+      end do
+    end do
+  end subroutine look_beyond
+
+  !> The node farthest beyond the end of a part towards lower coordinates (`way` 1), or towards higher ones
+  !! (-1), where all that was drawn on that line is held there, and is free to slide along it somewhere;
+  !! else none, 0 deep.
+  pure type(beyond_place) function beyond_end(model, displacement, search, part, c, way) result(place)
+    type(model_type), intent(in) :: model        !! the model
+    real(wp), intent(in) :: displacement(:, :)   !! [length] [directions, nodes]
+    type(search_type), intent(in) :: search      !! its outlines
+    integer, intent(in) :: part, c, way
+    real(wp), allocatable :: u(:), x(:)
+    real(wp) :: edge
+    integer :: farthest
+
+    associate (first => model%body_outline%first(part), last => model%body_outline%first(part + 1) - 1)
+      associate (node => model%body_outline%node(1, first:last), &
+                 next => model%body_outline%node(2, first:last))
+        x = way*model%x(c, node)
+        u = way*displacement(c, node)
+        edge = minval(x) + search%least
+        if (.not. all(x > edge .or. model%is_held(c, node) .and. abs(u) <= search%least)) return
+        if (all(x > edge .or. way*model%x(c, next) > edge &
+                .or. model%is_held(3 - c, node) .and. model%is_held(3 - c, next))) return
+        farthest = minloc(x + u, dim=1)
+        place = beyond_place(minval(x) - (x(farthest) + u(farthest)), way*minval(x), c, node(farthest))
+      end associate
+    end associate
+  end function beyond_end
 
   !> Where the chord of a side crosses those of another part, ascending.
   pure function crossings(now, side, other) result(place)

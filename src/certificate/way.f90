@@ -29,6 +29,15 @@ module epcont_certificate_way
   !> So many times farther the nearest place is looked for in each round.
   real(wp), parameter :: widening = 8.0_wp
 
+  !> How parts move.
+  type :: ways_type
+    real(wp), allocatable :: mean(:, :)      !! displacement of each part [length] [directions, parts]
+    real(wp), allocatable :: spread_of(:)    !! what its nodes' differ by from that [length] [parts]
+    logical, allocatable :: straight(:)      !! it keeps a shape on its way [parts]
+    type(box_tree) :: part_tree              !! where each part is on its way
+    type(outline_shape) :: between           !! some sides, as far on their way as was asked last
+  end type ways_type
+
 contains
 
   !> The paths of all nodes of the outlines, and of a point within each part: of two bodies with one outline
@@ -36,176 +45,187 @@ contains
   subroutine look_at_ways(search, scene)
     type(search_type), intent(in) :: search    !! the outlines
     type(overlaps_type), intent(inout) :: scene   !! what is found is added
-    real(wp) :: mean(directions, search%now%outline%parts)   ! displacement of each part [length]
-    real(wp) :: spread_of(search%now%outline%parts)          ! what its nodes' differ by from that [length]
-    logical :: straight(search%now%outline%parts)            ! it keeps a shape on its way
-    type(box_tree) :: part_tree                              ! where each part is on its way
-    type(outline_shape) :: between   ! some sides, as far on their way as was asked last
+    type(ways_type) :: ways
     integer :: part, side
 
     associate (outline => search%now%outline)
       if (outline%parts < 2) return
-      call find_ways()
+      call find_ways(search, ways)
       do part = 1, outline%parts
-        if (.not. straight(part)) cycle
+        if (.not. ways%straight(part)) cycle
         do side = outline%first(part), outline%first(part + 1) - 1
-          call walk(point_on(search, side, 0.0_wp))
-          if (outline%node(3, side) > 0) call walk(point_on(search, side, 0.5_wp))
+          call walk(search, scene, ways, point_on(search, side, 0.0_wp))
+          if (outline%node(3, side) > 0) call walk(search, scene, ways, point_on(search, side, 0.5_wp))
         end do
-        call walk(search%middle(part))
+        call walk(search, scene, ways, search%middle(part))
       end do
     end associate
-
-  contains
-
-    !> How the parts move.
-    subroutine find_ways()
-      real(wp), dimension(directions, size(straight)) :: high, low
-      real(wp), allocatable :: u(:, :)
-      integer :: p
-
-      do p = 1, size(straight)
-        associate (first => search%now%outline%first(p), last => search%now%outline%first(p + 1) - 1, &
-                   tree => search%now%side_tree(p))
-          straight(p) = all(search%allowance%change(first:last) <= shapeless)
-          u = search%motion(:, 1, first:last)   ! what middles bulge besides is allowed three times over
-          mean(:, p) = 0.5_wp*(minval(u, dim=2) + maxval(u, dim=2))
-          spread_of(p) = maxval(norm2(u - spread(mean(:, p), 2, size(u, 2)), dim=1))
-          ! From where it was drawn to where it is.
-          low(:, p) = tree%low(:, 1) - max(0.0_wp, maxval(u, dim=2))
-          high(:, p) = tree%high(:, 1) - min(0.0_wp, minval(u, dim=2))
-        end associate
-      end do
-      part_tree = new_box_tree(low, high)
-      between%outline = search%now%outline
-      allocate (between%x, mold=search%now%x)
-    end subroutine find_ways
-
-    !> The path of one point, past all parts that it comes near to.
-    subroutine walk(point)
-      type(point_type), intent(in) :: point   !! a node, or the middle of an element
-      integer, allocatable :: parts(:)
-      integer :: b
-
-      parts = part_tree%meeting(box_query(min(point%drawn, point%x), max(point%drawn, point%x)))
-      do b = 1, size(parts)
-        if (parts(b) /= search%now%outline%part(point%side) .and. straight(parts(b))) &
-          call look_at_way(point, parts(b))
-      end do
-    end subroutine walk
-
-    !> The path of one point past another part: between two crossings of its outline it may be inside.
-    subroutine look_at_way(point, part)
-      type(point_type), intent(in) :: point
-      integer, intent(in) :: part
-      real(wp), allocatable :: time(:)
-      integer, allocatable :: sides(:)
-      real(wp) :: length   ! at most so far goes it along the other outline
-      integer :: k
-
-      associate (start => point%drawn + mean(:, part), stop => point%x, wide => spread_of(part))
-        length = norm2(stop - start) + wide
-        if (length <= search%least) return
-      end associate
-      sides = sides_meeting(search%now, part, motion_query(point%x - search%least, point%x + search%least, &
-                                                           point%motion))
-      allocate (time(0))
-      do k = 1, size(sides)
-        call cross_side(point, sides(k), time)
-      end do
-      if (size(time) == 0) return
-      time = [0.0_wp, time, 1.0_wp]
-      do k = 2, size(time)
-        if ((time(k) - time(k - 1))*length > search%least) &
-          call look_between(point, part, time(k - 1:k), length)
-      end do
-    end subroutine look_at_way
-
-    !> When a point passes between the ends of a side that moves too. Curved sides are two chords. The area
-    !! between the point and a chord is a square function of time; on the chord it vanishes.
-    pure subroutine cross_side(point, side, time)
-      type(point_type), intent(in) :: point
-      integer, intent(in) :: side
-      real(wp), allocatable, intent(inout) :: time(:)   !! ascending
-      real(wp), dimension(directions) :: a, b, da, db
-      real(wp) :: root(2)
-      integer :: chord, ends(3), i
-
-      ends = [1, 2, 0]
-      if (search%now%outline%node(3, side) > 0) ends = [1, 3, 2]
-      do chord = 1, count(ends > 0) - 1
-        a = search%drawn%x(:, ends(chord), side) - point%drawn
-        b = search%drawn%x(:, ends(chord + 1), side) - point%drawn
-        da = search%motion(:, ends(chord), side) - point%motion
-        db = search%motion(:, ends(chord + 1), side) - point%motion
-        root = roots_of_square(cross_product(a, b), cross_product(a, db) + cross_product(da, b), &
-                               cross_product(da, db))
-        do i = 1, 2
-          if (root(i) < 0.0_wp .or. root(i) > 1.0_wp) cycle
-          if (dot_product(a + root(i)*da, b + root(i)*db) <= 0.0_wp) call insert(root(i), time)
-        end do
-      end do
-    end subroutine cross_side
-
-    !> Is a point inside a part between two times, deeper than at these, and than is allowed?
-    subroutine look_between(point, part, time, length)
-      type(point_type), intent(in) :: point
-      integer, intent(in) :: part
-      real(wp), intent(in) :: time(2), length
-      type(near_place) :: ends(2), place
-      type(overlap_place) :: found
-      real(wp) :: along(directions, 2), middle, within
-      integer :: i
-
-      middle = 0.5_wp*(time(1) + time(2))
-      within = (time(2) - time(1))*length
-      place = nearest_place(point, part, middle, 0.5_wp*within)   ! no farther is the crossing
-      if (place%side == 0 .or. .not. place%inside) return
-      found = meet(search, point, place)
-      if (found%depth <= found%allowed) return
-      do i = 1, 2
-        ends(i) = nearest_place(point, part, time(i), within + place%distance)
-        if (ends(i)%inside) found%depth = min(found%depth, place%distance - ends(i)%distance)
-        along(:, i) = search%now%tangent(ends(i)%side, ends(i)%s)   ! of the side where it enters, or leaves
-      end do
-      if (found%depth <= found%allowed) return
-      if (dot_product(along(:, 1), along(:, 2)) > opposite*norm2(along(:, 1))*norm2(along(:, 2)) .and. &
-          within <= maxval(search%allowance%length([found%side, found%other]))) return
-      found%x = point%drawn + middle*point%motion
-      if (.not. point%in_element) &
-        found%node = search%now%outline%node(merge(3, 1, point%s > 0.0_wp), found%side)
-      if (is_worse(found, scene%passed)) scene%passed = rated(found)
-    end subroutine look_between
-
-    !> The place of a part that is nearest to a point at a time, of those within reach; side 0: none. About as
-    !! near as its own side is long it mostly is.
-    type(near_place) function nearest_place(point, part, time, reach) result(best)
-      type(point_type), intent(in) :: point
-      integer, intent(in) :: part
-      real(wp), intent(in) :: time, reach     !! from 0 to 1; [length]
-      type(near_place) :: place
-      integer, allocatable :: near(:), sides(:)
-      real(wp) :: within, x(directions)
-      integer :: k
-
-      x = point%drawn + time*point%motion
-      within = min(reach, search%allowance%length(point%side))
-      do
-        near = sides_meeting(search%now, part, motion_query(point%x - within, point%x + within, &
-                                                            point%motion, [time, time]))
-        ! At a node both sides say what is inside.
-        sides = [near, search%now%outline%before(near), search%now%outline%after(near)]
-        between%x(:, :, sides) = search%drawn%x(:, :, sides) + time*search%motion(:, :, sides)
-        do k = 1, size(near)
-          place = between%near_side(near(k), x)
-          if (place%distance < best%distance) best = place
-        end do
-        if (best%distance <= within .or. within >= reach) exit
-        within = min(reach, widening*within)
-      end do
-      if (best%side > 0) best%inside = between%is_inside(best, x)
-    end function nearest_place
   end subroutine look_at_ways
+
+  !> How the parts move.
+  subroutine find_ways(search, ways)
+    type(search_type), intent(in) :: search    !! the outlines
+    type(ways_type), intent(inout) :: ways    !! of the parts
+    real(wp), dimension(directions, search%now%outline%parts) :: high, low
+    real(wp), allocatable :: u(:, :)
+    integer :: p
+
+    associate (parts => search%now%outline%parts)
+      allocate (ways%mean(directions, parts), ways%spread_of(parts), ways%straight(parts))
+    end associate
+    do p = 1, size(ways%straight)
+      associate (first => search%now%outline%first(p), last => search%now%outline%first(p + 1) - 1, &
+                 tree => search%now%side_tree(p))
+        ways%straight(p) = all(search%allowance%change(first:last) <= shapeless)
+        u = search%motion(:, 1, first:last)   ! what middles bulge besides is allowed three times over
+        ways%mean(:, p) = 0.5_wp*(minval(u, dim=2) + maxval(u, dim=2))
+        ways%spread_of(p) = maxval(norm2(u - spread(ways%mean(:, p), 2, size(u, 2)), dim=1))
+        ! From where it was drawn to where it is.
+        low(:, p) = tree%low(:, 1) - max(0.0_wp, maxval(u, dim=2))
+        high(:, p) = tree%high(:, 1) - min(0.0_wp, minval(u, dim=2))
+      end associate
+    end do
+    ways%part_tree = new_box_tree(low, high)
+    ways%between%outline = search%now%outline
+    allocate (ways%between%x, mold=search%now%x)
+  end subroutine find_ways
+
+  !> The path of one point, past all parts that it comes near to.
+  subroutine walk(search, scene, ways, point)
+    type(search_type), intent(in) :: search    !! the outlines
+    type(overlaps_type), intent(inout) :: scene   !! what is found is added
+    type(ways_type), intent(inout) :: ways    !! of the parts
+    type(point_type), intent(in) :: point   !! a node, or the middle of an element
+    integer, allocatable :: parts(:)
+    integer :: b
+
+    parts = ways%part_tree%meeting(box_query(min(point%drawn, point%x), max(point%drawn, point%x)))
+    do b = 1, size(parts)
+      if (parts(b) /= search%now%outline%part(point%side) .and. ways%straight(parts(b))) &
+        call look_at_way(search, scene, ways, point, parts(b))
+    end do
+  end subroutine walk
+
+  !> The path of one point past another part: between two crossings of its outline it may be inside.
+  subroutine look_at_way(search, scene, ways, point, part)
+    type(search_type), intent(in) :: search    !! the outlines
+    type(overlaps_type), intent(inout) :: scene   !! what is found is added
+    type(ways_type), intent(inout) :: ways    !! of the parts
+    type(point_type), intent(in) :: point
+    integer, intent(in) :: part
+    real(wp), allocatable :: time(:)
+    integer, allocatable :: sides(:)
+    real(wp) :: length   ! at most so far goes it along the other outline
+    integer :: k
+
+    associate (start => point%drawn + ways%mean(:, part), stop => point%x, wide => ways%spread_of(part))
+      length = norm2(stop - start) + wide
+      if (length <= search%least) return
+    end associate
+    sides = sides_meeting(search%now, part, motion_query(point%x - search%least, point%x + search%least, &
+                                                         point%motion))
+    allocate (time(0))
+    do k = 1, size(sides)
+      call cross_side(search, point, sides(k), time)
+    end do
+    if (size(time) == 0) return
+    time = [0.0_wp, time, 1.0_wp]
+    do k = 2, size(time)
+      if ((time(k) - time(k - 1))*length > search%least) &
+        call look_between(search, scene, ways, point, part, time(k - 1:k), length)
+    end do
+  end subroutine look_at_way
+
+  !> When a point passes between the ends of a side that moves too. Curved sides are two chords. The area
+  !! between the point and a chord is a square function of time; on the chord it vanishes.
+  pure subroutine cross_side(search, point, side, time)
+    type(search_type), intent(in) :: search    !! the outlines
+    type(point_type), intent(in) :: point
+    integer, intent(in) :: side
+    real(wp), allocatable, intent(inout) :: time(:)   !! ascending
+    real(wp), dimension(directions) :: a, b, da, db
+    real(wp) :: root(2)
+    integer :: chord, ends(3), i
+
+    ends = [1, 2, 0]
+    if (search%now%outline%node(3, side) > 0) ends = [1, 3, 2]
+    do chord = 1, count(ends > 0) - 1
+      a = search%drawn%x(:, ends(chord), side) - point%drawn
+      b = search%drawn%x(:, ends(chord + 1), side) - point%drawn
+      da = search%motion(:, ends(chord), side) - point%motion
+      db = search%motion(:, ends(chord + 1), side) - point%motion
+      root = roots_of_square(cross_product(a, b), cross_product(a, db) + cross_product(da, b), &
+                             cross_product(da, db))
+      do i = 1, 2
+        if (root(i) < 0.0_wp .or. root(i) > 1.0_wp) cycle
+        if (dot_product(a + root(i)*da, b + root(i)*db) <= 0.0_wp) call insert(root(i), time)
+      end do
+    end do
+  end subroutine cross_side
+
+  !> Is a point inside a part between two times, deeper than at these, and than is allowed?
+  subroutine look_between(search, scene, ways, point, part, time, length)
+    type(search_type), intent(in) :: search    !! the outlines
+    type(overlaps_type), intent(inout) :: scene   !! what is found is added
+    type(ways_type), intent(inout) :: ways    !! of the parts
+    type(point_type), intent(in) :: point
+    integer, intent(in) :: part
+    real(wp), intent(in) :: time(2), length
+    type(near_place) :: ends(2), place
+    type(overlap_place) :: found
+    real(wp) :: along(directions, 2), middle, within
+    integer :: i
+
+    middle = 0.5_wp*(time(1) + time(2))
+    within = (time(2) - time(1))*length
+    place = nearest_place(search, ways, point, part, middle, 0.5_wp*within)   ! no farther is the crossing
+    if (place%side == 0 .or. .not. place%inside) return
+    found = meet(search, point, place)
+    if (found%depth <= found%allowed) return
+    do i = 1, 2
+      ends(i) = nearest_place(search, ways, point, part, time(i), within + place%distance)
+      if (ends(i)%inside) found%depth = min(found%depth, place%distance - ends(i)%distance)
+      along(:, i) = search%now%tangent(ends(i)%side, ends(i)%s)   ! of the side where it enters, or leaves
+    end do
+    if (found%depth <= found%allowed) return
+    if (dot_product(along(:, 1), along(:, 2)) > opposite*norm2(along(:, 1))*norm2(along(:, 2)) .and. &
+        within <= maxval(search%allowance%length([found%side, found%other]))) return
+    found%x = point%drawn + middle*point%motion
+    if (.not. point%in_element) &
+      found%node = search%now%outline%node(merge(3, 1, point%s > 0.0_wp), found%side)
+    if (is_worse(found, scene%passed)) scene%passed = rated(found)
+  end subroutine look_between
+
+  !> The place of a part that is nearest to a point at a time, of those within reach; side 0: none. About as
+  !! near as its own side is long it mostly is.
+  type(near_place) function nearest_place(search, ways, point, part, time, reach) result(best)
+    type(search_type), intent(in) :: search    !! the outlines
+    type(ways_type), intent(inout) :: ways    !! of the parts
+    type(point_type), intent(in) :: point
+    integer, intent(in) :: part
+    real(wp), intent(in) :: time, reach     !! from 0 to 1; [length]
+    type(near_place) :: place
+    integer, allocatable :: near(:), sides(:)
+    real(wp) :: within, x(directions)
+    integer :: k
+
+    x = point%drawn + time*point%motion
+    within = min(reach, search%allowance%length(point%side))
+    do
+      near = sides_meeting(search%now, part, motion_query(point%x - within, point%x + within, &
+                                                          point%motion, [time, time]))
+      ! At a node both sides say what is inside.
+      sides = [near, search%now%outline%before(near), search%now%outline%after(near)]
+      ways%between%x(:, :, sides) = search%drawn%x(:, :, sides) + time*search%motion(:, :, sides)
+      do k = 1, size(near)
+        place = ways%between%near_side(near(k), x)
+        if (place%distance < best%distance) best = place
+      end do
+      if (best%distance <= within .or. within >= reach) exit
+      within = min(reach, widening*within)
+    end do
+    if (best%side > 0) best%inside = ways%between%is_inside(best, x)
+  end function nearest_place
 
   !> The real roots of a + b t + c t**2 between -1 and 1; 2 stands for one that is not there.
   pure function roots_of_square(a, b, c) result(root)

@@ -16,7 +16,7 @@ module epcont_contact_scaling
   use epcont_flexibility_motion_matrix, only: motion_matrix
   implicit none
   private
-  public :: scaled_problem, scale_problem, diagonal, drop_motions, measure, gaps_by_forces
+  public :: scaled_problem, scale_problem, diagonal_of, drop_motions, measure, gaps_by_forces
 
   !> The problem in its own units, over the motions that are kept.
   type :: scaled_problem
@@ -63,7 +63,7 @@ contains
     scaled%motion_size = or_else(or_else(scaled%motion_size, largest_of(scaled%motion_size)), 1.0_wp)
     scaled%gap = problem%initial_gap + problem%load_gap
     scaled%unloaded_gap = max(problem%initial_gap, 0.0_wp)
-    largest = largest_of(diagonal(problem%flexibility))
+    largest = largest_of(diagonal_of(problem%flexibility))
 
     driving = max(largest_of(min(scaled%gap, 0.0_wp)), largest_of(problem%load_gap))
     associate (rho => scaled%force_unit, omega => scaled%gap_unit)
@@ -129,7 +129,7 @@ contains
     real(wp) :: softest
     integer :: i, j
 
-    own = diagonal(scaled%flexibility)*scaled%flexibility_scale + scaled%own_flexibility
+    own = diagonal_of(scaled%flexibility)*scaled%flexibility_scale + scaled%own_flexibility
     softest = or_else(largest_of(own), 1.0_wp)
     squares = 0.0_wp
     scaled%gamma = spread(0.0_wp, 1, scaled%motion%motions())
@@ -181,13 +181,13 @@ contains
   end function gaps_by_forces
 
   !> Diagonal of a square matrix.
-  pure function diagonal(matrix)
+  pure function diagonal_of(matrix) result(diagonal)
     real(wp), intent(in) :: matrix(:, :)
     real(wp) :: diagonal(size(matrix, 1))
     integer :: k
 
     diagonal = [(matrix(k, k), k=1, size(diagonal))]
-  end function diagonal
+  end function diagonal_of
 
   !> Largest absolute value; 0 of none.
   pure real(wp) function largest_of(values)

@@ -14,7 +14,7 @@ module epcont_contact_simplex
   use epcont_contact_block_pivoting, only: exchange_blocks
   use epcont_contact_loading, only: follow_load
   use epcont_contact_problem, only: contact_overlap, contact_solution, contact_solved, contact_stalled
-  use epcont_contact_scaling, only: diagonal, gaps_by_forces, measure, scaled_problem
+  use epcont_contact_scaling, only: diagonal_of, gaps_by_forces, measure, scaled_problem
   use epcont_contact_state, only: basic_values, contact_state, guess_tolerance, has_right_signs, &
     renew_state, solve_set
   implicit none
@@ -101,7 +101,7 @@ contains
 
       softer = scaled
       softer%own_flexibility = spread(attempt*own_flexibility*scaled%flexibility_scale &
-                                      *maxval([diagonal(scaled%flexibility), 0.0_wp]), 1, size(closed))
+                                      *maxval([diagonal_of(scaled%flexibility), 0.0_wp]), 1, size(closed))
       call measure(softer)
       exchanged = solution%pivots
       closed = scaled%first_touching

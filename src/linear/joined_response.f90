@@ -11,7 +11,7 @@ module epcont_linear_joined_response
   use epcont_plan_planned_model, only: planned_model
   implicit none
   private
-  public :: are_unique, frozen_response, respond
+  public :: are_unique, frozen_response, respond_joined
 
   !> What a solve leaves of forces of size one, at most, where they open gaps.
   real(wp), parameter :: most_left = 0.1_wp
@@ -28,7 +28,7 @@ contains
 
   !> Find forces and displacements under loads and openings in one solve; of what is wrong of forces as far as
   !> known it leaves a thousandth or less. Springs at SUPORT freedoms bear what known displacements say.
-  subroutine respond(self, scene, bodies, found, at_contact)
+  subroutine respond_joined(self, scene, bodies, found, at_contact)
     type(joined_contact), intent(in) :: self
     type(planned_model), intent(in) :: scene
     class(factored_bodies), intent(inout) :: bodies !! factored with the set of contacts
@@ -53,7 +53,7 @@ contains
         where (self%closed) force(:, k) = force(:, k) - self%gamma*gap_opening(scene%model, u(:, k, :))
       end do
     end associate
-  end subroutine respond
+  end subroutine respond_joined
 
   !> Are the contact forces the only ones? Forces that open no gaps are what a solve leaves of any; of two
   !! that are given no one is likely to have none of these.

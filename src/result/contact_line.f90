@@ -69,211 +69,240 @@ contains
     end associate
     at = new_incidence(reshape(line%node, [1, model%pairs]), model%nodes)
     ! A node may have a pair in each of several contacts: neighbours are of one.
-    call find_edges(1, model%single_pairs())
+    call find_edges(model, at, within, line, 1, model%single_pairs())
     do c = 1, size(model%line_contact)
       contact = model%line_contact(c)
-      call find_edges(contact%first, contact%first_of_master - 1)
-      if (contact%last >= contact%first_of_master) call insert_masters()
+      call find_edges(model, at, within, line, contact%first, contact%first_of_master - 1)
+      if (contact%last >= contact%first_of_master) call insert_masters(model, contact, at, within, line, &
+          places)
     end do
     call places%numbers(place, many)
     line%at_place = new_incidence(reshape(place, [1, model%pairs]), many)
+  end function find_contact_line
 
-  contains
+  !> Edges at a range of pairs, and the neighbours among them.
+  subroutine find_edges(model, at, within, line, first, last)
+    type(model_type), intent(in) :: model        !! the model
+    type(incidence), intent(in) :: at            !! each node: the pairs there
+    integer, intent(inout) :: within(2)         !! first and last pair
+    type(contact_line), intent(inout) :: line
+    integer, intent(in) :: first, last
+    integer, allocatable :: sides(:, :)
+    real(wp) :: longest, share(3)
+    integer :: beside, end, i, k, pair, own
 
-    !> Edges at a range of pairs, and the neighbours among them.
-    subroutine find_edges(first, last)
-      integer, intent(in) :: first, last
-      integer, allocatable :: sides(:, :)
-      real(wp) :: longest, share(3)
-      integer :: beside, end, i, k, pair, own
-
-      within = [first, last]
-      do pair = first, last
-        longest = 0.0_wp
-        sides = outer_sides(model, line%node(pair))
-        do i = 1, size(sides, 2)
-          associate (side => sides(:3, i), n => model%normal(:, pair))
-            longest = max(longest, norm2(model%x(:, side(2)) - model%x(:, side(1))))
-            if (.not. is_along(side, n)) cycle
-            own = findloc(side, line%node(pair), dim=1)
-            share = shares_of_nodes(model, sides(4, i), side, n)
-            if (abs(share(own)) <= no_area*sum(share)) share(own) = 0.0_wp
-            line%tributary(pair) = line%tributary(pair) + share(own)
-            line%middle(pair) = own == 3
-            if (own == 3) then
-              line%neighbour(:, pair) = [(pair_of_side(side, side(end)), end=1, 2)]
-            else
-              beside = merge(side(3), side(3 - own), side(3) > 0)
-              k = findloc(line%neighbour(:, pair), 0, dim=1)
-              if (k == 0) cycle
-              line%neighbour(k, pair) = pair_of_side(side, beside)
-              if (line%neighbour(k, pair) > 0) line%part(k, pair) = share(own)
-            end if
-          end associate
-        end do
-        if (any(line%neighbour(:, pair) == 0)) &
-          line%mirrored(pair) = is_on_symmetry(pair, line%node(pair), longest)
-      end do
-    end subroutine find_edges
-
-    !> Is a pair, at which its line ends, on a line of symmetry? Its node is held along the boundary there,
-    !! and so is the other body where it ends at the same line, or all over if it is rigid; a body that goes
-    !! on beyond the line is not mirrored. One of the two is held along the boundary alone: one held all over,
-    !! or tied by RBE2, does not tell.
-    pure logical function is_on_symmetry(pair, node, side)
-      integer, intent(in) :: pair, node
-      real(wp), intent(in) :: side   !! length of the longest side at the node [length]
-      logical :: ends, guided, rigid
-      integer :: along, i
-
-      is_on_symmetry = .false.
-      along = merge(1, 2, abs(model%normal(2, pair)) > abs(model%normal(1, pair)))
-      if (abs(model%normal(3 - along, pair)) <= along_line .or. .not. model%is_held(along, node)) return
-      ends = .false.
-      guided = is_guided(along, node)
-      rigid = .true.
-      do i = model%row_start(pair), model%row_start(pair + 1) - 1
-        associate (other => model%row_node(i))
-          if (other == node) cycle
-          if (.not. model%is_held(along, other)) then
-            rigid = .false.
-          else if (abs(model%x(along, other) - model%x(along, node)) <= beside_line*side) then
-            ends = .true.
-            guided = guided .or. is_guided(along, other)
+    within = [first, last]
+    do pair = first, last
+      longest = 0.0_wp
+      sides = outer_sides(model, line%node(pair))
+      do i = 1, size(sides, 2)
+        associate (side => sides(:3, i), n => model%normal(:, pair))
+          longest = max(longest, norm2(model%x(:, side(2)) - model%x(:, side(1))))
+          if (.not. is_along(model, side, n)) cycle
+          own = findloc(side, line%node(pair), dim=1)
+          share = shares_of_nodes(model, sides(4, i), side, n)
+          if (abs(share(own)) <= no_area*sum(share)) share(own) = 0.0_wp
+          line%tributary(pair) = line%tributary(pair) + share(own)
+          line%middle(pair) = own == 3
+          if (own == 3) then
+            line%neighbour(:, pair) = [(pair_of_side(model, at, within, side, side(end)), end=1, 2)]
+          else
+            beside = merge(side(3), side(3 - own), side(3) > 0)
+            k = findloc(line%neighbour(:, pair), 0, dim=1)
+            if (k == 0) cycle
+            line%neighbour(k, pair) = pair_of_side(model, at, within, side, beside)
+            if (line%neighbour(k, pair) > 0) line%part(k, pair) = share(own)
           end if
         end associate
       end do
-      is_on_symmetry = guided .and. (ends .or. rigid)
-    end function is_on_symmetry
+      if (any(line%neighbour(:, pair) == 0)) &
+        line%mirrored(pair) = is_on_symmetry(model, pair, line%node(pair), longest)
+    end do
+  end subroutine find_edges
 
-    !> Is a node held by itself along the boundary, and free across it?
-    pure logical function is_guided(along, node)
-      integer, intent(in) :: along, node
+  !> Is a pair, at which its line ends, on a line of symmetry? Its node is held along the boundary there,
+  !! and so is the other body where it ends at the same line, or all over if it is rigid; a body that goes
+  !! on beyond the line is not mirrored. One of the two is held along the boundary alone: one held all over,
+  !! or tied by RBE2, does not tell.
+  pure logical function is_on_symmetry(model, pair, node, side)
+    type(model_type), intent(in) :: model        !! the model
+    integer, intent(in) :: pair, node
+    real(wp), intent(in) :: side   !! length of the longest side at the node [length]
+    logical :: ends, guided, rigid
+    integer :: along, i
 
-      is_guided = model%held(along, node) .and. .not. model%is_held(3 - along, node)
-    end function is_guided
-
-    !> Does a side lie along the tangent?
-    pure logical function is_along(side, n)
-      integer, intent(in) :: side(3)
-      real(wp), intent(in) :: n(directions)   !! normal of the contact
-
-      associate (edge => model%x(:, side(2)) - model%x(:, side(1)))
-        is_along = abs(dot_product(edge, n)) <= along_tangent*norm2(edge)
+    is_on_symmetry = .false.
+    along = merge(1, 2, abs(model%normal(2, pair)) > abs(model%normal(1, pair)))
+    if (abs(model%normal(3 - along, pair)) <= along_line .or. .not. model%is_held(along, node)) return
+    ends = .false.
+    guided = is_guided(model, along, node)
+    rigid = .true.
+    do i = model%row_start(pair), model%row_start(pair + 1) - 1
+      associate (other => model%row_node(i))
+        if (other == node) cycle
+        if (.not. model%is_held(along, other)) then
+          rigid = .false.
+        else if (abs(model%x(along, other) - model%x(along, node)) <= beside_line*side) then
+          ends = .true.
+          guided = guided .or. is_guided(model, along, other)
+        end if
       end associate
-    end function is_along
+    end do
+    is_on_symmetry = guided .and. (ends .or. rigid)
+  end function is_on_symmetry
 
-    !> The pair that a side has at one of its nodes: of several there the one that presses on it the most
-    !! squarely; 0: none.
-    pure integer function pair_of_side(side, node) result(pair)
-      integer, intent(in) :: side(3), node   !! 0: none
-      integer, allocatable :: there(:)
+  !> Is a node held by itself along the boundary, and free across it?
+  pure logical function is_guided(model, along, node)
+    type(model_type), intent(in) :: model        !! the model
+    integer, intent(in) :: along, node
 
-      pair = 0
-      if (node == 0) return
-      there = at%of(node)
-      there = pack(there, there >= within(1) .and. there <= within(2))
-      if (size(there) > 0) pair = there(minloc(abs(matmul(model%x(:, side(2)) - model%x(:, side(1)), &
-          model%normal(:, there))), dim=1))
-    end function pair_of_side
+    is_guided = model%held(along, node) .and. .not. model%is_held(3 - along, node)
+  end function is_guided
 
-    !> Pairs of the master's nodes stand between those of the slave's on their side, and share its area with
-    !! them.
-    subroutine insert_masters()
-      type(incidence) :: on_side
-      integer, allocatable :: masters(:)
-      integer :: side
+  !> Does a side lie along the tangent?
+  pure logical function is_along(model, side, n)
+    type(model_type), intent(in) :: model        !! the model
+    integer, intent(in) :: side(3)
+    real(wp), intent(in) :: n(directions)   !! normal of the contact
 
-      on_side = new_incidence(reshape(contact%stands_on, [1, size(contact%stands_on)]), &
-                              size(contact%slave%element))
-      do side = 1, size(contact%slave%element)
-        masters = contact%first_of_master - 1 + on_side%of(side)
-        if (size(masters) > 0) call link(side, run_on(side, masters))
-      end do
-    end subroutine insert_masters
+    associate (edge => model%x(:, side(2)) - model%x(:, side(1)))
+      is_along = abs(dot_product(edge, n)) <= along_tangent*norm2(edge)
+    end associate
+  end function is_along
 
-    !> Where a pair stands on the slave [length].
-    pure function foot_of(pair) result(x)
-      integer, intent(in) :: pair
-      real(wp) :: x(directions)
+  !> The pair that a side has at one of its nodes: of several there the one that presses on it the most
+  !! squarely; 0: none.
+  pure integer function pair_of_side(model, at, within, side, node) result(pair)
+    type(model_type), intent(in) :: model        !! the model
+    type(incidence), intent(in) :: at            !! each node: the pairs there
+    integer, intent(in) :: within(2)         !! first and last pair
+    integer, intent(in) :: side(3), node   !! 0: none
+    integer, allocatable :: there(:)
 
-      x = model%x(:, line%node(pair))
-      if (pair < contact%first_of_master) return
-      ! behind the node itself
-      associate (first => model%row_start(pair) + 1, last => model%row_start(pair + 1) - 1)
-        x = -matmul(model%x(:, model%row_node(first:last)), model%row_weight(first:last))
-      end associate
-    end function foot_of
+    pair = 0
+    if (node == 0) return
+    there = at%of(node)
+    there = pack(there, there >= within(1) .and. there <= within(2))
+    if (size(there) > 0) pair = there(minloc(abs(matmul(model%x(:, side(2)) - model%x(:, side(1)), &
+        model%normal(:, there))), dim=1))
+  end function pair_of_side
 
-    !> The pairs along a side of the slave, of its nodes and of the master's, from its start on.
-    pure function run_on(side, masters) result(run)
-      integer, intent(in) :: side
-      integer, intent(in) :: masters(:)    !! the master's pairs that stand there
-      integer, allocatable :: pairs(:), run(:)
-      real(wp), allocatable :: away(:)     !! from the start
-      integer :: i, before
+  !> Pairs of the master's nodes stand between those of the slave's on their side, and share its area with
+  !! them.
+  subroutine insert_masters(model, contact, at, within, line, places)
+    type(model_type), intent(in) :: model        !! the model
+    type(line_contact), intent(in) :: contact
+    type(incidence), intent(in) :: at            !! each node: the pairs there
+    integer, intent(inout) :: within(2)         !! first and last pair
+    type(contact_line), intent(inout) :: line
+    type(partition), intent(inout) :: places     !! of pairs at one place
+    type(incidence) :: on_side
+    integer, allocatable :: masters(:)
+    integer :: side
 
-      associate (node => contact%slave%segment(:, side))
-        pairs = [(pair_of_side(node, node(i)), i=1, 3), masters]
-        pairs = pack(pairs, pairs > 0)
-        away = [(norm2(foot_of(pairs(i)) - model%x(:, node(1))), i=1, size(pairs))]
-      end associate
-      allocate (run(0))
-      do i = 1, size(pairs)
-        before = count(away(:i - 1) <= away(i))
-        run = [run(:before), pairs(i), run(before + 1:)]
-      end do
-    end function run_on
+    on_side = new_incidence(reshape(contact%stands_on, [1, size(contact%stands_on)]), &
+                            size(contact%slave%element))
+    do side = 1, size(contact%slave%element)
+      masters = contact%first_of_master - 1 + on_side%of(side)
+      if (size(masters) > 0) call link(model, contact, line, places, side, run_on(model, contact, at, &
+          within, line, side, masters))
+    end do
+  end subroutine insert_masters
 
-    !> Neighbours and areas of the pairs along a side: half of each piece between two of them, as seen along
-    !! their own normals. If a node of the side has no pair, the pieces at its end belong to none.
-    subroutine link(segment, run)
-      integer, intent(in) :: segment   !! the side
-      integer, intent(in) :: run(:)
-      real(wp) :: apart, share(3), width(size(run))
-      integer :: i, k, pair
+  !> Where a pair stands on the slave [length].
+  pure function foot_of(model, contact, line, pair) result(x)
+    type(model_type), intent(in) :: model        !! the model
+    type(line_contact), intent(in) :: contact
+    type(contact_line), intent(in) :: line
+    integer, intent(in) :: pair
+    real(wp) :: x(directions)
 
-      associate (element => contact%slave%element(segment), side => contact%slave%segment(:, segment), &
-                 chord => contact%slave%chord_length(segment))
-        do i = 1, size(run)
-          pair = run(i)
-          share = shares_of_nodes(model, element, side, model%normal(:, pair))
-          width(i) = sum(share)/chord
-          if (pair >= contact%first_of_master) cycle
-          if (is_along(side, model%normal(:, pair))) &
-            line%tributary(pair) = line%tributary(pair) - sum(share, mask=side == line%node(pair))
-          do k = 1, 2
-            if (.not. (line%middle(pair) .or. any(run == line%neighbour(k, pair)))) cycle
-            line%neighbour(k, pair) = 0
-            line%part(k, pair) = 0.0_wp
-          end do
-          line%middle(pair) = .false.   ! no node between two others any more
+    x = model%x(:, line%node(pair))
+    if (pair < contact%first_of_master) return
+    ! behind the node itself
+    associate (first => model%row_start(pair) + 1, last => model%row_start(pair + 1) - 1)
+      x = -matmul(model%x(:, model%row_node(first:last)), model%row_weight(first:last))
+    end associate
+  end function foot_of
+
+  !> The pairs along a side of the slave, of its nodes and of the master's, from its start on.
+  pure function run_on(model, contact, at, within, line, side, masters) result(run)
+    type(model_type), intent(in) :: model        !! the model
+    type(line_contact), intent(in) :: contact
+    type(incidence), intent(in) :: at            !! each node: the pairs there
+    integer, intent(in) :: within(2)         !! first and last pair
+    type(contact_line), intent(in) :: line
+    integer, intent(in) :: side
+    integer, intent(in) :: masters(:)    !! the master's pairs that stand there
+    integer, allocatable :: pairs(:), run(:)
+    real(wp), allocatable :: away(:)     !! from the start
+    integer :: i, before
+
+    associate (node => contact%slave%segment(:, side))
+      pairs = [(pair_of_side(model, at, within, node, node(i)), i=1, 3), masters]
+      pairs = pack(pairs, pairs > 0)
+      away = [(norm2(foot_of(model, contact, line, pairs(i)) - model%x(:, node(1))), i=1, size(pairs))]
+    end associate
+    allocate (run(0))
+    do i = 1, size(pairs)
+      before = count(away(:i - 1) <= away(i))
+      run = [run(:before), pairs(i), run(before + 1:)]
+    end do
+  end function run_on
+
+  !> Neighbours and areas of the pairs along a side: half of each piece between two of them, as seen along
+  !! their own normals. If a node of the side has no pair, the pieces at its end belong to none.
+  subroutine link(model, contact, line, places, segment, run)
+    type(model_type), intent(in) :: model        !! the model
+    type(line_contact), intent(in) :: contact
+    type(contact_line), intent(inout) :: line
+    type(partition), intent(inout) :: places     !! of pairs at one place
+    integer, intent(in) :: segment   !! the side
+    integer, intent(in) :: run(:)
+    real(wp) :: apart, share(3), width(size(run))
+    integer :: i, k, pair
+
+    associate (element => contact%slave%element(segment), side => contact%slave%segment(:, segment), &
+               chord => contact%slave%chord_length(segment))
+      do i = 1, size(run)
+        pair = run(i)
+        share = shares_of_nodes(model, element, side, model%normal(:, pair))
+        width(i) = sum(share)/chord
+        if (pair >= contact%first_of_master) cycle
+        if (is_along(model, side, model%normal(:, pair))) &
+          line%tributary(pair) = line%tributary(pair) - sum(share, mask=side == line%node(pair))
+        do k = 1, 2
+          if (.not. (line%middle(pair) .or. any(run == line%neighbour(k, pair)))) cycle
+          line%neighbour(k, pair) = 0
+          line%part(k, pair) = 0.0_wp
         end do
-        do i = 1, size(run) - 1
-          apart = norm2(foot_of(run(i + 1)) - foot_of(run(i)))
-          if (apart < close*(chord/merge(2, 1, side(3) > 0))) call places%join(run(i), run(i + 1))
-          call add_piece(run(i:i + 1), 0.5_wp*width(i:i + 1)*apart)
-        end do
-      end associate
-    end subroutine link
-
-    !> Two pairs are neighbours, and a piece of the boundary between them belongs to each.
-    subroutine add_piece(pairs, piece)
-      integer, intent(in) :: pairs(2)
-      real(wp), intent(in) :: piece(2)   !! of each [length**2]
-      integer :: i, k, pair
-
-      do i = 1, 2
-        pair = pairs(i)
-        k = findloc(line%neighbour(:, pair), pairs(3 - i), dim=1)
-        if (k == 0) k = findloc(line%neighbour(:, pair), 0, dim=1)
-        if (k == 0) k = 2
-        line%neighbour(k, pair) = pairs(3 - i)
-        line%part(k, pair) = line%part(k, pair) + piece(i)
-        line%tributary(pair) = line%tributary(pair) + piece(i)
+        line%middle(pair) = .false.   ! no node between two others any more
       end do
-    end subroutine add_piece
-  end function find_contact_line
+      do i = 1, size(run) - 1
+        apart = norm2(foot_of(model, contact, line, run(i + 1)) - foot_of(model, contact, line, run(i)))
+        if (apart < close*(chord/merge(2, 1, side(3) > 0))) call places%join(run(i), run(i + 1))
+        call add_piece(line, run(i:i + 1), 0.5_wp*width(i:i + 1)*apart)
+      end do
+    end associate
+  end subroutine link
+
+  !> Two pairs are neighbours, and a piece of the boundary between them belongs to each.
+  subroutine add_piece(line, pairs, piece)
+    type(contact_line), intent(inout) :: line
+    integer, intent(in) :: pairs(2)
+    real(wp), intent(in) :: piece(2)   !! of each [length**2]
+    integer :: i, k, pair
+
+    do i = 1, 2
+      pair = pairs(i)
+      k = findloc(line%neighbour(:, pair), pairs(3 - i), dim=1)
+      if (k == 0) k = findloc(line%neighbour(:, pair), 0, dim=1)
+      if (k == 0) k = 2
+      line%neighbour(k, pair) = pairs(3 - i)
+      line%part(k, pair) = line%part(k, pair) + piece(i)
+      line%tributary(pair) = line%tributary(pair) + piece(i)
+    end do
+  end subroutine add_piece
 
   !> The sides of the outline at a node: nodes at their start, their end, and between or 0, and whose they are
   !! [4, any].

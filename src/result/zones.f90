@@ -46,7 +46,7 @@ contains
     sets = new_partition(size(touching))
     do pair = 1, size(touching)
       if (.not. touching(pair)) cycle
-      next = beside(pair, .true.)
+      next = beside(line, touching, pair, .true.)
       do k = 1, size(next)
         call sets%join(pair, next(k))
       end do
@@ -61,99 +61,113 @@ contains
     met = .false.
     allocate (zones(size(start)))
     do z = 1, size(zones)
-      zones(z) = zone_from(start(z))
+      zones(z) = zone_from(line, touching, pressure, at, number, met, start(z))
+      zones(z)%force = sum(force(zones(z)%pairs))
     end do
-
-  contains
-
-    !> One zone: its pairs from end to end, beginning with the end met first in the deck.
-    function zone_from(start) result(zone)
-      integer, intent(in) :: start
-      type(contact_zone) :: zone
-      integer, allocatable :: run(:)
-      logical :: counts(2), falling(2)
-      integer :: k, n
-
-      run = run_from(start)
-      run = run_from(run(size(run)))
-      n = size(run)
-      if (run(n) < run(1)) run = run(n:1:-1)
-      zone%pairs = run
-      zone%first = run(1)
-      zone%last = run(n)
-      zone%beyond = [line%neighbour(:, run(1)), line%neighbour(:, run(n))]
-      zone%beyond = pack(zone%beyond, zone%beyond > 0)
-      zone%force = sum(force(run))
-      zone%max_pressure = maxval(pressure(run))
-      allocate (zone%along(n), source=0.0_wp)
-      do k = 2, n
-        zone%along(k) = zone%along(k - 1) + line%distance(run(k), run(k - 1))
-      end do
-      call extend(run(n:1:-1), zone%open(1), zone%vanishes(1), falling(1))
-      call extend(run, zone%open(2), zone%vanishes(2), falling(2))
-      ! From a line of symmetry on, it is half of the zone.
-      counts = .not. line%mirrored(run([1, n])) .or. all(line%mirrored(run([1, n])))
-      associate (half => merge(0.5_wp, 1.0_wp, all(counts)))
-        zone%half_width_pairs = half*zone%along(n)
-        if (all(falling .or. .not. counts)) &
-          zone%half_width = half*(zone%along(n) + sum(zone%vanishes, mask=counts))
-      end associate
-    end function zone_from
-
-    !> The neighbours of a pair that touch, or those that do not.
-    pure function beside(pair, touches) result(next)
-      integer, intent(in) :: pair
-      logical, intent(in) :: touches
-      integer, allocatable :: next(:)
-
-      next = pack(line%neighbour(:, pair), line%neighbour(:, pair) > 0)
-      next = pack(next, touching(next) .eqv. touches)
-    end function beside
-
-    !> The touching pairs from `start` as far as they go in one direction, those at one node after each other.
-    function run_from(start) result(run)
-      integer, intent(in) :: start
-      integer, allocatable :: next(:), run(:)
-      integer :: found(size(number)), last, n
-
-      n = 1
-      found(1) = start
-      do
-        last = found(n)
-        met(last) = .true.
-        next = at%of(line%node(last))
-        next = [pack(next, number(next) == number(last)), beside(last, .true.)]
-        next = pack(next, .not. met(next))
-        if (size(next) == 0) exit
-        n = n + 1
-        found(n) = next(1)
-      end do
-      run = found(:n)
-      met(run) = .false.
-    end function run_from
-
-    !> How far beyond the last pair of a run the pressure vanishes: near the edge p**2 is linear. Not beyond
-    !! the first open pair; not at all where that end is the last candidate, or the pressure does not fall
-    !! towards it.
-    pure subroutine extend(run, open, vanishes, falling)
-      integer, intent(in) :: run(:)
-      !> To the first open pair; to where the pressure vanishes [length]
-      real(wp), intent(out) :: open, vanishes
-      logical, intent(out) :: falling
-      integer, allocatable :: next(:)   !! open pairs
-      real(wp) :: drop
-      integer :: before, n   !! the last of the run, and the one at the node before
-
-      n = size(run)
-      before = findloc(line%node(run) /= line%node(run(n)), .true., dim=1, back=.true.)
-      open = 0.0_wp
-      next = beside(run(n), .false.)
-      if (size(next) > 0) open = line%distance(run(n), next(size(next)))
-      falling = before > 0 .and. open > 0.0_wp .and. pressure(run(n)) < falls*maxval(pressure(run))
-      vanishes = merge(open, 0.0_wp, before > 0)
-      if (vanishes <= 0.0_wp) return
-      drop = pressure(run(before))**2 - pressure(run(n))**2
-      if (drop > 0.0_wp) vanishes = min(line%distance(run(n), run(before))*pressure(run(n))**2/drop, open)
-    end subroutine extend
   end function find_zones
+
+  !> One zone: its pairs from end to end, beginning with the end met first in the deck.
+  function zone_from(line, touching, pressure, at, number, met, start) result(zone)
+    type(contact_line), intent(in) :: line          !! of the pairs
+    logical, intent(in) :: touching(:)              !! the pairs `in_contact` [pairs]
+    real(wp), intent(in) :: pressure(:)             !! [stress] [pairs]
+    type(incidence), intent(in) :: at               !! each node: the pairs there
+    integer, intent(in) :: number(:)                !! set of each pair [pairs]
+    logical, intent(inout) :: met(:)                !! in a run [pairs]
+    integer, intent(in) :: start
+    type(contact_zone) :: zone
+    integer, allocatable :: run(:)
+    logical :: counts(2), falling(2)
+    integer :: k, n
+
+    run = run_from(line, touching, at, number, met, start)
+    run = run_from(line, touching, at, number, met, run(size(run)))
+    n = size(run)
+    if (run(n) < run(1)) run = run(n:1:-1)
+    zone%pairs = run
+    zone%first = run(1)
+    zone%last = run(n)
+    zone%beyond = [line%neighbour(:, run(1)), line%neighbour(:, run(n))]
+    zone%beyond = pack(zone%beyond, zone%beyond > 0)
+    zone%max_pressure = maxval(pressure(run))
+    allocate (zone%along(n), source=0.0_wp)
+    do k = 2, n
+      zone%along(k) = zone%along(k - 1) + line%distance(run(k), run(k - 1))
+    end do
+    call extend(line, touching, pressure, run(n:1:-1), zone%open(1), zone%vanishes(1), falling(1))
+    call extend(line, touching, pressure, run, zone%open(2), zone%vanishes(2), falling(2))
+    ! From a line of symmetry on, it is half of the zone.
+    counts = .not. line%mirrored(run([1, n])) .or. all(line%mirrored(run([1, n])))
+    associate (half => merge(0.5_wp, 1.0_wp, all(counts)))
+      zone%half_width_pairs = half*zone%along(n)
+      if (all(falling .or. .not. counts)) &
+        zone%half_width = half*(zone%along(n) + sum(zone%vanishes, mask=counts))
+    end associate
+  end function zone_from
+
+  !> The neighbours of a pair that touch, or those that do not.
+  pure function beside(line, touching, pair, touches) result(next)
+    type(contact_line), intent(in) :: line          !! of the pairs
+    logical, intent(in) :: touching(:)              !! the pairs `in_contact` [pairs]
+    integer, intent(in) :: pair
+    logical, intent(in) :: touches
+    integer, allocatable :: next(:)
+
+    next = pack(line%neighbour(:, pair), line%neighbour(:, pair) > 0)
+    next = pack(next, touching(next) .eqv. touches)
+  end function beside
+
+  !> The touching pairs from `start` as far as they go in one direction, those at one node after each other.
+  function run_from(line, touching, at, number, met, start) result(run)
+    type(contact_line), intent(in) :: line          !! of the pairs
+    logical, intent(in) :: touching(:)              !! the pairs `in_contact` [pairs]
+    type(incidence), intent(in) :: at               !! each node: the pairs there
+    integer, intent(in) :: number(:)                !! set of each pair [pairs]
+    logical, intent(inout) :: met(:)                !! in a run [pairs]
+    integer, intent(in) :: start
+    integer, allocatable :: next(:), run(:)
+    integer :: found(size(number)), last, n
+
+    n = 1
+    found(1) = start
+    do
+      last = found(n)
+      met(last) = .true.
+      next = at%of(line%node(last))
+      next = [pack(next, number(next) == number(last)), beside(line, touching, last, .true.)]
+      next = pack(next, .not. met(next))
+      if (size(next) == 0) exit
+      n = n + 1
+      found(n) = next(1)
+    end do
+    run = found(:n)
+    met(run) = .false.
+  end function run_from
+
+  !> How far beyond the last pair of a run the pressure vanishes: near the edge p**2 is linear. Not beyond
+  !! the first open pair; not at all where that end is the last candidate, or the pressure does not fall
+  !! towards it.
+  pure subroutine extend(line, touching, pressure, run, open, vanishes, falling)
+    type(contact_line), intent(in) :: line          !! of the pairs
+    logical, intent(in) :: touching(:)              !! the pairs `in_contact` [pairs]
+    real(wp), intent(in) :: pressure(:)             !! [stress] [pairs]
+    integer, intent(in) :: run(:)
+    !> To the first open pair; to where the pressure vanishes [length]
+    real(wp), intent(out) :: open, vanishes
+    logical, intent(out) :: falling
+    integer, allocatable :: next(:)   !! open pairs
+    real(wp) :: drop
+    integer :: before, n   !! the last of the run, and the one at the node before
+
+    n = size(run)
+    before = findloc(line%node(run) /= line%node(run(n)), .true., dim=1, back=.true.)
+    open = 0.0_wp
+    next = beside(line, touching, run(n), .false.)
+    if (size(next) > 0) open = line%distance(run(n), next(size(next)))
+    falling = before > 0 .and. open > 0.0_wp .and. pressure(run(n)) < falls*maxval(pressure(run))
+    vanishes = merge(open, 0.0_wp, before > 0)
+    if (vanishes <= 0.0_wp) return
+    drop = pressure(run(before))**2 - pressure(run(n))**2
+    if (drop > 0.0_wp) vanishes = min(line%distance(run(n), run(before))*pressure(run(n))**2/drop, open)
+  end subroutine extend
 end module epcont_result_zones
