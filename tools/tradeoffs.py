@@ -216,15 +216,15 @@ def draw(found, path):
 #: Mechanisms that are no longer there: old and new program in turns, medians of five, one thread.
 REMOVED = [
     ["PARAM RULE BLOCK: block pivoting of the contacts with F of each body, from 100 pairs on; an interior path",
-     "`tools/decks blocks` with 600 pairs and 24 000 nodes 0.27 s, now 0.26 (CONRY); 1000 pairs and 40 000 nodes 0.56, 0.70 (JOINED); strip of 600 pairs 0.15, 0.15",
+     "blocks of `tools/decks` with 600 pairs and 24 000 nodes 0.27 s, now 0.26 (CONRY); 1000 pairs and 40 000 nodes 0.56, 0.70 (JOINED); strip of 600 pairs 0.15, 0.15",
      "a second way to the same bits, 300 lines; its exchanges remain as the rescue of the simplex, its interior path in joined bodies. Rows of BLOCK in the "
      "other tables of this page are of the program before"],
     ["flexibility in levels: F and its factor as block tridiagonal matrices, unit loads passed from level to level",
-     "`tools/decks stack` (30 bodies, 42 000 nodes) 0.43 s and 158 MB, now 0.68 s and 209 MB (JOINED); 1 000 small bodies 0.66, 0.74 s; walls the other way: "
+     "stack of `tools/decks` (30 bodies, 42 000 nodes) 0.43 s and 158 MB, now 0.68 s and 209 MB (JOINED); 1 000 small bodies 0.66, 0.74 s; walls the other way: "
      "16 x 16 bricks 0.57 s and 66 MB, now 0.16 s and 26 MB",
      "900 lines; many bodies are joined, which takes springs, MPC and undetermined modes now"],
     ["PARAM PRECIS: factors in single precision, refined (MIXED) or not (SINGLE)",
-     "`tools/decks hertz 42000` with PRECIS DOUBLE, MIXED, SINGLE: elastic 0.33, 0.39, 0.32 s and 141, 114, 112 MB; yielding (`--plastic`) 0.82, "
+     "hertz 42000 of `tools/decks` with PRECIS DOUBLE, MIXED, SINGLE: elastic 0.33, 0.39, 0.32 s and 141, 114, 112 MB; yielding (`--plastic`) 0.82, "
      "1.39, 0.65 s and 214, 166, 165 MB",
      "1 000 lines of templates included twice, a second solve where single precision fails, every test in three precisions: for 3 to 20 % of "
      "the time of large models and a fifth of their memory. Rows of MIXED and SINGLE in the other tables of this page are of the program before"],
@@ -241,7 +241,7 @@ REMOVED = [
      "stack 0.442, 0.440; dovetail 0.407, 0.407; hertz 150000 1.473, 1.498. Memory 0 to 1 % less without",
      "110 lines in five files; now one procedure of 20 lines (`assembly/stiffness.f90`)"],
     ["unit loads along every rigid-body mode, passed on from level to level: an error of every approach",
-     "an error of the approach of more than the 12 largest motions; others are blank now. With and without, `tools/decks stack` of 30 bodies 0.42 and 0.39 s, "
+     "an error of the approach of more than the 12 largest motions; others are blank now. With and without, stack of `tools/decks` of 30 bodies 0.42 and 0.39 s, "
      "of 1 000 1.24 and 1.17 s, a wall of 16 x 16 bricks 0.49 and 0.33 s and 66 and 36 MB; two cylinders, blocks, dovetail, strip the same. Share of the "
      "accuracy in an elastic run: 14 to 23 %, wall 6 %, 1 000 bodies 8 %; in 100 load cases 27 to 30 %",
      "350 lines of src and 180 of tests; both contact rules now have one set of unit loads"]]
