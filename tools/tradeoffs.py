@@ -229,7 +229,7 @@ REMOVED = [
      "1 000 lines of templates included twice, a second solve where single precision fails, every test in three precisions: for 3 to 20 % of "
      "the time of large models and a fifth of their memory. Rows of MIXED and SINGLE in the other tables of this page are of the program before"],
     ["forecast of the run time in seconds: `--plan`, progress",
-     "the time of 151 of 152 decks within a factor of 2 (as `src/README.md` had it), of which `--plan` took 3 ms; other runs take the same time without it",
+     "the time of 151 of 152 decks within a factor of 2 (as the documents said), of which `--plan` took 3 ms; other runs take the same time without it",
      "360 lines of src and 700 of tests that follow the machine; `--plan` states operations and memory, progress what is done"],
     ["large pages under the factors and, touched ahead, under the heap; small ones where large ones come slowly",
      "0 to 4 % of processor time (medians of seven, with the row below): `tools/decks` hertz 11000 0.078 s with, 0.081 without; `--plastic` 0.183, 0.183; "
