@@ -173,13 +173,11 @@ contains
     type(findings), intent(inout) :: found
     type(line_contact), intent(inout) :: contact
     type(faces_type), intent(inout) :: faces
-    real(wp) :: extent   ! of the elements [length]
 
-    extent = sum(extent_of(model%x(:, model%around%members())))
     do
       call add_pairs(model, contact, faces)
       if (contact%last >= contact%first) exit
-      if (contact%search > extent) then
+      if (contact%search > sum(extent_of(model%x(:, model%around%members())))) then
         call add_nothing_faced()
         return
       end if
