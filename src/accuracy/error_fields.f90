@@ -11,7 +11,7 @@ module epcont_accuracy_error_fields
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
   use epcont_element_element_kind, only: most_nodes, most_points
-  use epcont_element_kinematics, only: components
+  use epcont_element_kinematics, only: components, directions
   use epcont_linear_linear_problem, only: linear_problem
   use epcont_linear_solved_state, only: solved_state
   use epcont_plan_planned_model, only: planned_model
@@ -131,6 +131,10 @@ contains
     if (.not. work%scene%numbering%joined) then
       call find_displacements(work%scene, work%linear, work%b, work%loads%pair, work%now%batch, &
           work%table%node(place), work%now%u)
+      return
+    end if
+    if (size(work%now%batch%field) == 0) then   ! of no loads there are no displacements
+      work%now%u = reshape([real(wp) ::], [directions, 0, size(place)])
       return
     end if
     work%now%u = work%unit_loads%displacement(:, work%now%batch%field, work%table%node(place))

@@ -99,8 +99,6 @@ contains
     subroutine put_on_pairs()
       type(rigid_start) :: start
       integer, allocatable :: pressed(:)
-      real(wp), allocatable :: force(:, :)
-      integer, allocatable :: chosen(:)   ! motions whose unit loads are looked at
 
       loads%problem = scale_problem(linear%problem)
       if (any(answer%contact%motion_free)) then

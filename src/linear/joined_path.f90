@@ -55,6 +55,11 @@ contains
     integer :: step
 
     force = sum(abs(self%unbalanced))/max(1.0_wp, size(force)/real(scene%model%bodies, wp))
+    if (all(force == 0.0_wp)) then   ! nothing presses
+      self%closed = self%gap < 0.0_wp
+      self%force = force
+      return
+    end if
     open = max(self%gap, self%compliance*force)
     begin = maxval(force)*maxval([abs(self%gap), self%compliance*force])
     over = clear
