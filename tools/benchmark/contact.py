@@ -4,7 +4,7 @@
 
     python contact.py BENCH_CONTACT DIRECTORY REPEATS LIMIT N...      prints a JSON row for each problem, size and program
 
-epcont is timed as PARAM RULE AUTO has it, and CONRY and BLOCK from the right set (WARM) by themselves; beside them stands one dgemm of the size of F.
+epcont is timed with its simplex (CONRY), from the start and from the right active set (WARM); beside it stands one dgemm of the size of F.
 F is that of strips of uniform pressure on a half-plane; two problems take it some strips deep. A program that takes longer than LIMIT seconds gets no further size of
 that problem. Data are in memory before the clock starts; it is the processor's.
 """
@@ -25,7 +25,6 @@ import scipy.sparse as sparse
 
 from process import ONE_THREAD
 
-MANY_PAIRS = 100  # from here on AUTO is BLOCK: src/plan/iteration_plan.f90
 MODULUS, TOLERANCE = 20400.0 / (2 * (1 - 0.29 ** 2)), 1e-9
 
 
@@ -90,8 +89,7 @@ class Epcont:
             np.array([n, 1], np.int32).tofile(file)
             for part in (flexibility.T, np.ones(n), gap, np.array([load])):
                 np.ascontiguousarray(part).tofile(file)
-        rule = self.rule or ("BLOCK" if n >= MANY_PAIRS else "CONRY")
-        command = [self.program, "problem", "forces", rule, "3" if n > 200 else "50"]
+        command = [self.program, "problem", "forces", self.rule, "3" if n > 200 else "50"]
 
         def solve():
             run = subprocess.run(command, cwd=self.place, env=ONE_THREAD, capture_output=True, text=True, check=False)
@@ -100,7 +98,7 @@ class Epcont:
             seconds, *rest = run.stdout.split()
             if not rest:
                 return None, float(seconds)
-            _, pivots, _, state, _ = rest
+            _, pivots, state = rest
             if state != "0":
                 raise Stalled(float(seconds), pivots)
             return np.fromfile(self.place / "forces")[:n], float(seconds)
@@ -194,7 +192,7 @@ def by_highs(f, g):
 
 def main():
     place = pathlib.Path(sys.argv[2])
-    ours = {"epcont": None, "epcont CONRY": "CONRY", "epcont WARM": "WARM", "dgemm": "DGEMM"}
+    ours = {"epcont": "CONRY", "epcont WARM": "WARM", "dgemm": "DGEMM"}
     programs = {name: Epcont(sys.argv[1], place, rule).prepare for name, rule in ours.items()}
     packages = {"quadprog": by_quadprog, "HiGHS": by_highs, "DAQP": by_daqp, "PIQP": by_piqp, "OSQP": by_osqp}
     programs |= {name: scaled(package) for name, package in packages.items()}

@@ -53,7 +53,7 @@ def contact(rows):
               "" if row["violation"] is None else f"{row['violation']:.0e}", row["note"]] for row in rows]
     return "\n\n".join([
         "## Dense contact problem alone",
-        "Strips on a half-plane, one motion. epcont: by the rule that AUTO takes, CONRY below 100 pairs, then BLOCK; WARM is BLOCK from the right set, dgemm one "
+        "Strips on a half-plane, one motion. epcont: its simplex (CONRY); WARM from the right active set; dgemm one "
         "product of matrices of that size. Seconds of processor; ratio over epcont's (below 1: faster than epcont). Violation: largest of |min(R/|R|, "
         "w/(|F||R|))| and of the load's relative error, |R| the largest force, |F| the largest sum of a row; the packages are asked for 1e-9. A program that "
         "took too long is left out at the next size.",
