@@ -17,6 +17,7 @@ module epcont_accuracy_unit_loads
   use epcont_element_kinematics, only: directions
   use epcont_flexibility_motion_matrix, only: dense_motions
   use epcont_linear_linear_problem, only: linear_problem
+  use epcont_plan_forecast, only: most_assessed
   use epcont_plan_planned_model, only: planned_model
   use epcont_result_answer, only: answer_type
   use epcont_result_body_force, only: shares_of_pairs
@@ -26,9 +27,6 @@ module epcont_accuracy_unit_loads
 
   !> Bodies up to which errors are estimated of what each bears: one costs as much as two load cases.
   integer, parameter, public :: most_bodies = 12
-
-  !> Rigid-body modes for which the error of the approach is estimated: the largest ones.
-  integer, parameter :: most_motions = 12
 
   !> Pairs up to which all of M is made: the estimate may stop at one of two nearly equal rows, as rounding
   !! has it.
@@ -176,7 +174,7 @@ contains
     rank = merge(-1.0_wp, extent, free)
     where (.not. free .and. rank <= least_difference*maxval(rank)) rank = 0.0_wp   ! rounding
     left = .true.
-    do k = 1, min(most_motions, size(left))
+    do k = 1, min(most_assessed, size(left))
       largest = maxval(rank, mask=left)
       among = left .and. rank >= largest - no_effect*abs(largest)
       associate (x => scene%model%x(:, scene%motions%node), c => scene%motions%component)

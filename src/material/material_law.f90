@@ -126,15 +126,14 @@ contains
   end function strain_across
 
   !> What a point remembers once an increment is over.
-  pure type(plastic_history) function history_after(self, strain, committed) result(history)
+  pure type(plastic_history) function history_after(self, strain, committed, state) result(history)
     class(material_law), intent(in) :: self
     real(wp), intent(in) :: strain(components)       !! at the end of the increment
     type(plastic_history), intent(in) :: committed   !! before it
-    type(point_state) :: state
+    type(point_state), intent(in) :: state           !! that `update` has found
     real(wp) :: elastic
 
     history = committed
-    call self%update(strain, committed, state)
     if (.not. state%yielded) return
     elastic = state%modulus/(3.0_wp*self%shear)   ! part of the deviator that is elastic
     associate (deviator => deviator_of([strain(:2), state%across, strain(4)] - committed%strain))

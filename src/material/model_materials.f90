@@ -53,16 +53,18 @@ contains
   end subroutine find_materials
 
   !> An increment of the loads is over: the next one starts from its strains.
-  subroutine commit(self, strain)
+  subroutine commit(self, strain, state)
     class(model_materials), intent(inout) :: self
-    real(wp), intent(in) :: strain(:, :)   !! at its end [components, points]
+    real(wp), intent(in) :: strain(:, :)           !! at its end [components, points]
+    type(point_state), intent(in) :: state(:)      !! found there [points]
     integer :: p
 
     if (.not. allocated(self%committed)) allocate (self%committed(size(strain, 2)))
     !$omp parallel do num_threads(threads_over(size(strain, 2)))
     do p = 1, size(strain, 2)
       if (self%can_yield(p)) &
-        self%committed(p) = self%section(self%of_point(p))%history_after(strain(:, p), self%committed(p))
+        self%committed(p) = self%section(self%of_point(p))%history_after(strain(:, p), self%committed(p), &
+                                                                               state(p))
     end do
     !$omp end parallel do
   end subroutine commit

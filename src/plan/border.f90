@@ -8,7 +8,7 @@ module epcont_plan_border
   use epcont_model_model, only: model_type
   implicit none
   private
-  public :: number_border
+  public :: add_sums, number_border
 
 contains
 
@@ -22,12 +22,11 @@ contains
     !> Sums of these, which freedoms are; the first are each one of them
     type(sparse_rows), intent(out) :: tied
     integer :: angles(size(model%platen))        ! their numbers
-    integer :: c, entries, i, row
+    integer :: c, i
 
     equation(:, own) = 0
     angles = 0
     border = 0
-    entries = 0
     do i = 1, size(own)
       do c = 1, directions
         call take_leaders(c, own(i))
@@ -36,20 +35,8 @@ contains
     do i = 1, size(model%spring)
       if (model%body(maxval(model%spring(i)%node)) == model%body(own(1))) call take_ends(i)
     end do
-    tied%start = [(i, i=1, border + 1)]
-    tied%equation = [(i, i=1, border), (0, i=1, entries)]
-    tied%weight = [(1.0_wp, i=1, border), (0.0_wp, i=1, entries)]
-    if (entries > 0) then
-      entries = border
-      row = border
-      tied%start = [tied%start, [(0, i=1, count(model%sum_of(:, own) > 0))]]
-      do i = 1, size(own)
-        do c = 1, directions
-          if (model%leader(c, own(i)) == own(i) .and. model%sum_of(c, own(i)) > 0) call add_sum(c, own(i))
-        end do
-      end do
-      tied = sparse_rows(tied%start(:row + 1), tied%equation(:entries), tied%weight(:entries))
-    end if
+    tied = sparse_rows([(i, i=1, border + 1)], [(i, i=1, border)], [(1.0_wp, i=1, border)])
+    call add_sums(model, own, angles, equation, tied)
     do i = 1, size(own)
       do c = 1, directions
         equation(c, own(i)) = equation(c, model%leader(c, own(i)))
@@ -69,7 +56,6 @@ contains
       end if
       do i = model%sum%first(model%sum_of(c, node)), model%sum%last(model%sum_of(c, node))
         call take(model%sum%component(i), model%sum%node(i))
-        entries = entries + 1
       end do
     end subroutine take_leaders
 
@@ -110,25 +96,53 @@ contains
         number = -equation(c, node)
       end if
     end function number_of
-
-    !> The row of a sum; none where nothing in it is free.
-    subroutine add_sum(c, node)
-      integer, intent(in) :: c, node
-      integer :: i, number
-
-      do i = model%sum%first(model%sum_of(c, node)), model%sum%last(model%sum_of(c, node))
-        number = number_of(model%sum%component(i), model%sum%node(i))
-        if (number == 0) cycle
-        entries = entries + 1
-        tied%equation(entries) = number
-        tied%weight(entries) = model%sum%weight(i)
-      end do
-      if (entries < tied%start(row + 1)) return
-      row = row + 1
-      tied%start(row + 1) = entries + 1
-      equation(c, node) = -row
-    end subroutine add_sum
   end subroutine number_border
+
+  !> Append a row for each DOF of some nodes that is a sum. A sum in which nothing is free gets none.
+  pure subroutine add_sums(model, nodes, angles, equation, tied)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: nodes(:)
+    integer, intent(in) :: angles(:)             !! number of each angle; 0 if it is not free [platens]
+    !> Numbers of free DOFs, of either sign; 0 if they are not free. Sums get the negative of their row
+    !! [directions, nodes of the model]
+    integer, intent(inout) :: equation(:, :)
+    type(sparse_rows), intent(inout) :: tied     !! rows are appended
+    integer :: c, e, entries, i, number, row, terms
+
+    row = size(tied%start) - 1
+    entries = size(tied%equation)
+    terms = 0
+    do i = 1, size(nodes)
+      do c = 1, directions
+        associate (k => model%sum_of(c, nodes(i)))
+          if (k > 0) terms = terms + model%sum%last(k) - model%sum%first(k) + 1
+        end associate
+      end do
+    end do
+    if (terms == 0) return
+    tied = sparse_rows([tied%start, spread(0, 1, count(model%sum_of(:, nodes) > 0))], &
+                       [tied%equation, spread(0, 1, terms)], [tied%weight, spread(0.0_wp, 1, terms)])
+    do i = 1, size(nodes)
+      do c = 1, directions
+        if (model%leader(c, nodes(i)) /= nodes(i) .or. model%sum_of(c, nodes(i)) == 0) cycle
+        do e = model%sum%first(model%sum_of(c, nodes(i))), model%sum%last(model%sum_of(c, nodes(i)))
+          associate (of => model%sum%component(e), node => model%sum%node(e))
+            if (of == angle) number = angles(node)
+            if (of /= angle) number = abs(equation(of, node))
+          end associate
+          if (number == 0) cycle
+          entries = entries + 1
+          tied%equation(entries) = number
+          tied%weight(entries) = model%sum%weight(e)
+        end do
+        if (entries < tied%start(row + 1)) cycle
+        row = row + 1
+        tied%start(row + 1) = entries + 1
+        equation(c, nodes(i)) = -row
+      end do
+    end do
+    tied = sparse_rows(tied%start(:row + 1), tied%equation(:entries), tied%weight(:entries))
+  end subroutine add_sums
 
   !> Is a freedom, or the angle of a platen, one that an equation is solved for? It is no part of a sum.
   pure logical function is_free(model, component, node)

@@ -48,9 +48,10 @@ module epcont_plan_forecast
   !> Of joined bodies, further sets of contacts and the steps with them: factors made again, over the first,
   !! and what an entry of the factor takes in operations of the same time.
   real(wp), parameter :: of_sets = 1.0_wp, of_solves = 150.0_wp
-  !> Motions whose errors are told, at most, and sums of forces, mostly: of all, and along x and y on two
-  !! bodies.
+  !> Rigid-body modes for which the error of the approach is estimated, at most: those with the largest
+  !! motions.
   integer, parameter, public :: most_assessed = 12
+  !> Sums of forces whose errors are estimated, mostly: of all pairs, and along x and y on two bodies.
   integer, parameter :: usual_sums = 4
 
   !> Least number of cases of a stream, in cases and in square roots of all cases: copying the factors at its

@@ -11,6 +11,7 @@ module epcont_plan_joined_numbering
   use epcont_linalg_assembled, only: sparse_rows
   use epcont_model_arrays, only: angle
   use epcont_model_model, only: model_type
+  use epcont_plan_border, only: add_sums
   use epcont_plan_dissection, only: dissect, dissection
   implicit none
   private
@@ -64,7 +65,8 @@ contains
     end do
     first(p) = last + 1
     first = pack(first, [first(2:) > first(:size(first) - 1), .true.])
-    call tie_sums(model, angles, equation, tied)
+    tied = sparse_rows([1], [integer ::], [real(wp) ::])
+    call add_sums(model, [(i, i=1, model%nodes)], angles, equation, tied)
     do i = 1, model%nodes
       equation(:, i) = [equation(1, model%leader(1, i)), equation(2, model%leader(2, i))]
     end do
@@ -88,40 +90,6 @@ contains
       end do
     end subroutine number_node
   end subroutine number_joined
-
-  !> Rows of the freedoms that are sums; none where nothing in a sum is free.
-  subroutine tie_sums(model, angles, equation, tied)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: angles(:)             !! equation of each angle [platens]
-    integer, intent(inout) :: equation(:, :)     !! of those that are none; then the others', negative
-    type(sparse_rows), intent(out) :: tied
-    integer :: c, e, i, last, number, row
-
-    row = 0
-    last = 0
-    allocate (tied%start(size(model%sum%first) + 1), source=1)
-    allocate (tied%equation(size(model%sum%node)), tied%weight(size(model%sum%node)))
-    do i = 1, model%nodes
-      do c = 1, directions
-        if (model%leader(c, i) /= i .or. model%sum_of(c, i) == 0) cycle
-        do e = model%sum%first(model%sum_of(c, i)), model%sum%last(model%sum_of(c, i))
-          associate (of => model%sum%component(e), node => model%sum%node(e))
-            if (of == angle) number = angles(node)
-            if (of /= angle) number = equation(of, node)
-          end associate
-          if (number == 0) cycle
-          last = last + 1
-          tied%equation(last) = number
-          tied%weight(last) = model%sum%weight(e)
-        end do
-        if (last < tied%start(row + 1)) cycle
-        row = row + 1
-        tied%start(row + 1) = last + 1
-        equation(c, i) = -row
-      end do
-    end do
-    tied = sparse_rows(tied%start(:row + 1), tied%equation(:last), tied%weight(:last))
-  end subroutine tie_sums
 
   !> The equations that the freedoms of an element are sums of: of each term the equation, the freedom among
   !! those of the element, and its weight.

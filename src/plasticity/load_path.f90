@@ -64,7 +64,7 @@ contains
     strained = 0.0_wp
     do step = 1, plan%load_steps
       if (scene%model%controls%flow_theory .and. step > 1) then
-        call iteration%linear%materials%commit(answer%strain)
+        call iteration%linear%materials%commit(answer%strain, answer%point)
         answer%committed = [answer%committed, committed_step(answer%load_factor, answer%deformation)]
       end if
       call iteration%iterate(scene, real(step, wp)/plan%load_steps, watch)
