@@ -51,11 +51,10 @@ contains
     call show(self, iteration_record())
   end subroutine expect
 
-  !> A solve has been done; `over` if it was the last at its load.
-  subroutine solved(self, now, over)
+  !> A solve has been done.
+  subroutine solved(self, now)
     class(progress_type), intent(inout) :: self
     type(iteration_record), intent(in) :: now   !! what it is like
-    logical, intent(in) :: over   !! it was the last at its load
 
     call show(self, now)
   end subroutine solved

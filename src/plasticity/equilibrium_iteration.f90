@@ -146,7 +146,7 @@ contains
       if (self%linear%materials%yields .and. .not. (self%converged .and. load_factor >= 1.0_wp)) &
         call method%advance(scene%model, self%linear, load_factor, found, self%about)
       call watch%lap(stage_yielding)
-      call watch%solved(self%now, self%converged)
+      call watch%solved(self%now)
       if (.not. self%converged .and. self%now%residual > least_residual) cycle
       least_residual = self%now%residual
       call move_alloc(found, self%state)

@@ -39,10 +39,9 @@ contains
     real(wp), intent(in) :: operations   !! of a solve
   end subroutine expect
 
-  !> A solve has been done; `over` if it was the last at its load.
-  subroutine solved(self, now, over)
+  !> A solve has been done.
+  subroutine solved(self, now)
     class(observer), intent(inout) :: self
     type(iteration_record), intent(in) :: now   !! that solve
-    logical, intent(in) :: over                 !! the next is at another load
   end subroutine solved
 end module epcont_plasticity_observer
