@@ -127,7 +127,7 @@ contains
     end associate
   end function leading_zone
 
-  !> The error of the mesh in the energy norm, and the elements that have the most of it.
+  !> Estimate the mesh error in the energy norm, and find the elements with the largest part of it.
   subroutine assess_mesh(self, scene, linear, kept, answer, field)
     class(accuracy_type), intent(inout) :: self
     type(planned_model), intent(in) :: scene       !! that was solved
@@ -204,7 +204,7 @@ contains
     type(kept_estimates), intent(in) :: kept       !! of this load case
     type(answer_type), intent(in) :: answer        !! of the last solve
     type(error_fields), intent(in) :: field        !! errors of strains
-    !> Error of each approach, of the sum of forces, of what bodies bear
+    !> Error of each assessed approach, of the total contact force, and of the forces on bodies
     real(wp) :: off(size(kept%loads%contact%unit))
     integer :: j
 
@@ -333,7 +333,7 @@ contains
         end do
       end associate
     end do
-    ! Now of the force; what its pair gives way by under it alone is the least.
+    ! From here on the error of the force. The smallest error of the gap is the compliance times that.
     off = off*line%tributary + self%sensitivity%rounding*maxval(answer%contact%force)
     weak = merge(answer%contact%force <= off, &
                  answer%contact%gap <= compliance*off, &

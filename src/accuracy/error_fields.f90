@@ -190,11 +190,11 @@ contains
     work%total(3:, work%now%batch%load) = work%total(3:, work%now%batch%load) + work%now%energy
   end subroutine compare_on_body
 
-  !> The strains of some elements at their samples, of the answer and so many fields.
+  !> Find the strains of some elements at their sampling points: of the answer, then of the fields.
   subroutine sample_elements(work, element, fields, width, sample)
     type(comparison), intent(in) :: work
-    integer, intent(in) :: element(:)   !! these
-    integer, intent(in) :: fields       !! none or all: others stay as they are
+    integer, intent(in) :: element(:)   !! numbers of the elements
+    integer, intent(in) :: fields       !! how many fields: none or all; strains of others are kept
     integer, intent(in) :: width        !! components of all fields
     real(wp), intent(inout) :: sample(width, *)   !! of the body
     real(wp) :: strain(width, most_points)
@@ -245,7 +245,7 @@ contains
     end do
   end subroutine compare_elements
 
-  !> The places of an element's nodes, among those of the body.
+  !> Find the positions of the nodes of an element in the list of recovery points of its body.
   pure function places_of(work, e) result(own)
     type(comparison), intent(in) :: work
     integer, intent(in) :: e
@@ -256,7 +256,7 @@ contains
     end do
   end function places_of
 
-  !> Strains of an element, of the answer and of no fields or all.
+  !> Find the strains of an element at its integration points: those of the answer, then those of the fields.
   subroutine find_strains(work, e, fields, strain)
     type(comparison), intent(in) :: work
     integer, intent(in) :: e, fields
@@ -269,7 +269,7 @@ contains
     call work%linear%operator%add_fields(work%scene%model, e, places_of(work, e), fields, work%now%u, strain)
   end subroutine find_strains
 
-  !> Means of these over the element, its one sample.
+  !> Find the mean strains of an element that has one sampling point.
   subroutine find_means(work, e, fields, strain)
     type(comparison), intent(in) :: work
     integer, intent(in) :: e, fields

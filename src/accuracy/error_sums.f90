@@ -1,5 +1,5 @@
-!> Errors of approaches and of sums of contact forces: products of the errors of strains, and what contact at
-!> nodes alone, waves of the gap and narrow zones add to them.
+!> Error estimates of approaches and of sums of contact forces: products of the strain errors, and additions
+!> for contact at nodes alone, gap oscillation and narrow zones.
 module epcont_accuracy_error_sums
   use epcont_accuracy_body_loads, only: contact_loads
   use epcont_accuracy_error_fields, only: error_fields
