@@ -35,7 +35,9 @@ contains
     do i = 1, size(model%spring)
       if (model%body(maxval(model%spring(i)%node)) == model%body(own(1))) call take_ends(i)
     end do
-    tied = sparse_rows([(i, i=1, border + 1)], [(i, i=1, border)], [(1.0_wp, i=1, border)])
+    tied%start = [(i, i=1, border + 1)]
+    tied%equation = [(i, i=1, border)]
+    tied%weight = [(1.0_wp, i=1, border)]
     call add_sums(model, own, angles, equation, tied)
     do i = 1, size(own)
       do c = 1, directions
@@ -141,7 +143,9 @@ contains
         equation(c, nodes(i)) = -row
       end do
     end do
-    tied = sparse_rows(tied%start(:row + 1), tied%equation(:entries), tied%weight(:entries))
+    tied%start = tied%start(:row + 1)
+    tied%equation = tied%equation(:entries)
+    tied%weight = tied%weight(:entries)
   end subroutine add_sums
 
   !> Is a freedom, or the angle of a platen, one that an equation is solved for? It is no part of a sum.

@@ -65,7 +65,9 @@ contains
     end do
     first(p) = last + 1
     first = pack(first, [first(2:) > first(:size(first) - 1), .true.])
-    tied = sparse_rows([1], [integer ::], [real(wp) ::])
+    ! Component by component: gfortran 12 leaves empty ones of a structure constructor unallocated.
+    allocate (tied%start(1), source=1)
+    allocate (tied%equation(0), tied%weight(0))
     call add_sums(model, [(i, i=1, model%nodes)], angles, equation, tied)
     do i = 1, model%nodes
       equation(:, i) = [equation(1, model%leader(1, i)), equation(2, model%leader(2, i))]
