@@ -106,6 +106,7 @@ contains
       exchanged = solution%pivots
       closed = scaled%first_touching
       call exchange_blocks(softer, closed, exchanged)
+      closed = closed .or. scaled%first_touching
       call renew_state(better, scaled, closed)
       found = has_right_signs(scaled, better, solved_to)
       if (.not. found) return

@@ -320,8 +320,8 @@ contains
         force = unbalanced + pair_forces(scene%model, merge(pull, 0.0_wp, self%closed))
       else
         force = pair_forces(scene%model, merge(pull, 0.0_wp, self%closed) - borne)
-        call add_suport_forces(scene, held, force)
       end if
+      call add_suport_forces(scene, held, force)
       afresh = .false.
       call bodies%add_forces(scene, force, 0.0_wp, half)
       step = bodies%finish(scene, half, 0.0_wp, at_contact=.not. whole)
@@ -360,6 +360,7 @@ contains
       state%deformation = state%deformation + step
       state%strain = state%strain + strain
       state%contact%approach = state%contact%approach + motion
+      held = 0.0_wp
       ! Of stiff bodies among soft ones stresses tell what strains do not.
       change(2) = max(part_of_largest(strain, state%strain), &
                       part_of_largest(bodies%law%increment(strain), bodies%law%stress(state%strain)))
