@@ -188,9 +188,9 @@ class Found(scene.Extremes):
     def test_rounding_stalls_the_simplex(self):
         """Whether rounding stalls CONRY depends on the BLAS. Then joined bodies find the active set; else its forces have few digits, as it says."""
         joined, simplex = (self.valid(deck("pile_on_a_corner").replace("BEGIN BULK", f"BEGIN BULK\nPARAM,RULE,{rule}")) for rule in ("JOINED", "CONRY"))
-        self.assertEqual(*([row["status"] for row in result.table("contact")] for result in (joined, simplex)))
-        for one, other in zip(joined.table("contact"), simplex.table("contact")):
-            self.near(float(one["force"]), float(other["force"]), 1e-6 * joined.summary["total_contact_force"])
+        for wanted, got in zip(joined.table("contact"), simplex.table("contact"), strict=True):
+            self.assertEqual(wanted["status"], got["status"])
+            self.near(float(got["force"]), float(wanted["force"]), 1e-7, scale=joined.summary["total_contact_force"])
 
     def test_what_stands_behind_the_next_body(self):
         """However far is looked, two strips of a spiral meet along the same stretches: the next turn behind them does not matter."""
