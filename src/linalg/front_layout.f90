@@ -39,18 +39,15 @@ module epcont_linalg_front_layout
 
 contains
 
-  !> The layout of the fronts that begin at these equations, for elements with these equations, and others
-  !! that are numbered behind them.
-  pure function new_front_layout(first, numbers, others) result(layout)
+  !> Lay out the fronts that begin at these equations.
+  pure function new_front_layout(first, equations) result(layout)
     integer, intent(in) :: first(:)         !! [fronts + 1]
-    integer, intent(in) :: numbers(:, :)    !! equations of each element; 0 and less: none [any, elements]
-    type(incidence), intent(in), optional :: others   !! equations of each other element
+    type(incidence), intent(in) :: equations   !! of each element, in any order; 0 and less are left out
     type(front_layout) :: layout
-    type(incidence) :: further              !! others, or none
     type(incidence) :: at                   !! elements of each front
-    integer, allocatable :: home(:, :)      !! the first front that each element has equations of, or 0
+    integer :: home(1, size(equations%start) - 1)   !! first front with equations of each element, or 0
     integer, allocatable :: above(:, :)
-    integer :: e, p
+    integer :: e, lowest, p
 
     layout%first = first
     layout%own = first(2:) - first(:size(first) - 1)
@@ -58,45 +55,31 @@ contains
     do p = 1, size(layout%own)
       layout%front_of(first(p):first(p + 1) - 1) = p
     end do
-    further = incidence([1], [integer ::])
-    if (present(others)) further = others
-    allocate (home(1, size(numbers, 2) + size(further%start) - 1))
+    home = 0
     do e = 1, size(home, 2)
-      if (e <= size(numbers, 2)) home(1, e) = home_of(numbers(:, e))
-      if (e > size(numbers, 2)) home(1, e) = home_of(further%of(e - size(numbers, 2)))
+      associate (own => equations%group(equations%start(e):equations%start(e + 1) - 1))
+        lowest = minval(own, mask=own > 0)
+      end associate
+      if (lowest <= size(layout%front_of)) home(1, e) = layout%front_of(lowest)
     end do
     at = new_incidence(home, size(layout%own))
     layout%element = [at%group, pack([(e, e=1, size(home))], home(1, :) == 0)]
     layout%first_element = [at%start, size(layout%element) + 1]
-    call find_rows(layout, at, numbers, further)
+    call find_rows(layout, at, equations)
     layout%reached = layout%rows%start(2:) - layout%rows%start(:size(layout%own))
     above = reshape(merge(layout%parent, size(first), layout%parent > 0), [1, size(layout%own)])
     layout%below = new_incidence(above, size(first))
     call find_units(layout)
-
-  contains
-
-    !> The first front that an element has equations of, or 0.
-    pure integer function home_of(number) result(front)
-      integer, intent(in) :: number(:)
-      integer :: lowest
-
-      lowest = minval(number, mask=number > 0)
-      front = 0
-      if (lowest <= size(layout%front_of)) front = layout%front_of(lowest)
-    end function home_of
   end function new_front_layout
 
-  !> The rows of each front, and its parent. A front reaches what elements join to its equations and what the
-  !! fronts below it reach, as far as that comes later.
-  pure subroutine find_rows(layout, at, numbers, others)
+  !> Find the rows of each front, and its parent. A front reaches all later equations that elements couple
+  !! with its own equations, and those that its children reach.
+  pure subroutine find_rows(layout, at, equations)
     type(front_layout), intent(inout) :: layout
-    type(incidence), intent(in) :: at
-    integer, intent(in) :: numbers(:, :)
-    type(incidence), intent(in) :: others
+    type(incidence), intent(in) :: at, equations
     logical :: seen(size(layout%front_of))
     integer :: found(size(layout%front_of))
-    !> The last front below each, and the one before that
+    !> Last child of each front, and the child before each front
     integer, dimension(size(layout%own)) :: child, next
     integer, allocatable :: row(:)
     integer :: start(size(layout%first)), above, c, count, k, p
@@ -110,9 +93,8 @@ contains
     do p = 1, size(layout%own)
       count = 0
       do k = at%start(p), at%start(p + 1) - 1
-        associate (e => at%group(k), n => size(numbers, 2))
-          if (e <= n) call add_new(numbers(:, e), layout%first(p + 1), seen, found, count)
-          if (e > n) call add_new(others%of(e - n), layout%first(p + 1), seen, found, count)
+        associate (from => equations%start(at%group(k)), to => equations%start(at%group(k) + 1) - 1)
+          call add_new(equations%group(from:to), layout%first(p + 1), seen, found, count)
         end associate
       end do
       c = child(p)
@@ -133,7 +115,7 @@ contains
     layout%rows = incidence(start, row(:start(size(start)) - 1))
   end subroutine find_rows
 
-  !> Put equations from `from` on that are not in the list yet at its end.
+  !> Append to the list all equations with numbers of at least `from` that are not in it yet.
   pure subroutine add_new(number, from, seen, list, length)
     integer, intent(in) :: number(:), from
     logical, intent(inout) :: seen(:)   !! those that are in it [order]

@@ -1,10 +1,9 @@
-!> Nested dissection: an order of a body's nodes in which elimination fills little, and the fronts it falls
-!> into.
+!> Nested dissection: an order of the nodes in which elimination causes little fill, and its fronts.
 !>
-!> A set of nodes is halved by a separator: with its nodes out of the way the halves know nothing of each
-!> other, so each is eliminated by itself, and in the same manner, before the separator (George, SIAM J.
-!> Numer. Anal. 10 (1973) 345). It is the shortest within a band about the median of that coordinate across
-!> which the shortest line of nodes has neighbours.
+!> A separator divides a set of nodes into two halves. Without the separator the halves are independent, so
+!> each is eliminated first, in the same manner, and the separator after them (George, SIAM J. Numer. Anal. 10
+!> (1973) 345). The separator is the shortest within a band about the median of one coordinate. This is the
+!> coordinate whose median has the fewest nodes with neighbours on the other side.
 module epcont_plan_dissection
   use epcont_base_incidence, only: incidence
   use epcont_base_kinds, only: wp
@@ -18,207 +17,220 @@ module epcont_plan_dissection
 
   type :: dissection
     integer, allocatable :: node(:)    !! in the order of elimination
-    integer, allocatable :: first(:)   !! the first of each front in it, and one behind the last [fronts + 1]
-    integer, allocatable :: below(:)   !! the first of all that is eliminated into each front [fronts]
+    integer, allocatable :: first(:)   !! position of the first node of each front, and one more [fronts + 1]
+    integer, allocatable :: below(:)   !! position of the first node eliminated into each front [fronts]
   end type dissection
 
-  !> Sets of so few nodes are not halved. From 12 to 24 it matters little: fewer operations against more and
-  !! smaller matrices.
+  !> Sets with at most this number of nodes are not divided. Between 12 and 24 the time hardly depends on it.
   integer, parameter :: few = 16
-  !> The part of a set on either side of the band. From .3 to .4 operations are level within 3 %; the wider
-  !! the band, the more regular meshes gain (triangles by turns 20 %), and the longer it takes.
+  !> Part of a set on each side of the band. Between 0.3 and 0.4 operations differ by 3 %. Wider bands help
+  !! regular meshes (by 20 % triangles in alternating directions) and take longer.
   real(wp), parameter :: end_part = 0.35_wp
-  !> In larger sets the band becomes narrower, by the root of their size, since ways through a wide one take
-  !! ever more rounds; no narrower than by the root of this, or it would be lost in what thresholds are off.
+  !> In larger sets the band becomes narrower, by the square root of their size, because paths through a wide
+  !! band take more rounds. The limit keeps the band wider than the tolerance of `threshold`.
   integer, parameter :: large = 30000
   real(wp), parameter :: least_square = 1.0_wp/6.0_wp
-  !> Coordinates that halve a set less evenly are not used.
+  !> A coordinate is used only if neither half has more than this part of the set.
   real(wp), parameter :: largest_half = 2.0_wp/3.0_wp
-  !> Larger halves are tasks of their own, if there are threads: by themselves they take a millisecond.
+  !> Halves with more nodes are tasks of their own: these take a millisecond or more.
   integer, parameter :: many = 4000
-  !> Coordinates along which sets are halved, and nodes of a set whose median serves for that of all.
+  !> Coordinates along which sets are divided, and number of nodes whose median represents that of a set.
   integer, parameter :: axes = 5, most_sampled = 128
 
-  !> What is noted of a node of the set that is being halved, a bit for each axis: it is in the lower half,
-  !! in the upper, has neighbours across in the lower, in the upper.
+  !> Bits of `noted`, one for each axis: the node is in the lower half, in the upper half, has neighbours
+  !! across the median while it is in the lower half, in the upper half.
   integer, parameter :: lower(axes) = [1, 2, 4, 8, 16], to_upper = axes, to_across = 2*axes
   integer, parameter :: both = 2**to_across - 1
 
+  !> State of a dissection.
+  type :: dissector
+    type(parted_graph) :: graph                ! of the nodes that are not eliminated last
+    real(wp), allocatable :: coordinate(:, :)  ! of these nodes [axes, nodes]
+    integer, allocatable :: noted(:)           ! bits of nodes in the set being divided; 0 of others [nodes]
+    integer, allocatable :: order(:)           ! [nodes]
+    !> If a front begins at this position: position of the first node eliminated into it; otherwise 0
+    integer, allocatable :: below(:)
+  contains
+    procedure :: divide
+    procedure :: arrange
+    procedure :: lay_band
+    procedure :: best_axis
+    procedure :: widen_band
+  end type dissector
+
 contains
 
-  !> Dissect a body, or bodies that pairs join, along x, y, their diagonals, and one more coordinate. The
-  !! nodes that are wanted last are a front of their own, the last.
+  !> Dissect a body, or bodies joined by pairs, along x, y, their diagonals and one more coordinate. Nodes
+  !! that are to come last form the last front.
   function dissect(model, further, nodes, wanted_last, pairs) result(found)
     type(model_type), intent(in) :: model      !! its nodes, connectivity, and elements around nodes are used
-    real(wp), intent(in) :: further(:)         !! the one more coordinate [all nodes]
+    real(wp), intent(in) :: further(:)         !! the additional coordinate [all nodes]
     integer, intent(in) :: nodes(:)            !! of the body, or bodies
     logical, intent(in) :: wanted_last(:)      !! [all nodes]
-    !> Of each node those that join it to others; not given: elements alone do [all nodes]
+    !> Pairs of each node, which join it to others; if absent, only elements join nodes [all nodes]
     type(incidence), intent(in), optional :: pairs
     type(dissection) :: found
-    type(parted_graph) :: graph                ! of the nodes that are not wanted last
-    real(wp), allocatable :: coordinate(:, :)  ! of these [axes, nodes]
-    integer, allocatable :: noted(:)           ! of nodes of the set that is being halved; 0 of others
-    integer, allocatable :: free(:), order(:)
-    !> Where a front begins in the order the first that is eliminated into it; else 0
-    integer, allocatable :: below(:)
+    type(dissector) :: work
+    integer, allocatable :: free(:)
     integer :: i
 
     free = pack(nodes, .not. wanted_last(nodes))
-    allocate (coordinate(axes, size(free)), noted(size(free)), order(size(free)))
-    allocate (below(size(nodes) + 1), source=0)
+    allocate (work%coordinate(axes, size(free)))
+    allocate (work%below(size(nodes) + 1), work%noted(size(free)), source=0)
+    work%order = [(i, i=1, size(free))]
     do i = 1, size(free)
       associate (x => model%x(1, free(i)), y => model%x(2, free(i)))
-        coordinate(:, i) = [x + y, x - y, x, y, further(free(i))]
+        work%coordinate(:, i) = [x + y, x - y, x, y, further(free(i))]
       end associate
-      order(i) = i
     end do
-    graph = new_parted_graph(neighbours(model, free, pairs))
-    noted = 0
-    !$omp parallel num_threads(threads_over(size(order)))
+    work%graph = new_parted_graph(neighbours(model, free, pairs))
+    !$omp parallel num_threads(threads_over(size(free)))
     !$omp single
-    call dissect_set(1, size(order))
+    call work%divide(1, size(free))
     !$omp end single
     !$omp end parallel
-    below([size(order), size(nodes)] + 1) = 1
-    found%node = [free(order), pack(nodes, wanted_last(nodes))]
-    found%first = pack([(i, i=1, size(below))], below > 0)
-    found%below = below(found%first(:size(found%first) - 1))
-
-  contains
-
-    !> Dissect what stands there in the order; or leave it as a front, where no node of it is without a
-    !! neighbour across. One half has no neighbours in the other: threads may be at both.
-    recursive subroutine dissect_set(first, last)
-      integer, intent(in) :: first, last
-      integer :: nodes_of(left:edge)
-
-      below(first) = first
-      if (last - first < few) return
-      call lay_band(order(first:last))
-      call find_separator(graph, order(first:last))
-      call arrange(order(first:last), nodes_of)
-      if (any(nodes_of(:right) > last - first)) return
-      !$omp task if(nodes_of(left) > many)
-      call dissect_set(first, first + nodes_of(left) - 1)
-      !$omp end task
-      call dissect_set(first + nodes_of(left), last - nodes_of(edge))
-      if (nodes_of(edge) > 0) below(last - nodes_of(edge) + 1) = first
-      !$omp taskwait
-    end subroutine dissect_set
-
-    !> Put a set in order: left, right, edge. It is no longer looked at then.
-    subroutine arrange(set, nodes_of)
-      integer, intent(inout) :: set(:)
-      integer, intent(out) :: nodes_of(left:edge)   !! how many are where
-      integer :: next(left:edge), node(size(set)), i
-
-      node = set
-      nodes_of = 0
-      do i = 1, size(node)
-        associate (n => nodes_of(graph%side(node(i))))
-          n = n + 1
-        end associate
-      end do
-      next = 1 + [0, nodes_of(left), 0, size(set) - nodes_of(edge)]
-      do i = 1, size(node)
-        associate (side => graph%side(node(i)))
-          set(next(side)) = node(i)
-          next(side) = next(side) + 1
-          side = outside
-        end associate
-        noted(node(i)) = 0
-      end do
-    end subroutine arrange
-
-    !> Say of a set which nodes are left and right of a band. Where no coordinate halves it, since it has
-    !! too few values, nodes are taken as they come.
-    recursive subroutine lay_band(set)
-      integer, intent(in) :: set(:)
-      real(wp) :: at_left, at_right, beside, sample(most_sampled, axes), median(axes)
-      integer :: axis, i, n
-
-      n = 0
-      do i = 1, size(set), (size(set) - 1)/most_sampled + 1
-        n = n + 1
-        sample(n, :) = coordinate(:, set(i))
-      end do
-      median = [(threshold(sample(:n, axis), n/2), axis=1, axes)]
-      axis = best_axis(set, median)
-      if (axis == 0) then
-        do i = 1, size(set)
-          coordinate(:, set(i)) = i
-        end do
-        call lay_band(set)
-        return
-      end if
-      beside = min(1.0_wp, max(least_square, real(large, wp)/size(set)))
-      beside = n*(0.5_wp - (0.5_wp - end_part)*sqrt(beside))
-      at_left = threshold(sample(:n, axis), nint(beside))
-      at_right = threshold(sample(:n, axis), n - nint(beside))
-      do i = 1, size(set)
-        associate (c => coordinate(axis, set(i)))
-          graph%side(set(i)) = merge(left, merge(right, between, c > at_right), c <= at_left)
-        end associate
-      end do
-      call widen_band(set, axis)
-    end subroutine lay_band
-
-    !> Of the coordinates whose medians halve a set the one where the fewest nodes of one half have
-    !! neighbours in the other; 0: none halves it.
-    integer function best_axis(set, median)
-      integer, intent(in) :: set(:)
-      real(wp), intent(in) :: median(:)   !! [axes]
-      integer :: below(axes), fewest(axes), from_lower(axes), from_upper(axes), across, i, j
-
-      below = 0
-      do i = 1, size(set)
-        associate (is_lower => merge(1, 0, coordinate(:, set(i)) <= median))
-          below = below + is_lower
-          noted(set(i)) = sum(lower*is_lower) + shiftl(sum(lower*(1 - is_lower)), to_upper)
-        end associate
-      end do
-      from_lower = 0
-      from_upper = 0
-      do i = 1, size(set)
-        across = 0
-        do j = graph%beside%start(set(i)), graph%beside%start(set(i) + 1) - 1
-          across = ior(across, noted(graph%beside%group(j)))
-        end do
-        across = iand(iand(across, both), not(noted(set(i))))
-        if (across == 0) cycle
-        noted(set(i)) = noted(set(i)) + shiftl(across, to_across)
-        from_upper = from_upper + merge(1, 0, iand(across, lower) /= 0)
-        from_lower = from_lower + merge(1, 0, iand(shiftr(across, to_upper), lower) /= 0)
-      end do
-      fewest = min(from_lower, from_upper)
-      best_axis = minloc(fewest, dim=1, mask=max(below, size(set) - below) <= largest_half*size(set))
-    end function best_axis
-
-    !> Make nodes of the band of those that are left and right and neighbours: where elements are longer
-    !! than it is wide.
-    subroutine widen_band(set, axis)
-      integer, intent(in) :: set(:), axis
-      integer :: i, j
-
-      do i = 1, size(set)
-        if (graph%side(set(i)) /= right .or. .not. btest(noted(set(i)), to_across + axis - 1)) cycle
-        do j = graph%beside%start(set(i)), graph%beside%start(set(i) + 1) - 1
-          associate (other => graph%side(graph%beside%group(j)))
-            if (other /= left) cycle
-            other = between
-            graph%side(set(i)) = between
-          end associate
-        end do
-      end do
-    end subroutine widen_band
+    work%below([size(free), size(nodes)] + 1) = 1
+    found%node = [free(work%order), pack(nodes, wanted_last(nodes))]
+    found%first = pack([(i, i=1, size(work%below))], work%below > 0)
+    found%below = work%below(found%first(:size(found%first) - 1))
   end function dissect
 
-  !> The neighbours of each of some nodes among them, all by their places in the list.
+  !> Divide the nodes between two positions of the order, or make them a front if each of them has neighbours
+  !! across. The halves are independent, so threads may work on both.
+  recursive subroutine divide(self, first, last)
+    class(dissector), intent(inout) :: self
+    integer, intent(in) :: first, last
+    integer :: nodes_of(left:edge)
+
+    self%below(first) = first
+    if (last - first < few) return
+    call self%lay_band(self%order(first:last))
+    call find_separator(self%graph, self%order(first:last))
+    call self%arrange(first, last, nodes_of)
+    if (any(nodes_of(:right) > last - first)) return
+    !$omp task shared(self) firstprivate(first, nodes_of) if(nodes_of(left) > many)
+    call self%divide(first, first + nodes_of(left) - 1)
+    !$omp end task
+    call self%divide(first + nodes_of(left), last - nodes_of(edge))
+    if (nodes_of(edge) > 0) self%below(last - nodes_of(edge) + 1) = first
+    !$omp taskwait
+  end subroutine divide
+
+  !> Order a set: left, right, separator. Afterwards its nodes are outside again.
+  subroutine arrange(self, first, last, nodes_of)
+    class(dissector), intent(inout) :: self
+    integer, intent(in) :: first, last            !! positions of the set
+    integer, intent(out) :: nodes_of(left:edge)   !! number of nodes of each
+    integer :: i, next(left:edge), node(last - first + 1)
+
+    node = self%order(first:last)
+    nodes_of = 0
+    do i = 1, size(node)
+      associate (n => nodes_of(self%graph%side(node(i))))
+        n = n + 1
+      end associate
+    end do
+    next = first + [0, nodes_of(left), 0, size(node) - nodes_of(edge)]
+    do i = 1, size(node)
+      associate (side => self%graph%side(node(i)))
+        self%order(next(side)) = node(i)
+        next(side) = next(side) + 1
+        side = outside
+      end associate
+      self%noted(node(i)) = 0
+    end do
+  end subroutine arrange
+
+  !> Mark the nodes of a set as left of a band, in it, or right of it. If no coordinate divides the set,
+  !! because it has too few values, the positions of the nodes are used instead.
+  recursive subroutine lay_band(self, set)
+    class(dissector), intent(inout) :: self
+    integer, intent(in) :: set(:)
+    real(wp) :: at_left, at_right, beside, sample(most_sampled, axes), median(axes)
+    integer :: axis, i, n
+
+    n = 0
+    do i = 1, size(set), (size(set) - 1)/most_sampled + 1
+      n = n + 1
+      sample(n, :) = self%coordinate(:, set(i))
+    end do
+    median = [(threshold(sample(:n, axis), n/2), axis=1, axes)]
+    axis = self%best_axis(set, median)
+    if (axis == 0) then
+      do i = 1, size(set)
+        self%coordinate(:, set(i)) = i
+      end do
+      call self%lay_band(set)
+      return
+    end if
+    beside = min(1.0_wp, max(least_square, real(large, wp)/size(set)))
+    beside = n*(0.5_wp - (0.5_wp - end_part)*sqrt(beside))
+    at_left = threshold(sample(:n, axis), nint(beside))
+    at_right = threshold(sample(:n, axis), n - nint(beside))
+    do i = 1, size(set)
+      associate (c => self%coordinate(axis, set(i)))
+        self%graph%side(set(i)) = merge(left, merge(right, between, c > at_right), c <= at_left)
+      end associate
+    end do
+    call self%widen_band(set, axis)
+  end subroutine lay_band
+
+  !> Find the coordinate whose median has the fewest nodes of one half with neighbours in the other half; 0 if
+  !! no median divides the set.
+  integer function best_axis(self, set, median)
+    class(dissector), intent(inout) :: self
+    integer, intent(in) :: set(:)
+    real(wp), intent(in) :: median(:)   !! [axes]
+    integer :: below(axes), from_lower(axes), from_upper(axes), across, i, j
+
+    below = 0
+    do i = 1, size(set)
+      associate (is_lower => merge(1, 0, self%coordinate(:, set(i)) <= median))
+        below = below + is_lower
+        self%noted(set(i)) = sum(lower*is_lower) + shiftl(sum(lower*(1 - is_lower)), to_upper)
+      end associate
+    end do
+    from_lower = 0
+    from_upper = 0
+    do i = 1, size(set)
+      across = 0
+      do j = self%graph%beside%start(set(i)), self%graph%beside%start(set(i) + 1) - 1
+        across = ior(across, self%noted(self%graph%beside%group(j)))
+      end do
+      across = iand(iand(across, both), not(self%noted(set(i))))
+      if (across == 0) cycle
+      self%noted(set(i)) = self%noted(set(i)) + shiftl(across, to_across)
+      from_upper = from_upper + merge(1, 0, iand(across, lower) /= 0)
+      from_lower = from_lower + merge(1, 0, iand(shiftr(across, to_upper), lower) /= 0)
+    end do
+    best_axis = minloc(min(from_lower, from_upper), dim=1, &
+                       mask=max(below, size(set) - below) <= largest_half*size(set))
+  end function best_axis
+
+  !> Add left and right nodes that are neighbours to the band. They exist where elements are longer than the
+  !! band is wide.
+  subroutine widen_band(self, set, axis)
+    class(dissector), intent(inout) :: self
+    integer, intent(in) :: set(:), axis
+    integer :: i, j
+
+    associate (beside => self%graph%beside, side => self%graph%side)
+      do i = 1, size(set)
+        if (side(set(i)) /= right .or. .not. btest(self%noted(set(i)), to_across + axis - 1)) cycle
+        do j = beside%start(set(i)), beside%start(set(i) + 1) - 1
+          if (side(beside%group(j)) /= left) cycle
+          side(beside%group(j)) = between
+          side(set(i)) = between
+        end do
+      end do
+    end associate
+  end subroutine widen_band
+
+  !> Find the neighbours of each of some nodes among these nodes, by their positions in the list.
   function neighbours(model, node, pairs) result(beside)
     type(model_type), intent(in) :: model
     integer, intent(in) :: node(:)
-    type(incidence), intent(in), optional :: pairs   !! of each node, those of one are neighbours too
+    type(incidence), intent(in), optional :: pairs   !! of each node; the nodes of a pair are neighbours
     type(incidence) :: beside
     integer :: place(0:size(model%x, 2)), seen(0:size(node)), i, j, k, n
 
@@ -250,7 +262,7 @@ contains
 
   contains
 
-    !> One more of node i, unless it has been seen.
+    !> Add a neighbour of node i, unless it is in the list.
     subroutine add(other)
       integer, intent(in) :: other
 
@@ -261,8 +273,8 @@ contains
     end subroutine add
   end function neighbours
 
-  !> A value that so many of the keys are not above, within a sixteenth of all, as far as equal keys allow.
-  !! Found by halving, it takes less than sorting does.
+  !> Find a value that is not exceeded by this number of keys, within a sixteenth of all keys, as far as equal
+  !! keys allow. Bisection is faster than sorting.
   pure real(wp) function threshold(key, wanted)
     real(wp), intent(in) :: key(:)
     integer, intent(in) :: wanted

@@ -44,10 +44,9 @@ contains
 
   !> A body can move: say how, and which freedoms would hold it. The freedom that moves most is chosen, its
   !! motion is taken out of the others, and so on.
-  subroutine add_loose_body(model, parts, own_part, nodes, loose, found)
+  subroutine add_loose_body(model, parts, nodes, loose, found)
     type(model_type), intent(in) :: model
     type(rigid_parts), intent(in) :: parts
-    integer, intent(in) :: own_part(:)       !! number of each part within its body
     integer, intent(in) :: nodes(:)          !! of the body
     real(wp), intent(in) :: loose(:, :, :)   !! its motions that nothing holds [part_motions, own parts, any]
     type(findings), intent(inout) :: found   !! gets an error
@@ -58,7 +57,7 @@ contains
 
     moving = 0
     do i = 1, size(nodes)
-      associate (of_part => loose(:, own_part(parts%of_node(nodes(i))), :))
+      associate (of_part => loose(:, parts%own(parts%of_node(nodes(i))), :))
         motion(:, i, :) = matmul(parts%rows(model, nodes(i)), of_part)
         if (moving == 0 .and. any(abs(of_part) > no_effect*maxval(abs(loose)))) moving = nodes(i)
       end associate

@@ -1,4 +1,4 @@
-!> Numbers of the equations of each body: a narrow band, with the contact freedoms last, or nested fronts.
+!> Equation numbers of each body: a narrow band, with the contact DOFs last if possible, or nested fronts.
 module epcont_plan_numbering
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
@@ -14,351 +14,330 @@ module epcont_plan_numbering
   use epcont_plan_contact_axes, only: contact_axes, new_contact_axes
   use epcont_plan_dissection, only: dissect, dissection
   use epcont_plan_joined_numbering, only: find_terms, number_joined, spring_rows
+  use epcont_plan_level_order, only: level_order, sweep
   implicit none
   private
   public :: body_numbering, numbering_type, number_equations
 
-  !> Operations that a band takes from which on SOLVER AUTO is FRONTAL: there both are level, on compact
-  !! bodies (7 000 nodes of two cylinders) and on long ones, on elastic ones and on those that yield.
+  !> SOLVER AUTO uses FRONTAL if a band takes more operations. At this number both take the same time, for
+  !! compact bodies (two cylinders with 7 000 nodes) and long ones, elastic or yielding.
   real(wp), parameter, public :: many_operations = 2.0e8_wp
-  !> Operations of the flexibility by a band from which on it may be FRONTAL for their sake, if fronts take
-  !! fewer in all. Measured with factor and numbering, on two strips of 50 to 800 pairs, 4 to 14 elements
-  !! high: level at 1e7, 1.2 times as fast at 3e7, 1.5 at 1e8, 2.4 at 2e9.
+  !> SOLVER AUTO also uses FRONTAL if the flexibility with a band takes more operations than this, and fronts
+  !! take fewer in all. Measured with factor and numbering, on two strips with 50 to 800 pairs, 4 to 14
+  !! elements high: equal at 1e7, 1.2 times as fast at 3e7, 1.5 at 1e8, 2.4 at 2e9.
   real(wp), parameter, public :: many_of_flexibility = 2.0e7_wp
 
-  !> One body's system of equations.
+  !> System of equations of one body.
   type :: body_numbering
     integer, allocatable :: node(:)        !! its nodes, in the order of the equations
     integer, allocatable :: element(:)     !! its elements
-    integer, allocatable :: part(:)        !! front by front, elements, and springs, numbered behind them
-    type(sparse_rows) :: spring            !! of joined bodies, each a row
-    integer :: equations = 0               !! in the band
-    integer :: contact_equations = 0       !! of these, those that gaps depend on
+    integer, allocatable :: part(:)        !! elements and springs (numbered after the elements) by fronts
+    type(sparse_rows) :: spring            !! of joined bodies, one row for each
+    integer :: equations = 0               !! without the border
+    integer :: contact_equations = 0       !! number of equations that gaps depend on
     logical :: contact_last = .true.       !! the contact equations are the last ones
-    integer :: first_contact = 1           !! the first of them; behind the last equation where there is none
+    integer :: first_contact = 1           !! the first of them; equations + 1 if there is none
     logical :: can_yield = .false.
     integer :: solver = solver_band        !! or solver_frontal
     type(front_layout) :: fronts           !! of solver_frontal
     type(panel_layout) :: panels           !! of solver_band
     real(wp) :: operations = 0.0_wp        !! of factor and flexibility
     integer :: half_bandwidth = 0
-    integer :: border = 0                  !! leaders of ties that nothing holds, kept out of the band
-    !> What freedoms of negative numbers are, sums of those in the border; the first are each one of these
+    integer :: border = 0                  !! number of free master DOFs, which are kept out of the band
+    !> Sums that DOFs with negative numbers are, of DOFs in the border; the first rows are each one of these
     type(sparse_rows) :: tied
   end type body_numbering
 
   type :: numbering_type
-    logical :: joined = .false.            !! all bodies are one system, which pairs join
-    type(contact_axes) :: axes             !! along which the freedoms are, and what gaps want of them
-    !> Equation of each freedom in its body: positive in the band, 0 held, negative a row of its `tied`; that
-    !! of a tied freedom is its leader's, and never positive. [directions, nodes]
+    logical :: joined = .false.            !! all bodies form one system, joined by pairs
+    type(contact_axes) :: axes             !! directions of the DOFs, and DOFs that gaps depend on
+    !> Equation of each DOF in its body: positive in the band or the fronts; 0 if fixed; minus a row of
+    !! `tied`. A tied DOF has the number of its master, which is never positive. [directions, nodes]
     integer, allocatable :: equation(:, :)
-    type(body_numbering), allocatable :: body(:)   !! [bodies], or one where they are joined
+    type(body_numbering), allocatable :: body(:)   !! [bodies], or one if they are joined
   contains
     procedure :: of_element
   end type numbering_type
 
-  !> Operations that finding F takes where what gaps depend on comes last, over the cube of these equations:
-  !! of its inverse, or of right-hand sides and their product (`linalg/staircase.f90`), 2/3, and what copies
-  !! take of the time (1.5e-11 s times the cube in all, of 1 000 to 3 000).
+  !> Operations of the flexibility if the contact equations are last, divided by the cube of their number. The
+  !! inverse, or right-hand sides and their product (`linalg/staircase.f90`), take 2/3; copies take the rest
+  !! of the time (1.5e-11 s times the cube in all, for 1 000 to 3 000 equations).
   real(wp), parameter :: of_inversion = 1.0_wp
 
-  !> Freedoms of an element.
+  !> DOFs of an element.
   integer, parameter, public :: most_freedoms = directions*most_nodes
 
-  !> Nodes in levels: each level has the neighbours of the one before.
-  type :: level_order
-    integer, allocatable :: node(:)
-    integer :: levels = 0
-  end type level_order
+  !> A numbering that is being made.
+  type, extends(numbering_type) :: numberer
+    logical, allocatable :: free(:, :)      !! the DOF has an unknown of its own [directions, nodes]
+    logical, allocatable :: stands_last(:)  !! gaps depend on all free DOFs of the node [nodes]
+    integer, allocatable :: own(:)          !! nodes of the body that is being numbered
+    logical, allocatable :: seen(:)         !! work space of sweeps [nodes]
+  contains
+    procedure :: number_all
+    procedure :: number_body
+    procedure :: number_fronts
+    procedure :: number_band
+    procedure :: root_at_contact
+    procedure :: number_nodes
+    procedure :: number_freedoms
+    procedure :: number_panels
+    procedure :: equations_of
+  end type numberer
 
 contains
 
-  !> Number all bodies, each for the solver that the deck asks for, or that which is faster.
+  !> Number all bodies, each for the solver that the deck requests, or for the faster one.
   function number_equations(model, joined) result(numbering)
-    type(model_type), intent(in) :: model   !! the scene
-    logical, intent(in) :: joined           !! all bodies as one
+    type(model_type), intent(in) :: model
+    logical, intent(in) :: joined           !! all bodies as one system
     type(numbering_type) :: numbering
-    type(incidence) :: elements, nodes
-    integer, allocatable :: own(:)             ! nodes of the body that is being numbered
-    !> The freedom has a support, or SUPORT; an equation of its own, perhaps in the border [directions, nodes]
-    logical, allocatable, dimension(:, :) :: fixed, free
-    logical, allocatable :: stands_last(:)     ! gaps depend on all free freedoms of the node [nodes]
-    logical :: seen(model%nodes)               ! in a sweep, of the nodes of the body
+    type(numberer) :: work
+    type(incidence) :: elements, nodes      ! of each body
+    logical :: fixed(directions, model%nodes)
     integer :: b, i
 
-    allocate (numbering%equation(directions, model%nodes), source=0)
+    allocate (work%equation(directions, model%nodes), source=0)
+    allocate (work%body(merge(1, model%bodies, joined)), work%seen(model%nodes))
     fixed = model%held .or. model%reference
-    free = .not. fixed .and. model%sum_of == 0 .and. &
-           model%leader == spread([(i, i=1, model%nodes)], 1, directions)
-    numbering%axes = new_contact_axes(model, fixed)
-    stands_last = numbering%axes%pair > 0 .and. .not. any(free .and. .not. numbering%axes%wanted, dim=1)
-    nodes = new_incidence(reshape(model%body, [1, model%nodes]), model%bodies)
-    elements = model%elements_of_bodies()
+    work%free = .not. fixed .and. model%sum_of == 0 .and. &
+                model%leader == spread([(i, i=1, model%nodes)], 1, directions)
+    work%axes = new_contact_axes(model, fixed)
+    work%stands_last = work%axes%pair > 0 .and. .not. any(work%free .and. .not. work%axes%wanted, dim=1)
+    if (joined) then
+      call work%number_all(model)
+    else
+      nodes = new_incidence(reshape(model%body, [1, model%nodes]), model%bodies)
+      elements = model%elements_of_bodies()
+      do b = 1, model%bodies
+        work%own = nodes%of(b)
+        work%body(b)%element = elements%of(b)
+        call work%number_body(model, b)
+      end do
+    end if
     numbering%joined = joined
-    allocate (numbering%body(merge(1, model%bodies, joined)))
-    if (joined) call number_all(numbering%body(1))
-    do b = 1, merge(0, model%bodies, joined)
-      own = nodes%of(b)
-      associate (body => numbering%body(b))
-        body%element = elements%of(b)
-        body%can_yield = any(model%can_yield(body%element))
-        if (size(body%element) == 0) then
-          call number_panels(own, body)
-        else if (model%controls%solver == solver_frontal) then
-          call number_fronts(body)
-        else
-          call number_band(body)
-        end if
-        body%part = body%element
-      end associate
-    end do
+    numbering%axes = work%axes
+    call move_alloc(work%equation, numbering%equation)
+    call move_alloc(work%body, numbering%body)
+  end function number_equations
 
-  contains
+  !> Number all bodies as one. No part of the inverse is needed for gaps.
+  subroutine number_all(self, model)
+    class(numberer), intent(inout) :: self
+    type(model_type), intent(in) :: model
+    integer, allocatable :: first(:)
+    integer :: angles(size(model%platen)), i
 
-    !> Number all bodies as one. No gap is asked for any part of the inverse.
-    subroutine number_all(all)
-      type(body_numbering), intent(inout) :: all
-      integer, allocatable :: first(:)
-      integer :: angles(size(model%platen))
-
-      call numbering%axes%ask_nothing()
-      call number_joined(model, numbering%equation, angles, all%tied, all%node, first, all%first_contact)
-      all%spring = spring_rows(model, numbering%equation, angles, all%tied)
+    self%joined = .true.
+    call self%axes%ask_nothing()
+    associate (all => self%body(1))
+      call number_joined(model, self%equation, angles, all%tied, all%node, first, all%first_contact)
+      all%spring = spring_rows(model, self%equation, angles, all%tied)
       all%element = [(i, i=1, model%elements)]
       all%equations = first(size(first)) - 1
       all%can_yield = any(model%can_yield(all%element))
       all%solver = solver_frontal
-      all%fronts = new_front_layout(first, numbers_of(all%element), &
-                                    incidence(all%spring%start, all%spring%equation))
+      all%fronts = new_front_layout(first, self%equations_of(model, 1))
       all%operations = all%fronts%operations()
       all%part = all%fronts%element
       all%element = pack(all%part, all%part <= model%elements)
-    end subroutine number_all
+    end associate
+  end subroutine number_all
 
-    !> Equations of some elements, zeros behind [any, elements].
-    function numbers_of(element) result(numbers)
-      integer, intent(in) :: element(:)
-      integer, allocatable :: number(:), numbers(:, :)
-      integer :: i, most
+  !> Number one body.
+  subroutine number_body(self, model, b)
+    class(numberer), intent(inout) :: self
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: b
 
-      most = directions*maxval(model%node_count(element))
-      if (numbering%joined) most = maxval([most, (size(numbers_of_one(element(i))), i=1, size(element))])
-      allocate (numbers(most, size(element)), source=0)
-      do i = 1, size(element)
-        number = numbers_of_one(element(i))
-        numbers(:size(number), i) = number
-      end do
-    end function numbers_of
+    self%body(b)%can_yield = any(model%can_yield(self%body(b)%element))
+    if (size(self%body(b)%element) == 0) then
+      call self%number_panels(model, b, (self%own))
+    else if (model%controls%solver == solver_frontal) then
+      call self%number_fronts(model, b)
+    else
+      call self%number_band(model, b)
+    end if
+    self%body(b)%part = self%body(b)%element
+  end subroutine number_body
 
-    !> Those of one; if its freedoms are sums, of joined bodies, the equations that these are sums of.
-    function numbers_of_one(element) result(number)
-      integer, intent(in) :: element
-      integer, allocatable :: freedom(:), number(:)
-      real(wp), allocatable :: weight(:)
+  !> Number a body for nested fronts; DOFs that gaps depend on are in the last front. The body is dissected
+  !! along x, y, their diagonals and the distance from the contact, measured in elements, which are smallest
+  !! there.
+  subroutine number_fronts(self, model, b)
+    class(numberer), intent(inout) :: self
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: b
+    type(level_order) :: outward
+    type(dissection) :: found
+    real(wp) :: distance(model%nodes)
+    integer, allocatable :: first(:), roots(:)
+    integer :: i, others
 
-      number = numbering%of_element(model, element)
-      number = number(:directions*model%node_count(element))
-      if (numbering%joined .and. any(number < 0)) &
-        call find_terms(numbering%body(1)%tied, (number), number, freedom, weight)
-    end function numbers_of_one
-
-    !> Number a body for nested fronts, freedoms that gaps depend on in the last of them. It is parted along
-    !! x, y, their diagonals and the distance from the contact, in elements: there they are the smallest.
-    subroutine number_fronts(body)
-      type(body_numbering), intent(inout) :: body
-      type(level_order) :: outward
-      type(dissection) :: found
-      real(wp) :: distance(model%nodes)
-      integer, allocatable :: first(:), roots(:)
-      integer :: i, others
-
-      roots = pack(own, numbering%axes%pair(own) > 0)
-      if (size(roots) == 0) roots = own(:1)
-      outward = sweep(roots)
-      distance(outward%node) = [(real(i, wp), i=1, size(own))]
-      found = dissect(model, distance, own, stands_last)
-      body%contact_last = .true.
-      body%solver = solver_frontal
-      call number_nodes(found%node, body)
-      if (body%equations == 0) then
-        body%solver = solver_band
-        call number_panels(found%node, body)
-        return
-      end if
-      ! Some fronts have no equations; the last has the contact's.
-      allocate (first(size(found%first) + 1), source=1)
-      do i = 2, size(found%first)
-        associate (node => found%node(found%first(i - 1):found%first(i) - 1))
-          others = count(numbering%equation(:, node) > 0 .and. .not. numbering%axes%wanted(:, node))
-        end associate
-        first(i) = first(i - 1) + others
-      end do
+    roots = pack(self%own, self%axes%pair(self%own) > 0)
+    if (size(roots) == 0) roots = self%own(:1)
+    call sweep(model, self%own, roots, self%seen, outward)
+    distance(outward%node) = [(real(i, wp), i=1, size(self%own))]
+    found = dissect(model, distance, self%own, self%stands_last)
+    self%body(b)%contact_last = .true.
+    self%body(b)%solver = solver_frontal
+    call self%number_nodes(model, b, found%node)
+    if (self%body(b)%equations == 0) then
+      self%body(b)%solver = solver_band
+      call self%number_panels(model, b, found%node)
+      return
+    end if
+    ! Some fronts have no equations. The last front has the contact equations.
+    allocate (first(size(found%first) + 1), source=1)
+    do i = 2, size(found%first)
+      associate (node => found%node(found%first(i - 1):found%first(i) - 1))
+        others = count(self%equation(:, node) > 0 .and. .not. self%axes%wanted(:, node))
+      end associate
+      first(i) = first(i - 1) + others
+    end do
+    associate (body => self%body(b))
       first(size(first)) = body%equations + 1
       body%fronts = new_front_layout(pack(first, [first(2:) > first(:size(first) - 1), .true.]), &
-                                     numbers_of(body%element))
+                                     self%equations_of(model, b))
       body%operations = body%fronts%operations() + of_inversion*real(body%contact_equations, wp)**3
       body%element = body%element(body%fronts%element)
-    end subroutine number_fronts
+    end associate
+  end subroutine number_fronts
 
-    !> Number a body for a band, in reverse Cuthill-McKee order. Its levels are rooted at the contact nodes so
-    !! that what gaps want of these can come last: then the trailing block of the factor alone gives the
-    !! flexibility. Or, where that widens the band by more than forward substitution of all pairs costs, they
-    !! are rooted at the body's far end. Where even that band is a wide one, fronts are taken; so they are
-    !! where the flexibility makes much work, if with them it is less: for long contacts of slender bodies.
-    subroutine number_band(body)
-      type(body_numbering), intent(inout) :: body
-      type(body_numbering) :: band
-      integer, allocatable :: equation(:, :)
-      type(level_order) :: order
-      logical :: may_choose
-      integer :: i, n
+  !> Number a body for a band, in reverse Cuthill-McKee order. If its levels are rooted at the contact nodes,
+  !! the contact DOFs can come last, and the trailing block of the factor gives the flexibility. If this
+  !! widens the band by more than forward substitution of all pairs costs, the levels are rooted at the far
+  !! end of the body. If the band is wide even then, or if the flexibility takes much work and less with
+  !! fronts (long contacts of slender bodies), fronts are used.
+  subroutine number_band(self, model, b)
+    class(numberer), intent(inout) :: self
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: b
+    type(body_numbering) :: band
+    integer, allocatable :: equation(:, :)
+    type(level_order) :: order
+    logical :: may_choose
+    integer :: i, n
 
-      n = size(own)
-      may_choose = model%controls%solver == solver_auto
-      order = sweep(own(:1))
-      ! All levels of the same width: no band of a body so deep is narrower.
-      if (may_choose .and. 2.0_wp*n*(2.0_wp*n/order%levels)**2 > many_operations) then
-        call number_fronts(body)
-        return
-      end if
-      order = sweep(order%node(n:))
-      order = sweep(order%node(n:))
-      ! The contact comes late in the reversed order, and with it what yields: what stands before is factored
-      ! once.
-      associate (place => pack([(real(i, wp), i=1, n)], numbering%axes%pair(order%node) > 0))
-        if (sum(place) > 0.5_wp*size(place)*n) order = sweep(order%node(n:))
-      end associate
-      body%contact_last = .false.
-      call number_panels(order%node(n:1:-1), body)
-      body%operations = body%panels%operations()
-      if (may_choose .and. body%operations > many_operations) then
-        call number_fronts(body)
-      else if (any(numbering%axes%pair(own) > 0)) then
-        ! The roots stand in the order of the sweep from the far end, which runs along the contact.
-        call root_at_contact(pack(order%node, numbering%axes%pair(order%node) > 0), body)
-        if (.not. may_choose .or. body%operations - body%panels%operations() <= many_of_flexibility) return
-        band = body
-        equation = numbering%equation(:, own)
-        call number_fronts(body)
-        if (body%operations <= band%operations) return
-        numbering%equation(:, own) = equation
-        body = band
-      end if
-    end subroutine number_band
+    n = size(self%own)
+    may_choose = model%controls%solver == solver_auto
+    call sweep(model, self%own, self%own(:1), self%seen, order)
+    ! No band of a body with this number of levels is narrower than that of levels with equal widths.
+    if (may_choose .and. 2.0_wp*n*(2.0_wp*n/order%levels)**2 > many_operations) then
+      call self%number_fronts(model, b)
+      return
+    end if
+    call sweep(model, self%own, [order%node(n)], self%seen, order)
+    call sweep(model, self%own, [order%node(n)], self%seen, order)
+    ! The contact comes late in the reversed order, and with it what yields: the rest is factored once.
+    associate (place => pack([(real(i, wp), i=1, n)], self%axes%pair(order%node) > 0))
+      if (sum(place) > 0.5_wp*size(place)*n) call sweep(model, self%own, [order%node(n)], self%seen, order)
+    end associate
+    self%body(b)%contact_last = .false.
+    call self%number_panels(model, b, order%node(n:1:-1))
+    self%body(b)%operations = self%body(b)%panels%operations()
+    if (may_choose .and. self%body(b)%operations > many_operations) then
+      call self%number_fronts(model, b)
+    else if (any(self%axes%pair(self%own) > 0)) then
+      ! The roots have the order of the sweep from the far end, which runs along the contact.
+      call self%root_at_contact(model, b, pack(order%node, self%axes%pair(order%node) > 0))
+      band = self%body(b)
+      if (.not. may_choose .or. band%operations - band%panels%operations() <= many_of_flexibility) return
+      equation = self%equation(:, self%own)
+      call self%number_fronts(model, b)
+      if (self%body(b)%operations <= band%operations) return
+      self%equation(:, self%own) = equation
+      self%body(b) = band
+    end if
+  end subroutine number_band
 
-    !> Number a body anew so that the contact comes last, if that takes fewer operations or is asked for.
-    subroutine root_at_contact(roots, body)
-      integer, intent(in) :: roots(:)       !! nodes at contact
-      type(body_numbering), intent(inout) :: body
-      type(body_numbering) :: plain
-      type(level_order) :: order
-      integer, allocatable :: begins(:), equation(:, :)
+  !> Number a body again with the contact last, if that takes fewer operations or is requested.
+  subroutine root_at_contact(self, model, b, roots)
+    class(numberer), intent(inout) :: self
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: b
+    integer, intent(in) :: roots(:)       !! contact nodes
+    type(body_numbering) :: plain
+    type(level_order) :: order
+    integer, allocatable :: begins(:), equation(:, :)
 
-      begins = maxval(numbering%equation(:, roots), dim=1)
-      body%operations = body%operations + body%panels%compliance_operations(pack(begins, begins > 0))
-      plain = body
-      equation = numbering%equation(:, own)
-      order = sweep(roots)
-      body%contact_last = .true.
-      call number_panels(order%node(size(own):1:-1), body)
+    begins = maxval(self%equation(:, roots), dim=1)
+    plain = self%body(b)
+    plain%operations = plain%operations + plain%panels%compliance_operations(pack(begins, begins > 0))
+    equation = self%equation(:, self%own)
+    call sweep(model, self%own, roots, self%seen, order)
+    self%body(b)%contact_last = .true.
+    call self%number_panels(model, b, order%node(size(self%own):1:-1))
+    associate (body => self%body(b))
       body%operations = body%panels%operations() + of_inversion*real(body%contact_equations, wp)**3
       if (model%controls%by_inversion .or. body%operations <= plain%operations) return
-      numbering%equation(:, own) = equation
-      body = plain
-    end subroutine root_at_contact
+    end associate
+    self%equation(:, self%own) = equation
+    self%body(b) = plain
+  end subroutine root_at_contact
 
-    !> Breadth-first order of a body's nodes from `roots`, at each node its new neighbours by their number of
-    !! elements. Nodes that elements do not join to the roots (an RBE2 does) start sweeps of their own.
-    type(level_order) function sweep(roots) result(order)
-      integer, intent(in) :: roots(:)
-      integer, allocatable :: found(:)
-      integer :: at, e, end_of_level, filled, first, k, next
+  !> Number the DOFs of a body in an order of its nodes. If the contact DOFs are to be last, they have this
+  !! order too; with fronts, that of their pairs: then the inverse of their block has the order of the gaps.
+  subroutine number_nodes(self, model, b, order)
+    class(numberer), intent(inout) :: self
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: b                 !! its solver is known, and whether contact DOFs are last
+    integer, intent(in) :: order(:)
+    integer, allocatable :: contact(:)
+    integer :: equations
 
-      allocate (order%node(size(own)))
-      seen(own) = .false.
-      filled = size(roots)
-      order%node(:filled) = roots
-      seen(roots) = .true.
-      end_of_level = 0
-      next = 1
-      do at = 1, size(own)
-        if (at > filled) then
-          do while (seen(own(next)))
-            next = next + 1
-          end do
-          call add_new(own(next:next), seen, order%node, filled)
-        end if
-        if (at > end_of_level) then
-          order%levels = order%levels + 1
-          end_of_level = filled
-        end if
-        first = filled + 1
-        do k = model%around%start(order%node(at)), model%around%start(order%node(at) + 1) - 1
-          e = model%around%group(k)
-          call add_new(model%connectivity(:model%node_count(e), e), seen, order%node, filled)
-        end do
-        if (filled > first) then
-          found = order%node(first:filled)
-          order%node(first:filled) = found(sorted_order(model%around%start(found + 1) - &
-              model%around%start(found)))
-        end if
-      end do
-    end function sweep
-
-    !> Number the freedoms of a body along an order of its nodes; those that gaps depend on, if they are to be
-    !! last, in that of a narrow band too, and of fronts in that of their pairs: then the inverse of their
-    !! block is in the order of the gaps.
-    subroutine number_nodes(order, body)
-      integer, intent(in) :: order(:)
-      type(body_numbering), intent(inout) :: body   !! whether they are to be last, and the solver, are known
-      integer, allocatable :: contact(:)
-
+    associate (body => self%body(b))
       body%node = order
-      body%equations = 0
-      call number_border(model, order, numbering%equation, body%border, body%tied)
-      contact = pack(order, numbering%axes%pair(order) > 0)
+      equations = 0
+      call number_border(model, order, self%equation, body%border, body%tied)
+      contact = pack(order, self%axes%pair(order) > 0)
       if (body%contact_last) then
-        call number_freedoms(order, [.false.], body)
-        if (body%solver == solver_frontal) contact = contact(sorted_order(numbering%axes%pair(contact)))
-        call number_freedoms(contact, [.true.], body)
+        call self%number_freedoms(order, [.false.], equations)
+        if (body%solver == solver_frontal) contact = contact(sorted_order(self%axes%pair(contact)))
+        call self%number_freedoms(contact, [.true.], equations)
       else
-        call number_freedoms(order, [.false., .true.], body)
+        call self%number_freedoms(order, [.false., .true.], equations)
       end if
-      associate (at_contact => pack(numbering%equation(:, contact), numbering%axes%wanted(:, contact)))
+      body%equations = equations
+      associate (at_contact => pack(self%equation(:, contact), self%axes%wanted(:, contact)))
         body%contact_equations = count(at_contact > 0)
-        body%first_contact = minval([at_contact, body%equations + 1], mask=[at_contact, 1] > 0)
+        body%first_contact = minval([at_contact, equations + 1], mask=[at_contact, 1] > 0)
       end associate
-    end subroutine number_nodes
+    end associate
+  end subroutine number_nodes
 
-    !> Number the freedoms of some nodes that are free and not in the border.
-    subroutine number_freedoms(node, wanted, body)
-      integer, intent(in) :: node(:)
-      logical, intent(in) :: wanted(:)   !! those that gaps depend on, those that they do not, or both
-      type(body_numbering), intent(inout) :: body
-      integer :: c, i
+  !> Number the DOFs of some nodes that are free and not in the border.
+  subroutine number_freedoms(self, node, wanted, equations)
+    class(numberer), intent(inout) :: self
+    integer, intent(in) :: node(:)
+    logical, intent(in) :: wanted(:)   !! number DOFs that gaps depend on, the other ones, or both
+    integer, intent(inout) :: equations
+    integer :: c, i
 
-      do i = 1, size(node)
-        do c = 1, directions
-          if (.not. free(c, node(i)) .or. numbering%equation(c, node(i)) < 0) cycle
-          if (all(numbering%axes%wanted(c, node(i)) .neqv. wanted)) cycle
-          body%equations = body%equations + 1
-          numbering%equation(c, node(i)) = body%equations
-        end do
+    do i = 1, size(node)
+      do c = 1, directions
+        if (.not. self%free(c, node(i)) .or. self%equation(c, node(i)) < 0) cycle
+        if (all(self%axes%wanted(c, node(i)) .neqv. wanted)) cycle
+        equations = equations + 1
+        self%equation(c, node(i)) = equations
       end do
-    end subroutine number_freedoms
+    end do
+  end subroutine number_freedoms
 
-    !> The same for a band, with its panels, as far down as each equation is coupled.
-    subroutine number_panels(order, body)
-      integer, intent(in) :: order(:)
-      type(body_numbering), intent(inout) :: body
-      integer, allocatable :: profile(:)
-      integer :: e, i, last, number(most_freedoms)
+  !> Number a body for a band, with panels that reach down to the last equation coupled with each.
+  subroutine number_panels(self, model, b, order)
+    class(numberer), intent(inout) :: self
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: b
+    integer, intent(in) :: order(:)
+    integer, allocatable :: profile(:)
+    integer :: e, i, last, number(most_freedoms)
 
-      call number_nodes(order, body)
+    call self%number_nodes(model, b, order)
+    associate (body => self%body(b))
       profile = [(i, i=1, body%equations)]
       do e = 1, size(body%element)
-        number = numbering%of_element(model, body%element(e))
+        number = self%of_element(model, body%element(e))
         last = maxval(number)
         do i = 1, most_freedoms
           if (number(i) > 0) profile(number(i)) = max(profile(number(i)), last)
@@ -366,28 +345,45 @@ contains
       end do
       body%half_bandwidth = maxval([profile - [(i, i=1, body%equations)], 0])
       body%panels = new_panel_layout(profile)
-    end subroutine number_panels
-  end function number_equations
+    end associate
+  end subroutine number_panels
 
-  !> Put the nodes not seen yet at the end of the order.
-  pure subroutine add_new(node, seen, order, filled)
-    integer, intent(in) :: node(:)
-    logical, intent(inout) :: seen(:)
-    integer, intent(inout) :: order(:), filled
-    integer :: i
+  !> Equations of the elements of a body, then of its springs. If the DOFs of an element are sums, these are
+  !! the equations in the sums.
+  function equations_of(self, model, b) result(equations)
+    class(numberer), intent(in) :: self
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: b
+    type(incidence) :: equations
+    integer, allocatable :: freedom(:), own(:)
+    real(wp), allocatable :: weight(:)
+    integer :: e, element, last, n, number(most_freedoms)
 
-    do i = 1, size(node)
-      if (seen(node(i))) cycle
-      seen(node(i)) = .true.
-      filled = filled + 1
-      order(filled) = node(i)
+    element = size(self%body(b)%element)
+    allocate (equations%start(element + 1), equations%group(most_freedoms*element))
+    last = 0
+    do e = 1, element
+      equations%start(e) = last + 1
+      n = directions*model%node_count(self%body(b)%element(e))
+      number = self%of_element(model, self%body(b)%element(e))
+      own = number(:n)
+      if (self%joined .and. any(own < 0)) call find_terms(self%body(1)%tied, number(:n), own, freedom, weight)
+      if (last + size(own) > size(equations%group)) equations%group = [equations%group, equations%group, own]
+      equations%group(last + 1:last + size(own)) = own
+      last = last + size(own)
     end do
-  end subroutine add_new
+    equations%start(element + 1) = last + 1
+    equations%group = equations%group(:last)
+    if (.not. self%joined) return
+    associate (spring => self%body(b)%spring)
+      equations = incidence([equations%start, last + spring%start(2:)], [equations%group, spring%equation])
+    end associate
+  end function equations_of
 
-  !> Equations of an element, x and y of its nodes in turn, zeros behind.
+  !> Equations of an element, x and y of its nodes in turn, then zeros.
   pure function of_element(self, model, element) result(number)
     class(numbering_type), intent(in) :: self
-    type(model_type), intent(in) :: model   !! the scene
+    type(model_type), intent(in) :: model
     integer, intent(in) :: element             !! its number
     integer :: number(most_freedoms)
     integer :: i

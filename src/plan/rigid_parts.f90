@@ -18,6 +18,7 @@ module epcont_plan_rigid_parts
     integer :: count = 0
     integer, allocatable :: of_node(:)      !! a part of each node [nodes]
     integer, allocatable :: body(:)         !! of each part [count]
+    integer, allocatable :: own(:)          !! number of each part among the parts of its body [count]
     !> Rings do not move along x nor turn, and what has no elements does not turn [part_motions, count]
     logical, allocatable :: cannot(:, :)
     integer, allocatable :: hinge(:, :)     !! node, part, other part of each hinge [3, hinges]
@@ -25,6 +26,7 @@ module epcont_plan_rigid_parts
     real(wp), allocatable :: centre(:, :)   !! of each body [length] [directions, bodies]
     real(wp), allocatable :: extent(:)      !! of each body, largest half width [length] [bodies]
   contains
+    procedure :: column
     procedure :: rows
     procedure :: turn
   end type rigid_parts
@@ -63,10 +65,23 @@ contains
       if (model%kinematics(model%section(e)) == axisymmetric) &
         parts%cannot(::directions, of_element(e)) = .true.
     end do
+    call number_parts()
     call find_hinges()
     call measure()
 
   contains
+
+    !> Number the parts of each body.
+    subroutine number_parts()
+      integer :: last(model%bodies), k
+
+      last = 0
+      allocate (parts%own(parts%count))
+      do k = 1, parts%count
+        last(parts%body(k)) = last(parts%body(k)) + 1
+        parts%own(k) = last(parts%body(k))
+      end do
+    end subroutine number_parts
 
     !> Number the sets of elements that share two nodes.
     subroutine join_elements()
@@ -129,6 +144,14 @@ contains
       where (parts%extent <= 0.0_wp) parts%extent = 1.0_wp
     end subroutine measure
   end function find_rigid_parts
+
+  !> The column before those of a part, in rows with three columns for each part of its body.
+  pure integer function column(self, part)
+    class(rigid_parts), intent(in) :: self
+    integer, intent(in) :: part
+
+    column = part_motions*(self%own(part) - 1)
+  end function column
 
   !> Displacement of a place of a body by the unit motions of the part it belongs to [directions, motions].
   pure function rows(self, model, node)

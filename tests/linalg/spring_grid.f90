@@ -1,13 +1,22 @@
 !> A plane grid of springs, as elements of four points: a stiffness matrix whose order of elimination can be chosen; and columns
 !> of unequal heights.
 module spring_grid
+  use epcont_base_incidence, only: incidence
   use epcont_base_kinds, only: wp
   use epcont_linalg_assembled, only: assembled_matrix
   implicit none
   private
-  public :: add_columns, grid, heights
+  public :: add_columns, grid, heights, of_elements
 
 contains
+
+  !> Equations of each element, from a table.
+  pure type(incidence) function of_elements(numbers) result(equations)
+    integer, intent(in) :: numbers(:, :)   !! [of an element, elements]
+    integer :: e
+
+    equations = incidence([(1 + e*size(numbers, 1), e=0, size(numbers, 2))], [numbers])
+  end function of_elements
 
   !> Heights that rise and fall along the diagonal: the last row of each column.
   pure function heights(n, w) result(reach)

@@ -19,10 +19,8 @@ PAGE = [VERSION, "src/app/help.f90", "src/app/options.f90"]   # what the manual 
 FILE_LINES, PROCEDURE_LINES, ARGUMENTS = 400, 120, 7
 #: Longer procedures that still exist, as file.procedure, and their lines. The table may only shrink.
 LONG = {
-    "dissection.dissect": 165, "equilibrium.find_rigid_start": 174,
-    "free_motion.examine_body": 159, "joined_contact.find_set": 195, "loading.follow_load": 190,
-    "numbering.number_equations": 293, "scene_text.scene_sentence": 168, "solver.solve_contact": 257,
-    "stiffness.assemble": 206}
+    "equilibrium.find_rigid_start": 174, "joined_contact.find_set": 195, "loading.follow_load": 190,
+    "scene_text.scene_sentence": 168, "solver.solve_contact": 257}
 #: Columns of a line: of the sources, and of tests, whose assertions are long.
 COLUMNS, TEST_COLUMNS = 110, 132
 #: Lines of the procedures of the sources, with their internal procedures: the median, and what 90 % do not exceed.
