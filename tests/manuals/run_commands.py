@@ -213,7 +213,7 @@ def run(text, place):
 
 def status_of_fault(text, place):
     """The exit status that the table of all decks gives the deck of a command that ends with `echo $?`."""
-    row = re.search(rf"\({re.search(r'input/(.*?).dat', text)[1]}\.dat\) .*exit status (\d)", (place / "input/README.md").read_text())
+    row = re.search(rf"\({re.search(r'input/(.*?).dat', text)[1]}\.dat\) .*exit status (\d)", (place / "input/verification.md").read_text())
     return row[1]
 
 

@@ -18,6 +18,7 @@ from run_commands import documents
 TOP = pathlib.Path(os.environ["EPCONT_SOURCE_DIR"])
 INPUT = TOP / "input"
 MANUAL = (INPUT / "README.md").read_text(encoding="utf-8")
+VERIFICATION = (INPUT / "verification.md").read_text(encoding="utf-8")   # all decks, with their known answers and pictures
 
 LINK = re.compile(r"(?<!`)!?\[[^\]]*\]\(([^)\s]+)\)")
 FENCED = re.compile(r"^```.*?^```", re.MULTILINE | re.DOTALL)
@@ -93,12 +94,12 @@ class Manual(unittest.TestCase):
 
     def test_every_deck_is_named(self):
         for deck in sorted(INPUT.glob("*/*.dat")):
-            self.assertTrue(f"]({deck.relative_to(INPUT).as_posix()})" in MANUAL, deck)
+            self.assertTrue(f"]({deck.relative_to(INPUT).as_posix()})" in VERIFICATION, deck)
 
-    def test_every_deck_has_its_picture_in_the_manual(self):
+    def test_every_deck_has_its_picture(self):
         for deck in sorted(INPUT.glob("*/*.dat")):
             if deck.name != "no_suport.dat":  # rejected: there is nothing to draw
-                self.assertTrue(f"]({deck.parent.name}/pictures/{deck.stem}.png)" in MANUAL, deck)
+                self.assertTrue(f"]({deck.parent.name}/pictures/{deck.stem}.png)" in VERIFICATION, deck)
 
     def test_every_picture_is_shown_somewhere(self):
         named = {(page.parent / link).resolve() for page in documents() for link in links(page)}
@@ -159,7 +160,7 @@ CONTACT
 
     def test_pages_have_commands(self):
         taken = {command.place.partition(":")[0] for page in run_commands.shown_commands() for block in page for command in block}
-        for name in ("README.md", "input/README.md", "input/coming_from.md", "input/hertz/README.md", "tests/README.md", "tools/README.md"):
+        for name in ("README.md", "input/README.md", "input/verification.md", "input/hertz/README.md", "tests/README.md", "tools/README.md"):
             self.assertIn(name, taken)
 
     def test_without_packages_what_needs_their_files_is_left_out(self):

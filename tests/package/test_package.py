@@ -19,7 +19,8 @@ PROGRAM, CMAKE = os.environ["EPCONT_PROGRAM"], os.environ["EPCONT_CMAKE"]
 CPACK = shutil.which("cpack", path=str(pathlib.Path(CMAKE).parent)) or "cpack"
 TOOLS = [CPACK, "dpkg-deb", "dpkg-query", "dpkg-shlibdeps", "file", "gzip", "unshare", "chroot"]
 DECK = "share/doc/epcont/examples/hertz44.dat"
-MANUAL = {"share/doc/epcont/input/README.md", "share/doc/epcont/input/coming_from.md"}
+MANUAL = {f"share/doc/epcont/input/{name}.md"
+          for name in ("README", "coming_from", "glossary", "reading_a_listing", "troubleshooting", "verification")}
 INSTALLED = {"bin/epcont", "share/man/man1/epcont.1", "share/doc/epcont/README.md", "share/doc/epcont/CHANGELOG.md",
              "share/doc/epcont/copyright", DECK} | MANUAL
 EXAMPLE = "share/doc/epcont/examples/library"

@@ -10,7 +10,8 @@ add_custom_command(TARGET epcont POST_BUILD COMMAND epcont --man > "${man_page}"
 install(TARGETS epcont RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
 install(FILES "${man_page}" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1")
 install(FILES README.md CHANGELOG.md DESTINATION "${CMAKE_INSTALL_DOCDIR}")
-install(FILES input/README.md input/coming_from.md DESTINATION "${CMAKE_INSTALL_DOCDIR}/input")   # where README.md says that they are
+file(GLOB manual "${PROJECT_SOURCE_DIR}/input/*.md")
+install(FILES ${manual} DESTINATION "${CMAKE_INSTALL_DOCDIR}/input")   # where README.md says that they are
 # Where Debian looks for it; with the notices of what is linked statically.
 set(copyright LICENSE)
 if(is_static)
