@@ -65,7 +65,6 @@ module epcont_solution
     type(accuracy_type) :: accuracy
     type(verdict_type) :: verdict
     type(kept_factors) :: kept           !! from load case to load case
-    logical :: replanned = .false.       !! the last solve has changed the plan, also for other load cases
     !> The scene before nodes that came near in this load case got pairs; not allocated if there were none
     type(planned_model), allocatable :: as_given
   contains
@@ -85,7 +84,6 @@ contains
     integer :: count, failures
     logical :: failed, near
 
-    self%replanned = .false.
     if (allocated(self%as_given)) deallocate (self%as_given)
     failures = 0
     do count = 1, most_solves + 2   ! two more, should a rule find no contact
@@ -99,7 +97,6 @@ contains
       if (failed .and. (self%iteration%joined .or. failures == 0 .and. can_join(self%model))) then
         failures = failures + 1
         self%other_rule = .not. self%other_rule
-        self%replanned = .not. allocated(self%as_given)
       else
         if (self%answer%failed_body > 0 .or. count >= most_solves) exit
         call find_nodes_that_came_near(self%model, self%answer%displacement, self%answer%contact%touching, &

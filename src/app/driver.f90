@@ -1,8 +1,7 @@
 !> One deck from file to results.
 module epcont_app_driver
   use epcont_app_arguments, only: arguments_type, stem_of
-  use epcont_app_case_streams, only: run_names, solve_pattern
-  use epcont_app_case_words, only: case_words
+  use epcont_app_case_runs, only: deck_run, solve_pattern
   use epcont_app_process, only: print_error, print_text
   use epcont_app_progress_display, only: progress_type, timing_text
   use epcont_base_diagnostic, only: diagnostics
@@ -100,11 +99,10 @@ contains
 
     !> All load cases: those with the same freedoms held one after the other, since they share factors.
     subroutine solve_patterns()
-      type(case_words) :: words(size(run%cases%case))
-      type(run_names) :: names
+      type(deck_run) :: of_deck
       integer :: p
 
-      names = run_names(path, name, arguments%memory)
+      of_deck = deck_run(path, name, arguments%memory, arguments%asks('--quiet'))
       results%stem = stem
       results%all_tables = arguments%asks('--tables')
       results%brief = arguments%asks('--brief')
@@ -112,10 +110,10 @@ contains
       call results%begin(run)
       do p = 1, run%cases%patterns
         if (p > 1) call take_pattern(p)
-        call solve_pattern(run, p, names, results, words, watch, error)
-        written = any(words%known)
+        call solve_pattern(run, run%cases%of_pattern(p), of_deck, results, watch, error)
+        written = of_deck%solved
+        status = max(status, of_deck%status)
         if (allocated(error)) return
-        call say_words(arguments, words, run%cases%of_pattern(p), status, watch)
         call results%add_plan(run, run%cases%of_pattern(p))
       end do
       call results%finish(run, error)
@@ -180,24 +178,4 @@ contains
 
     if (.not. arguments%asks('--quiet')) call print_text(text, status)
   end subroutine say
-
-  !> Print the results of some load cases, in their order. (gfortran 12 does not free what a copy of these
-  !! words has allocated.)
-  subroutine say_words(arguments, words, cases, status, watch)
-    type(arguments_type), intent(in) :: arguments
-    type(case_words), intent(in) :: words(:)   !! [cases]
-    integer, intent(in) :: cases(:)
-    integer, intent(inout) :: status
-    type(progress_type), intent(inout) :: watch
-    integer :: k
-
-    call watch%erase()
-    do k = 1, size(cases)
-      associate (said => words(cases(k)))
-        status = max(status, said%status)
-        call print_error(said%remarks)
-        call say(arguments, said%line, status)
-      end associate
-    end do
-  end subroutine say_words
 end module epcont_app_driver

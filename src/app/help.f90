@@ -42,9 +42,8 @@ module epcont_app_help
     entry//'epcont \-\-plan hertz44.dat', 'How many unknowns, which method and why, how much memory.', &
     entry//'epcont \-\-cards PARAM', 'The fields of a card, and what may stand in them.', &
     '.SH ENVIRONMENT', &
-    'OMP_NUM_THREADS: threads that may work side by side on bodies, where a scene has several large ones'// &
-    ', or on load cases, where a deck has many; one if it is not set. Results are the same bytes on any'// &
-    ' number.', &
+    'OMP_NUM_THREADS: number of threads that may work on bodies in parallel, if a model has several '// &
+    'large ones; one if it is not set. Results are the same bytes for any number.', &
     'OMP_WAIT_POLICY: what threads do that wait; PASSIVE, which leaves their core to others, if it is'// &
     ' not set and OpenBLAS is a part of the program, as the scripts link it.', &
     'OpenBLAS chooses its kernels by the processor, or by OPENBLAS_CORETYPE: others change the last of '// &

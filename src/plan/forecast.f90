@@ -16,14 +16,11 @@ module epcont_plan_forecast
 
   type :: forecast_type
     integer(i8) :: bytes = 0            !! that the process will hold at its peak, on one thread
-    integer(i8) :: kept_bytes = 0       !! of these, what is kept from load case to load case
     real(wp) :: operations = 0.0_wp     !! floating-point operations of factor, flexibility and simplex
     !> Of joined bodies: about the same should they have to be solved apart, with their F
     integer(i8) :: apart_bytes = 0
   contains
     procedure :: keep_unloaded
-    procedure :: streams
-    procedure :: peak
   end type forecast_type
 
   real(wp), parameter :: giga = 1.0e9_wp
@@ -53,14 +50,6 @@ module epcont_plan_forecast
   integer, parameter, public :: most_assessed = 12
   !> Sums of forces whose errors are estimated, mostly: of all pairs, and along x and y on two bodies.
   integer, parameter :: usual_sums = 4
-
-  !> Least number of cases of a stream, in cases and in square roots of all cases: copying the factors at its
-  !! begin costs half a case.
-  integer, parameter :: least_cases = 12
-  real(wp), parameter :: least_roots = 2.4_wp
-  !> Scenes that take more have one stream [bytes]: threads share their fronts, and each further stream takes
-  !! as much again.
-  integer(i8), parameter :: large = 1000000000_i8
 
 contains
 
@@ -103,27 +92,6 @@ contains
 
     self%bytes = 2*self%bytes - of_process
   end subroutine keep_unloaded
-
-  !> Streams of load cases that share a plan, beside the first case (`app/case_streams.f90`).
-  pure integer function streams(self, cases)
-    class(forecast_type), intent(in) :: self
-    integer, intent(in) :: cases   !! that share the plan
-
-    streams = 1
-    ! Their length grows with their number: neither copies nor threads without work are many.
-    if (self%bytes <= large) &
-      streams = max(1, (cases - 1)/max(least_cases, nint(least_roots*sqrt(real(cases, wp)))))
-  end function streams
-
-  !> Memory of load cases that share a plan, on one thread: if there are several streams, that of a stream and
-  !! of the factors that they all begin with [bytes].
-  pure integer(i8) function peak(self, cases)
-    class(forecast_type), intent(in) :: self
-    integer, intent(in) :: cases   !! that share the plan
-
-    peak = self%bytes
-    if (self%streams(cases) > 1) peak = self%bytes + self%kept_bytes
-  end function peak
 
   !> What a scene will take.
   function forecast(model, motions, numbering, plan) result(expected)

@@ -45,7 +45,6 @@ contains
     self%numbering = number_equations(self%model, self%iteration%joined)
     call watch%lap(stage_numbering)
     self%expected = forecast(self%model, self%motions, self%numbering, self%iteration)
-    self%expected%kept_bytes = self%expected%bytes
     if (self%plan_cases > 1 .and. self%iteration%yields) call self%expected%keep_unloaded()
     call watch%lap(stage_plan)
   end subroutine make_plan

@@ -65,7 +65,7 @@ contains
     if (scene%model%controls%accuracy > 0.0_wp) call say_choices()
     call say_bodies()
     call plan%line('')
-    call say(plan, 'memory '//megabytes(scene%expected%peak(scene%plan_cases))// &
+    call say(plan, 'memory '//megabytes(scene%expected%bytes)// &
              when(iteration%joined, ' (up to '//megabytes(scene%expected%apart_bytes)// &
                   ' should bodies have to be solved apart)')// &
              ', operations '//short_real(scene%expected%operations)//when(iteration%yields, ' a solve'))

@@ -34,7 +34,6 @@ module epcont_system_stopwatch
   contains
     procedure :: start
     procedure :: lap
-    procedure :: share
     procedure :: elapsed
   end type stopwatch
 
@@ -58,21 +57,6 @@ contains
     self%spent(:, stage) = self%spent(:, stage) + (ended - self%lap_began)
     self%lap_began = ended
   end subroutine lap
-
-  !> The time since the last lap was that of some who worked side by side: by the shares of what theirs was.
-  subroutine share(self, spent)
-    class(stopwatch), intent(inout) :: self
-    real(wp), intent(in) :: spent(:, :)   !! by all of them, as here
-    real(wp) :: ended(2)
-    integer :: k
-
-    ended = now()
-    do k = 1, stages
-      self%spent(:, k) = self%spent(:, k) + spent(1, k)/max(sum(spent(1, :)), tiny(1.0_wp))* &
-                         (ended - self%lap_began)
-    end do
-    self%lap_began = ended
-  end subroutine share
 
   !> Up to the last lap [s].
   pure real(wp) function elapsed(self)

@@ -106,7 +106,7 @@ class Memory(unittest.TestCase):
         self.compare(strip(300, 60, 5.0), "fine")
 
     def test_load_cases(self):
-        """Cases that yield hold the factors of the unloaded state too; more of them are streams, beside what these go on from."""
+        """Cases that yield hold the factors of the unloaded state too, however many they are."""
         for cases, yields in ((2, True), (25, True), (2, False), (25, False)):
             text = strip(300, 60, 5.0).text()
             if yields:

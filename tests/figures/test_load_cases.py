@@ -129,7 +129,6 @@ class LoadCases(unittest.TestCase):
                     self.check(name, "STRESS = ALL\n", f"PARAM,RULE,{rule}\n", (0.9, 0.91, 0.92, 0.93, 0.5, 0.51, 0.52))
 
     def test_same_bytes_on_any_number_of_threads(self):
-        """So many cases are streams side by side."""
         factors = [0.05 * k for k in range(1, 13)] + [1.0 - 0.07 * k for k in range(13)]
         for name, rule in (("layer_lines/layer_lines", "AUTO"), ("layer_lines/layer_lines", "JOINED"), ("hertz/hertz44", "AUTO")):
             deck = of_factors(INPUT / f"{name}.dat", factors, param=f"PARAM,RULE,{rule}\n")
@@ -142,8 +141,8 @@ class LoadCases(unittest.TestCase):
             del os.environ["OMP_NUM_THREADS"]
             self.assertEqual(len(listings), 1, name)
 
-    def test_streams(self):
-        """Cases of streams are those of decks of their own."""
+    def test_many(self):
+        """Each of many cases is that of a deck of its own."""
         self.check("hertz/hertz44.dat", factors=tuple(0.04 * k for k in range(1, 26)))
 
     def test_pairs_of_one_case(self):

@@ -1,0 +1,111 @@
+!> Solves the load cases of a pattern one after the other. Each starts from the plan, the factors and the
+!> contact state of the case before. Also the texts that a run prints for a load case.
+module epcont_app_case_runs
+  use epcont_app_process, only: print_error, print_text
+  use epcont_app_progress_display, only: progress_type
+  use epcont_base_diagnostic, only: place_type
+  use epcont_base_error, only: error_type, status_valid
+  use epcont_base_kinds, only: wp
+  use epcont_base_text, only: newline, plural, shown, text_of
+  use epcont_messages_outcome, only: judge, limit_of_pressure, reason_of, remark_lines
+  use epcont_model_load_cases, only: put_case
+  use epcont_report_columns, only: known, listed_number, number, right
+  use epcont_report_results, only: results_type
+  use epcont_report_run, only: run_results
+  use epcont_system_stopwatch, only: stage_writing
+  implicit none
+  private
+  public :: deck_run, solve_pattern
+
+  !> Names, limits and outcome of the run of a deck.
+  type :: deck_run
+    character(len=:), allocatable :: path   !! of the deck
+    character(len=:), allocatable :: name   !! of the deck in lines of standard output
+    real(wp) :: memory = huge(1.0_wp)       !! limit [GB]
+    logical :: quiet = .false.              !! no lines on standard output
+    logical :: solved = .false.             !! one load case at least
+    integer :: status = status_valid        !! exit status: the largest of all load cases
+  end type deck_run
+
+contains
+
+  !> Solve the load cases of a pattern, take their results and print what came of each.
+  subroutine solve_pattern(run, cases, of_deck, results, watch, error)
+    type(run_results), intent(inout) :: run         !! with the plan of the pattern
+    integer, intent(in) :: cases(:)                 !! of the pattern
+    type(deck_run), intent(inout) :: of_deck
+    type(results_type), intent(inout) :: results
+    type(progress_type), intent(inout) :: watch
+    type(error_type), allocatable, intent(out) :: error
+    integer :: k
+
+    do k = 1, size(cases)
+      run%case = cases(k)
+      if (run%has_cases()) call put_case(run%cases, run%case, run%model)
+      run%kept%another = k < size(cases)
+      call run%solve(of_deck%memory, watch, error)
+      if (allocated(error)) then
+        error%message = of_deck%path//': '//error%message
+        return
+      end if
+      run%outcome = judge(run)
+      if (size(cases) > 1 .and. allocated(run%as_given)) call run%outcome%found%add_note(place_type(), &
+        'nodes came near that had no pair: solved again, in this load case alone, with '// &
+        plural(run%model%pairs - run%as_given%model%pairs, 'more pair'))
+      of_deck%solved = .true.
+      call results%add_case(run, error)
+      if (allocated(error)) return
+      call watch%erase()
+      of_deck%status = max(of_deck%status, run%outcome%status)
+      call print_error(remarks_of(run, of_deck%path))
+      if (.not. of_deck%quiet) call print_text(line_of(run, of_deck%name), of_deck%status)
+      if (size(cases) > 1) call run%return_to_given()
+      call watch%lap(stage_writing)
+    end do
+  end subroutine solve_pattern
+
+  !> Lines of standard error: warnings, and why the answer is not valid, each behind the name of the deck.
+  pure function remarks_of(run, path) result(lines)
+    type(run_results), intent(in) :: run     !! with its outcome
+    character(len=*), intent(in) :: path     !! of the deck
+    character(len=:), allocatable :: lines, text
+    integer :: from, to
+
+    text = remark_lines(run%outcome%found, .false.)
+    if (len(run%outcome%sentence) > 0) text = text//run%outcome%sentence//newline
+    lines = ''
+    from = 1
+    do while (from <= len(text))
+      to = from + index(text(from:), newline) - 1
+      lines = lines//shown(path)//case_name(run)//': '//text(from:to)
+      from = to + 1
+    end do
+  end function remarks_of
+
+  !> Line of standard output: name, status, largest pressure and whether it is singular or not resolved, first
+  !! approach.
+  pure function line_of(run, name) result(text)
+    type(run_results), intent(in) :: run     !! with its outcome
+    character(len=*), intent(in) :: name     !! of the deck
+    character(len=:), allocatable :: limit, text
+
+    text = name//case_name(run)//'  '//run%outcome%word
+    if (.not. run%outcome%has_answer) return
+    if (run%model%pairs > 0) then
+      text = text//'  p_max'//right(listed_number(known, run%answer%largest_pressure(), 0.0_wp), 13)
+      limit = limit_of_pressure(run)
+      if (len(reason_of(limit)) > 0) text = text//' ('//limit//')'
+    end if
+    if (run%motions%count > 0) &
+      text = text//'  approach'//right(listed_number(number, run%answer%contact%approach(1), 0.0_wp), 13)
+  end function line_of
+
+  !> ` SUBCASE 3`; empty if the deck has one load case.
+  pure function case_name(run) result(text)
+    type(run_results), intent(in) :: run
+    character(len=:), allocatable :: text
+
+    text = ''
+    if (run%has_cases()) text = ' SUBCASE '//text_of(run%deck%subcase(run%case)%id)
+  end function case_name
+end module epcont_app_case_runs
