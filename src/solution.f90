@@ -10,7 +10,6 @@ module epcont_solution
   use epcont_contact_geometry_nearness, only: find_nodes_that_came_near, pair_nodes_that_came_near
   use epcont_contact_problem, only: contact_solved, contact_stalled
   use epcont_flexibility_flexibility, only: pair_forces
-  use epcont_linear_joined_response, only: are_unique
   use epcont_linear_linear_problem, only: linear_problem
   use epcont_model_controls, only: method_newton
   use epcont_model_model, only: line_contact
@@ -148,12 +147,11 @@ contains
     logical, intent(out) :: failed      !! the other rule is to find the contact
 
     call follow_or_step()
-    failed = kept%linear%joined%failed .or. &
+    failed = kept%linear%rule%failed .or. &
              scene%numbering%joined .and. answer%failed_body > 0 .and. .not. answer%lacks_memory .or. &
              .not. scene%numbering%joined .and. answer%contact%state == contact_stalled
     if (failed .or. answer%failed_body > 0 .or. answer%contact%state /= contact_solved) return
-    if (scene%numbering%joined) &
-      failed = .not. are_unique(kept%linear%joined, scene, kept%linear%factored_bodies)
+    failed = .not. kept%linear%rule%is_unique(scene, kept%linear%factored_bodies)
     call watch%lap(stage_contact)
     if (failed) return
     call evaluate_refined()

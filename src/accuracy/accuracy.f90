@@ -4,17 +4,16 @@
 module epcont_accuracy_accuracy
   use epcont_accuracy_error_fields, only: body_fields, compare_fields, error_fields
   use epcont_accuracy_error_sums, only: shift_errors, sum_errors, with_waves
-  use epcont_accuracy_joined_loads, only: contact_sensitivity
   use epcont_accuracy_narrow_zone, only: find_turned, shifted_loads, too_near
   use epcont_accuracy_patches, only: new_patch_table, patch_table, wide_patch
   use epcont_accuracy_surface_line, only: first_element, new_surface_line, smooth_pressures, surface_line
-  use epcont_accuracy_unit_loads, only: find_sensitivity, find_unit_loads, unit_loads
+  use epcont_accuracy_unit_loads, only: find_unit_loads, unit_loads
   use epcont_accuracy_weights, only: concentrated
   use epcont_accuracy_zone_error, only: estimate_zone, zone_error
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: least_difference, no_effect
-  use epcont_contact_scaling, only: diagonal_of
   use epcont_element_kinematics, only: directions
+  use epcont_linear_contact_rule, only: contact_sensitivity
   use epcont_linear_linear_problem, only: linear_problem
   use epcont_model_arrays, only: angle
   use epcont_plan_planned_model, only: planned_model
@@ -69,8 +68,7 @@ contains
   !> What the figures of an answer are worth.
   subroutine assess(scene, linear, line, kept, answer, accuracy)
     type(planned_model), intent(in) :: scene       !! that was solved
-    !> Of the last solve; the basis of its contact is taken over
-    type(linear_problem), intent(inout), target :: linear
+    type(linear_problem), intent(inout) :: linear  !! of the last solve
     type(contact_line), intent(in) :: line         !! of the pairs
     type(kept_estimates), intent(inout) :: kept    !! of the load case before, if any; of this
     !> With its pressures and zones; the condition is added to it
@@ -103,7 +101,7 @@ contains
     allocate (accuracy%approach_unbounded(motions), accuracy%weak(scene%model%pairs), source=.false.)
     allocate (accuracy%zone(0))
     call accuracy%assess_mesh(scene, linear, kept, answer, field)
-    if (answer%condition < huge(1.0_wp)) call linear%estimate_condition(scene, answer%condition)
+    if (answer%condition < huge(1.0_wp)) call linear%estimate_condition(answer%condition)
     if (pressed) call accuracy%assess_zones(scene, linear, line, kept, answer, field)
     if (carried) call accuracy%assess_sums(scene, linear, line, kept, answer, field)
     accuracy%leading = leading_zone(answer%zones%max_pressure, accuracy%zone)
@@ -199,7 +197,7 @@ contains
   subroutine assess_sums(self, scene, linear, line, kept, answer, field)
     class(accuracy_type), intent(inout) :: self
     type(planned_model), intent(in) :: scene       !! that was solved
-    type(linear_problem), intent(in) :: linear     !! of its last solve
+    type(linear_problem), intent(inout) :: linear  !! of its last solve
     type(contact_line), intent(in) :: line         !! of its pairs
     type(kept_estimates), intent(in) :: kept       !! of this load case
     type(answer_type), intent(in) :: answer        !! of the last solve
@@ -208,12 +206,7 @@ contains
     real(wp) :: off(size(kept%loads%contact%unit))
     integer :: j
 
-    self%sensitivity = kept%loads%sensitivity
-    if (.not. scene%numbering%joined) &
-      self%sensitivity = find_sensitivity( &
-        kept%loads%problem, kept%loads%basis, answer%contact%force, &
-        abs(linear%problem%initial_gap) + abs(linear%problem%load_gap) &
-        + linear%problem%motion%times(answer%contact%approach, magnitudes=.true.), answer%condition)
+    self%sensitivity = linear%rule%sensitivity(answer, answer%condition)
     ! What the last step of refinement has not changed is right.
     self%sensitivity%rounding = min(self%sensitivity%rounding, answer%last_correction)
     off = sum_errors(kept%loads%contact, kept%surface, answer, self%zone, field, self%energy_norm)
@@ -252,7 +245,7 @@ contains
     if (scene%model%has_rings()) given(1, :) = .false.
     call find_turned(scene%model, line, answer, given, turned, turned_on)
     where (loads%column == 0) self%body_force = 0.0_wp
-    if (.not. loads%basis%sound) return
+    if (.not. loads%contact%sound) return
     self%total_force = with_waves(off, 1, loads%contact%share, answer, self%zone) + turned
     do i = 1, size(answer%bodies)
       do c = 1, directions
@@ -322,8 +315,7 @@ contains
     real(wp), allocatable :: compliance(:)
     integer :: k, z
 
-    if (scene%numbering%joined) compliance = linear%joined%compliance
-    if (.not. scene%numbering%joined) compliance = diagonal_of(linear%problem%flexibility)
+    compliance = linear%rule%compliance()
     off = 0.0_wp
     do z = 1, size(self%zone)
       off(answer%zones(z)%pairs) = max(0.0_wp, self%zone(z)%pressure)

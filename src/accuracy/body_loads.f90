@@ -9,33 +9,18 @@ module epcont_accuracy_body_loads
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: no_effect
   use epcont_element_kinematics, only: directions
+  use epcont_linear_contact_rule, only: contact_loads
   use epcont_linear_linear_problem, only: linear_problem
   use epcont_model_model, only: model_type
   use epcont_plan_planned_model, only: planned_model
   implicit none
   private
-  public :: body_loads, choose_fields, contact_loads, find_displacements, load_batch, new_body_loads
+  public :: body_loads, choose_fields, find_displacements, load_batch, new_body_loads
 
   !> A load that others make up for, but for this part of its largest force on any body, is a sum of these:
   !! with ten times as much the error of an approach could be twice what all loads tell (blocks that tilt),
   !! and a stack of 30 bodies took a twentieth less.
   real(wp), parameter :: made_up_for = 1.0e-3_wp
-
-  !> A unit load along each of some rigid-body modes, then gaps that shrink by the share of each pair in a sum
-  !> of forces.
-  type :: contact_loads
-    integer, allocatable :: motion(:)      !! the modes [assessed modes]
-    real(wp), allocatable :: share(:, :)   !! of each pair in each sum [pairs, sums]
-    real(wp), allocatable :: force(:, :)   !! at each pair under each load [force] [pairs, loads]
-    !> Largest force under each load; 0: nothing is asked of it [force] [loads]
-    real(wp), allocatable :: unit(:)
-    !> Change of each sum by a unit load along each mode of the model [modes, sums]
-    real(wp), allocatable :: shared(:, :)
-    !> Under each load, of joined bodies only [length] [directions, loads, nodes]
-    real(wp), allocatable :: displacement(:, :, :)
-  contains
-    procedure :: ask_for
-  end type contact_loads
 
   !> Of unit loads those that a body feels, and that no batch of fields has told of yet.
   type :: body_loads
@@ -54,14 +39,6 @@ module epcont_accuracy_body_loads
   end type load_batch
 
 contains
-
-  !> Say which loads are asked for; loads without forces tell nothing.
-  pure subroutine ask_for(self, asked)
-    class(contact_loads), intent(inout) :: self
-    logical, intent(in) :: asked(:)   !! [loads]
-
-    self%unit = merge(maxval(abs(self%force), dim=1), 0.0_wp, asked .and. any(self%force /= 0.0_wp, dim=1))
-  end subroutine ask_for
 
   !> The loads that a body feels, of those that are asked for.
   pure function new_body_loads(pair, unit_loads) result(loads)

@@ -2,8 +2,8 @@
 !> (Zienkiewicz and Zhu 1987), and what their errors have in common. Body by body, since of all loads a body
 !> feels few that it tells apart (`body_loads.f90`).
 module epcont_accuracy_error_fields
-  use epcont_accuracy_body_loads, only: body_loads, choose_fields, contact_loads, find_displacements, &
-    load_batch, new_body_loads
+  use epcont_accuracy_body_loads, only: body_loads, choose_fields, find_displacements, load_batch, &
+    new_body_loads
   use epcont_accuracy_element_errors, only: element_errors, new_element_errors
   use epcont_accuracy_field_sums, only: field_sums, new_field_sums
   use epcont_accuracy_patches, only: patch_table
@@ -12,6 +12,7 @@ module epcont_accuracy_error_fields
   use epcont_base_kinds, only: wp
   use epcont_element_element_kind, only: most_nodes, most_points
   use epcont_element_kinematics, only: components, directions
+  use epcont_linear_contact_rule, only: contact_loads
   use epcont_linear_linear_problem, only: linear_problem
   use epcont_linear_solved_state, only: solved_state
   use epcont_plan_planned_model, only: planned_model
@@ -89,14 +90,10 @@ contains
     pairs = new_incidence(scene%model%bodies_of_pairs(), scene%model%bodies)
     allocate (work%total(4, size(unit_loads%unit)), source=0.0_wp)
     kept = 0.0_wp
-    if (scene%numbering%joined) elements = scene%model%elements_of_bodies()
+    elements = scene%model%elements_of_bodies()
     do b = 1, scene%model%bodies
       work%b = b
-      if (scene%numbering%joined) then
-        work%element = elements%of(b)
-      else
-        work%element = scene%numbering%body(b)%element
-      end if
+      work%element = elements%of(b)
       if (size(work%element) == 0) cycle
       if (allocated(known(b)%smooth)) then
         call known(b)%hand_over(work%now)
@@ -111,7 +108,7 @@ contains
         if (k > 1) cycle
       end if
       kept = kept + real_bytes*(size(work%now%u) + size(work%now%sample) + size(work%now%smooth))
-      if (linear%borne%keeps .and. kept <= part_of_memory*scene%expected%bytes) &
+      if (linear%rule%keeps .and. kept <= part_of_memory*scene%expected%bytes) &
         call work%now%hand_over(known(b))
     end do
     work%total = work%total*spread(unit_loads%unit, 1, 4)**spread([1, 1, 2, 2], 2, size(unit_loads%unit))
@@ -120,7 +117,7 @@ contains
     field%energy = sum(linear%operator%volume*sum(answer%strain*answer%point_stress, dim=1))
   end subroutine compare_fields
 
-  !> The next batch of loads, and displacements under its fields; of joined bodies these are known.
+  !> The next batch of loads, and displacements under its fields, if these are not known.
   subroutine find_fields(work, place)
     type(comparison), intent(inout) :: work
     integer, intent(in) :: place(:)   !! of the body
@@ -128,7 +125,7 @@ contains
 
     if (allocated(work%now%smooth)) deallocate (work%now%sample, work%now%smooth)   ! of the batch before
     call choose_fields(work%loads, work%now%batch)
-    if (.not. work%scene%numbering%joined) then
+    if (.not. allocated(work%unit_loads%displacement)) then
       call find_displacements(work%scene, work%linear, work%b, work%loads%pair, work%now%batch, &
           work%table%node(place), work%now%u)
       return

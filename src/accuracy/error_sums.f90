@@ -1,7 +1,7 @@
 !> Error estimates of approaches and of sums of contact forces: products of the strain errors, and additions
 !> for contact at nodes alone, gap oscillation and narrow zones.
 module epcont_accuracy_error_sums
-  use epcont_accuracy_body_loads, only: contact_loads
+  use epcont_linear_contact_rule, only: contact_loads
   use epcont_accuracy_error_fields, only: error_fields
   use epcont_accuracy_surface_line, only: surface_line
   use epcont_accuracy_weights, only: least_energy, of_shares, uncancelled, unresolved, wave_height

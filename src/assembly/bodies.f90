@@ -145,9 +145,8 @@ contains
 
   !> Estimate of the condition of the stiffness in the 1-norm: the largest of the bodies. What has yielded is
   !! not as stiff as it was when it was assembled first.
-  subroutine estimate_condition(self, scene, condition)
+  subroutine estimate_condition(self, condition)
     class(factored_bodies), intent(inout) :: self
-    type(planned_model), intent(in) :: scene   !! with the numbers of its equations
     real(wp), intent(out) :: condition         !! 1 where all bodies are rigid
     integer :: b
 
@@ -156,7 +155,7 @@ contains
       call self%body(b)%estimate_condition()
       condition = max(condition, self%body(b)%condition)
     end do
-    if (scene%numbering%joined) condition = condition*self%spring%norm/self%body(1)%matrix%norm
+    if (allocated(self%spring%stiffness)) condition = condition*self%spring%norm/self%body(1)%matrix%norm
   end subroutine estimate_condition
 
   !> The weakest pivot of all bodies. Of joined ones none is: springs make pivots small, and steps follow

@@ -64,8 +64,7 @@ module epcont_contact_problem
     logical, allocatable :: indeterminate(:)
     !> Motions that nothing determines; `approach` is one choice of many [m]
     logical, allocatable :: motion_free(:)
-    logical :: joined = .false.              !! the set was found by RULE JOINED, not by CONRY
-    integer :: joined_steps = 0              !! that RULE JOINED has taken
+    integer :: sets = 0                      !! active sets that RULE JOINED has tried; 0: CONRY found it
     integer :: pivots = 0                    !! pairs exchanged by the rule that found the set
     integer :: degenerate_pivots = 0         !! of these, without change of any variable
     integer :: restarts = 0                  !! fresh starts, after a set failed the test at full load

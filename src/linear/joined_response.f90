@@ -1,20 +1,29 @@
-!> What joined bodies do with the set of contacts that was found: under further loads, and whether its forces
-!> are the only ones.
+!> What joined bodies do with the set of contacts that was found: under unit loads, by solves with its factor,
+!> which these share; and whether the contact forces are the only ones.
 module epcont_linear_joined_response
   use epcont_assembly_bodies, only: factored_bodies, force_fields, half_solved_body
   use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: solved_to
+  use epcont_contact_problem, only: contact_problem
   use epcont_element_kinematics, only: directions
-  use epcont_flexibility_flexibility, only: gap_opening, pair_forces
-  use epcont_linear_joined_contact, only: joined_contact
-  use epcont_linear_joined_springs, only: add_suport_forces, suport_values
+  use epcont_flexibility_flexibility, only: gap_opening, pair_forces, terms_of_openings
+  use epcont_flexibility_motion_matrix, only: motion_matrix
+  use epcont_linear_contact_rule, only: contact_loads, contact_sensitivity
+  use epcont_linear_joined_springs, only: add_suport_forces, joined_springs, suport_values
+  use epcont_linear_solved_state, only: solved_state
   use epcont_model_arrays, only: angle
   use epcont_plan_planned_model, only: planned_model
   implicit none
   private
-  public :: are_unique, frozen_response, respond_joined
+  public :: are_unique, respond_joined, sensitivity_probe
 
   !> What a solve leaves of forces of size one, at most, where they open gaps.
   real(wp), parameter :: most_left = 0.1_wp
+  !> Openings of gaps that motions explain but for this part of them make no forces: springs of SUPORT
+  !! freedoms leave that much.
+  real(wp), parameter :: as_motions = 1.0e-5_wp
+  !> Motions up to which that is asked of all of them.
+  integer, parameter :: few_motions = 40
 
   !> What joined bodies do under some loads, the set of contacts frozen.
   type :: frozen_response
@@ -22,17 +31,95 @@ module epcont_linear_joined_response
     real(wp), allocatable :: opening(:, :)   !! of the gaps [length] [pairs, any]
     real(wp), allocatable :: force(:, :)     !! [force] [pairs, any]
     real(wp), allocatable :: displacement(:, :, :)   !! [length] [directions, any, nodes]
+  contains
+    procedure :: solve
   end type frozen_response
+
+  !> Two columns that tell the 1-norms of D M (`simplex_response.f90`) by Higham and Tisseur: for D of what
+  !! the contact forces open gaps by, body by body, which is taken from the deformation, and of travels.
+  type :: sensitivity_probe
+    !> What a first solve has for the two columns; not allocated: nothing is known [pairs, 2]
+    real(wp), allocatable :: first(:, :)
+    !> What these sums change of a force, if they are as much off, of the largest
+    real(wp) :: change(2) = 0.0_wp
+  contains
+    procedure, private :: turn
+    procedure :: found
+  end type sensitivity_probe
 
 contains
 
+  !> Find forces under unit loads along motions, then closing gaps, and under the columns of the probe behind
+  !! them. The second solve makes the loads better, and has the columns that the first has led to. If the
+  !! probe knows the first solve, the loads are known.
+  subroutine respond_joined(springs, scene, bodies, problem, state, probe, loads)
+    class(joined_springs), intent(in) :: springs
+    type(planned_model), intent(in) :: scene         !! that was solved
+    class(factored_bodies), intent(inout) :: bodies  !! factored with the set of contacts
+    type(contact_problem), intent(in) :: problem     !! its gaps and motions
+    class(solved_state), intent(in) :: state         !! with some contact
+    type(sensitivity_probe), intent(inout) :: probe
+    type(contact_loads), intent(inout) :: loads      !! motions and shares by which gaps close
+    type(frozen_response) :: found
+    integer, allocatable :: pressed(:)
+    integer :: k, many
+
+    many = size(loads%motion) + size(loads%share, 2)
+    if (allocated(probe%first)) many = 0
+    pressed = pack([(k, k=1, scene%model%pairs)], state%contact%force > 0.0_wp)
+    allocate (found%load(scene%motions%count, many + 2), found%opening(scene%model%pairs, many + 2), &
+              found%force(scene%model%pairs, many + 2), &
+              found%displacement(directions, many + 2, scene%model%nodes), source=0.0_wp)
+    associate (probes => [many + 1, many + 2])
+      if (.not. allocated(probe%first)) then
+        do k = 1, size(loads%motion)
+          found%load(loads%motion(k), k) = 1.0_wp
+        end do
+        found%opening(:, size(loads%motion) + 1:many) = -loads%share
+        found%opening(:, probes) = first_columns(pressed, scene%model%pairs)
+        call found%solve(springs, scene, bodies, at_contact=.true.)
+        probe%first = found%force(:, probes)
+      end if
+      call probe%turn(scene, problem, state, found%opening(:, many + 1:))
+      found%force(:, probes) = 0.0_wp
+      found%displacement(:, probes, :) = 0.0_wp
+      call found%solve(springs, scene, bodies, at_contact=many == 0)
+      probe%change = max(probe%change, &
+                         maxval(abs(found%force(pressed, probes)), dim=1)/maxval(state%contact%force))
+    end associate
+    if (many > 0) call take_response(scene, problem%motion, pressed, found, loads)
+  end subroutine respond_joined
+
+  !> The forces and displacements of the loads; none if motions close the gaps.
+  subroutine take_response(scene, motion, pressed, found, loads)
+    type(planned_model), intent(in) :: scene
+    type(motion_matrix), intent(in) :: motion        !! A
+    integer, intent(in) :: pressed(:)                !! pairs
+    type(frozen_response), intent(inout) :: found
+    type(contact_loads), intent(inout) :: loads
+    integer :: j, many, motions
+
+    motions = size(loads%motion)
+    many = motions + size(loads%share, 2)
+    allocate (loads%shared(scene%motions%count, many - motions))
+    do j = motions + 1, many
+      associate (q => suport_values(scene, found%displacement(:, j, :)))
+        if (gives_way(motion, pressed, found%opening(:, j), q)) found%force(:, j) = 0.0_wp
+        loads%shared(:, j - motions) = -q
+      end associate
+    end do
+    loads%force = found%force(:, :many)
+    loads%displacement = found%displacement(:, :many, :)
+    loads%sound = .true.
+  end subroutine take_response
+
   !> Find forces and displacements under loads and openings in one solve; of what is wrong of forces as far as
-  !> known it leaves a thousandth or less. Springs at SUPORT freedoms bear what known displacements say.
-  subroutine respond_joined(self, scene, bodies, found, at_contact)
-    type(joined_contact), intent(in) :: self
+  !! known it leaves a thousandth or less. Springs at SUPORT freedoms bear what known displacements say.
+  subroutine solve(found, springs, scene, bodies, at_contact)
+    class(frozen_response), intent(inout) :: found
+    class(joined_springs), intent(in) :: springs
     type(planned_model), intent(in) :: scene
     class(factored_bodies), intent(inout) :: bodies !! factored with the set of contacts
-    type(frozen_response), intent(inout) :: found
     logical, intent(in) :: at_contact               !! only displacements that gaps depend on are wanted
     type(force_fields) :: loads
     integer :: k
@@ -41,24 +128,104 @@ contains
     associate (force => found%force, u => found%displacement)
       allocate (loads%force(directions, size(force, 2), size(loads%node)))
       do k = 1, size(force, 2)
-        where (self%closed) force(:, k) = force(:, k) - self%gamma*found%opening(:, k)
-        loads%force(:, k, :) = pair_forces(scene%model, merge(force(:, k), 0.0_wp, self%closed))
-        call add_suport_forces(scene, found%load(:, k) + self%hold*suport_values(scene, u(:, k, :)), &
+        where (springs%closed) force(:, k) = force(:, k) - springs%gamma*found%opening(:, k)
+        loads%force(:, k, :) = pair_forces(scene%model, merge(force(:, k), 0.0_wp, springs%closed))
+        call add_suport_forces(scene, found%load(:, k) + springs%hold*suport_values(scene, u(:, k, :)), &
                                loads%force(:, k, :))
       end do
       ! Angles come from the nodes of their RBE2.
       call bodies%body_displacements(scene, 1, loads, loads%node, u, &
                                      at_contact .and. all(scene%motions%component /= angle))
       do k = 1, size(force, 2)
-        where (self%closed) force(:, k) = force(:, k) - self%gamma*gap_opening(scene%model, u(:, k, :))
+        where (springs%closed) force(:, k) = force(:, k) - springs%gamma*gap_opening(scene%model, u(:, k, :))
       end do
     end associate
-  end subroutine respond_joined
+  end subroutine solve
+
+  !> Equal parts, and the alternating column that finds what they cancel [pairs, 2].
+  pure function first_columns(pressed, pairs) result(x)
+    integer, intent(in) :: pressed(:), pairs   !! those with a force, and how many there are in all
+    real(wp) :: x(pairs, 2)
+    integer :: k
+
+    x = 0.0_wp
+    x(pressed, 1) = 1.0_wp/size(pressed)
+    x(pressed, 2) = [((1 - 2*mod(k, 2))*(1.0_wp + (k - 1.0_wp)/size(pressed)), k=1, size(pressed))]
+    x(:, 2) = x(:, 2)/sum(abs(x(:, 2)))
+  end function first_columns
+
+  !> What the first solve has told of the norms, and for each of them the column that is next: of M'D the
+  !! largest entry is a bound, too.
+  subroutine turn(self, scene, problem, state, x)
+    class(sensitivity_probe), intent(inout) :: self
+    type(planned_model), intent(in) :: scene
+    type(contact_problem), intent(in) :: problem
+    class(solved_state), intent(in) :: state
+    real(wp), intent(out) :: x(:, :)
+    !> Sums that the gaps come from, of deformations and of travels [length]
+    real(wp) :: sums(scene%model%pairs, 2)
+    real(wp) :: of_column(2, 2)   ! by sums and columns
+    integer :: k
+
+    associate (contact => state%contact)
+      sums(:, 1) = terms_of_openings(scene%model, state%deformation)
+      sums(:, 2) = abs(problem%initial_gap) + problem%motion%times(contact%approach, magnitudes=.true.)
+      where (spread(contact%force <= 0.0_wp, 2, 2)) sums = 0.0_wp
+      of_column = matmul(transpose(sums), abs(self%first))/maxval(contact%force)
+    end associate
+    self%change = maxval(of_column, dim=2)
+    do k = 1, 2
+      x(:, k) = sums(:, k)*sign(1.0_wp, self%first(:, maxloc(of_column(k, :), dim=1)))
+    end do
+  end subroutine turn
+
+  !> How much errors change the forces. What the last step of the contact has not changed is right, but for
+  !! the sums that gaps come from.
+  pure type(contact_sensitivity) function found(self, condition, correction)
+    class(sensitivity_probe), intent(in) :: self
+    real(wp), intent(in) :: condition    !! of the stiffness
+    real(wp), intent(in) :: correction   !! of forces by the last step, of the largest
+
+    associate (off => epsilon(1.0_wp)*self%change)
+      found = contact_sensitivity(.true., self%change(1), &
+        min(1.0_wp, min(condition*off(1), correction + off(1)) + off(2)))
+    end associate
+  end function found
+
+  !> Do motions open the gaps of the pressed pairs so? Then no forces come of it. Of many motions those that
+  !! the solve has led to are looked at; of few their part is taken off by Gram and Schmidt's way, twice,
+  !! against rounding.
+  logical function gives_way(motion, pressed, opening, q)
+    type(motion_matrix), intent(in) :: motion          !! A
+    integer, intent(in) :: pressed(:)                  !! pairs
+    real(wp), intent(in) :: opening(:), q(:)           !! [pairs], [motions]
+    real(wp), allocatable :: closing(:, :), rest(:)
+    real(wp) :: all_pairs(size(opening)), length
+    integer :: i, k, turn
+
+    all_pairs = opening - motion%times(q)
+    rest = all_pairs(pressed)
+    gives_way = norm2(rest) <= as_motions*norm2(opening(pressed))
+    if (size(q) > few_motions) return
+    closing = motion%rows(pressed)
+    do k = 1, size(closing, 2)
+      length = norm2(closing(:, k))
+      do turn = 1, 2
+        do i = 1, k - 1
+          closing(:, k) = closing(:, k) - dot_product(closing(:, i), closing(:, k))*closing(:, i)
+        end do
+      end do
+      if (norm2(closing(:, k)) <= solved_to*length) closing(:, k) = 0.0_wp
+      if (any(closing(:, k) /= 0.0_wp)) closing(:, k) = closing(:, k)/norm2(closing(:, k))
+      rest = rest - dot_product(closing(:, k), rest)*closing(:, k)
+    end do
+    gives_way = norm2(rest) <= solved_to*norm2(opening(pressed))
+  end function gives_way
 
   !> Are the contact forces the only ones? Forces that open no gaps are what a solve leaves of any; of two
   !! that are given no one is likely to have none of these.
-  logical function are_unique(self, scene, bodies)
-    type(joined_contact), intent(inout) :: self
+  logical function are_unique(springs, scene, bodies)
+    class(joined_springs), intent(in) :: springs
     type(planned_model), intent(in) :: scene
     class(factored_bodies), intent(in) :: bodies    !! factored with the set of contacts
     type(half_solved_body), allocatable :: half(:)
@@ -66,14 +233,12 @@ contains
     integer :: j, k
 
     are_unique = .true.
-    if (self%unique) return   ! as in the load case before
     do j = 1, 2
-      force = merge(cos([(k*sqrt(real(j, wp)), k=1, size(force))]), 0.0_wp, self%closed)
+      force = merge(cos([(k*sqrt(real(j, wp)), k=1, size(force))]), 0.0_wp, springs%closed)
       if (j > 1) deallocate (half)
       call bodies%add_forces(scene, pair_forces(scene%model, force), 0.0_wp, half)
-      force = force - self%gamma*gap_opening(scene%model, bodies%finish(scene, half, 0.0_wp, .true.))
-      are_unique = are_unique .and. all(abs(force) <= most_left .or. .not. self%closed)
+      force = force - springs%gamma*gap_opening(scene%model, bodies%finish(scene, half, 0.0_wp, .true.))
+      are_unique = are_unique .and. all(abs(force) <= most_left .or. .not. springs%closed)
     end do
-    self%unique = are_unique
   end function are_unique
 end module epcont_linear_joined_response

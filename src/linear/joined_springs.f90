@@ -7,13 +7,14 @@ module epcont_linear_joined_springs
   use epcont_model_ties, only: add_moment, platen_angle
   use epcont_plan_numbering, only: most_freedoms
   use epcont_plan_planned_model, only: planned_model
+  use epcont_system_stopwatch, only: stage_contact, stage_factor, stopwatch
   implicit none
   private
-  public :: add_suport_forces, find_springs, hold_suports, suport_values
+  public :: add_suport_forces, joined_springs, new_springs, suport_values
 
   !> Stiffness of a spring over that of the softer body at its pair. A step leaves 1E-3 of the gaps, mostly
   !! 1E-4; more would cost digits of the factor, of which steps bring back as many each.
-  real(wp), parameter, public :: of_pairs = 1.0e3_wp
+  real(wp), parameter :: of_pairs = 1.0e3_wp
   !> And of a SUPORT freedom, over the largest of a node of the softest body, which may be all that holds its
   !! own: so weak that steps hardly feel it, and unit loads not at all.
   real(wp), parameter :: of_suport = 1.0e-9_wp
@@ -21,36 +22,101 @@ module epcont_linear_joined_springs
   real(wp), parameter :: least_pivot = 1.0e-13_wp
   !> What a half-plane gives way by at a force on a node of its boundary, against what is a hundred sides
   !! below it (2 ln(200)/pi), over what the node's own stiffness would let it.
-  real(wp), parameter, public :: half_plane = 3.4_wp
+  real(wp), parameter :: half_plane = 3.4_wp
+  !> So much stiffer are springs of SUPORT freedoms where rounding has left no pivot of a body that no pair
+  !! holds, as often as that may help: they change no answer.
+  real(wp), parameter :: stiffer = 1.0e3_wp
+  integer, parameter :: most_stiffened = 2
+  !> And so much stiffer are those of pairs where stiff bodies bear each other by soft ones: some pairs give
+  !! way by far less than their softer side there.
+  real(wp), parameter :: firmer = 100.0_wp
+
+  !> Springs of a joined system.
+  type :: joined_springs
+    real(wp), allocatable :: gamma(:)      !! of the pairs [force/length] [pairs]
+    real(wp), allocatable :: hold(:)       !! of SUPORT freedoms [force/length] [motions]
+    logical, allocatable :: closed(:)      !! pairs whose springs are to be in the factor [pairs]
+    !> What a pair gives way by under a force of its own, about [length/force] [pairs]
+    real(wp), allocatable :: compliance(:)
+    integer, private :: stiffened = 0      !! how often gamma has grown
+    logical :: unique = .false.            !! forces are found to be, with the factor that there is
+  contains
+    procedure :: factor
+    procedure :: make_firmer
+  end type joined_springs
 
 contains
 
+  !> Factor the bodies with the springs of the pairs in contact, as far as law or springs have changed.
+  subroutine factor(self, scene, bodies, threads, sound, watch)
+    class(joined_springs), intent(inout) :: self
+    type(planned_model), intent(in) :: scene
+    class(factored_bodies), intent(inout) :: bodies
+    integer, intent(in) :: threads               !! that share the fronts
+    logical, intent(out) :: sound                !! the factor can be solved with
+    class(stopwatch), intent(inout) :: watch     !! takes the time
+    real(wp) :: wanted(scene%model%pairs)
+    integer :: k
+
+    wanted = merge(self%gamma, 0.0_wp, self%closed)
+    associate (stiffness => bodies%spring%stiffness(:size(wanted)), &
+               changed => bodies%spring%changed(:size(wanted)))
+      changed = changed .or. abs(stiffness - wanted) > 0.0_wp
+      stiffness = wanted
+    end associate
+    if (any(bodies%spring%changed) .or. any(bodies%law%changed)) then
+      call watch%lap(stage_contact)
+      call bodies%factor_system(scene, threads)
+      do k = 1, most_stiffened
+        if (bodies%body(1)%is_sound() .or. bodies%body(1)%lacks_memory .or. size(self%hold) == 0) exit
+        self%hold = stiffer*self%hold
+        call hold_suports(scene, self%hold, bodies)
+        call bodies%factor_system(scene, threads)
+      end do
+      self%unique = .false.
+      call watch%lap(stage_factor)
+    end if
+    sound = bodies%body(1)%is_sound()
+  end subroutine factor
+
+  !> Make the springs of pairs firmer, if that may still help.
+  subroutine make_firmer(self, done)
+    class(joined_springs), intent(inout) :: self
+    logical, intent(out) :: done
+
+    done = self%stiffened < most_stiffened
+    if (.not. done) return
+    self%stiffened = self%stiffened + 1
+    self%gamma = firmer*self%gamma
+  end subroutine make_firmer
+
   !> Springs of SUPORT freedoms, in the factor from now on, and of pairs, in it where these press. What
   !! nothing resists is held as firmly as its node.
-  subroutine find_springs(scene, bodies, redundant, gamma, hold)
+  subroutine new_springs(scene, bodies, redundant, new)
     type(planned_model), intent(in) :: scene          !! numbered as one system
     class(factored_bodies), intent(inout) :: bodies   !! with a law
     logical, intent(in) :: redundant(:)               !! nothing resists the motion [motions]
-    real(wp), allocatable, intent(out) :: gamma(:)    !! [force/length] [pairs]
-    real(wp), allocatable, intent(out) :: hold(:)     !! of SUPORT freedoms [force/length] [motions]
+    type(joined_springs), intent(out) :: new          !! all pairs closed
     real(wp) :: softest, stiffness(scene%model%nodes)
     integer :: k, springs
 
     call measure(scene, bodies, stiffness, bodies%spring%norm)
     softest = stiffness_of_softest()
-    gamma = [(of_pairs*softer_side(k), k=1, scene%model%pairs)]
-    where (gamma <= 0.0_wp) gamma = of_pairs*softest   ! nothing gives way: no entry in the matrix
+    new%gamma = [(of_pairs*softer_side(k), k=1, scene%model%pairs)]
+    where (new%gamma <= 0.0_wp) new%gamma = of_pairs*softest   ! nothing gives way: no entry in the matrix
     springs = size(scene%numbering%body(1)%spring%start) - 1
     bodies%spring%stiffness = [spread(0.0_wp, 1, springs - size(scene%model%spring)), &
                                scene%model%spring%stiffness]
     bodies%spring%changed = spread(.true., 1, springs)
     associate (own => stiffness(scene%motions%node))
-      hold = merge(own, max(of_suport*softest, least_pivot*own), redundant)
+      new%hold = merge(own, max(of_suport*softest, least_pivot*own), redundant)
     end associate
-    do k = 1, size(hold)
-      if (scene%motions%component(k) == angle) hold(k) = hold(k)*longest_arm(scene, k)**2
+    do k = 1, size(new%hold)
+      if (scene%motions%component(k) == angle) new%hold(k) = new%hold(k)*longest_arm(scene, k)**2
     end do
-    call hold_suports(scene, hold, bodies)
+    call hold_suports(scene, new%hold, bodies)
+    new%compliance = half_plane*of_pairs/new%gamma
+    new%closed = spread(.true., 1, scene%model%pairs)
 
   contains
 
@@ -86,7 +152,7 @@ contains
       end associate
       if (softer >= huge(1.0_wp)) softer = 0.0_wp
     end function softer_side
-  end subroutine find_springs
+  end subroutine new_springs
 
   !> Have the springs of SUPORT freedoms in the next factor.
   subroutine hold_suports(scene, hold, bodies)

@@ -1,4 +1,4 @@
-!> How far to go along a step of joined bodies (`linear/joined_contact.f90`), and whether it is the last.
+!> How far to go along a step of joined bodies (`linear/joined_search.f90`), and whether it is the last.
 module epcont_linear_line_search
   use epcont_base_bracket, only: bracket
   use epcont_base_kinds, only: wp

@@ -1,4 +1,4 @@
-!> Numbers of the equations of all bodies as one system, where pairs join them (`linear/joined_contact.f90`).
+!> Numbers of the equations of all bodies as one system, where pairs join them (`linear/joined_rule.f90`).
 !> SUPORT freedoms have equations too, and what gaps depend on stands where the dissection has it.
 !>
 !> A spring of this system is one of a pair, of a SUPORT freedom or of the scene: a row of weights, whose

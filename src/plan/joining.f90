@@ -1,4 +1,4 @@
-!> Whether contact joins all bodies to one system (`linear/joined_contact.f90`), or is found from the
+!> Whether contact joins all bodies to one system (`linear/joined_rule.f90`), or is found from the
 !> flexibility of each: of few pairs that takes less, of many much more.
 module epcont_plan_joining
   use epcont_base_incidence, only: incidence, new_incidence

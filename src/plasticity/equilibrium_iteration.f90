@@ -92,7 +92,7 @@ contains
     end if
     associate (linear => self%linear, model => scene%model)
       self%factored_before = linear%factorizations
-      linear%borne%keeps = self%keeps .and. .not. linear%materials%yields
+      linear%rule%keeps = self%keeps .and. .not. linear%materials%yields
       if (allocated(linear%materials%committed)) deallocate (linear%materials%committed)   ! of another case
       allocate (self%about%displacement(directions, model%nodes), source=0.0_wp)
       allocate (self%about%strain(components, model%points), source=0.0_wp)

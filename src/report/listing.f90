@@ -199,8 +199,8 @@ contains
     associate (contact => run%answer%contact)
       text = '  '//plural(contact%pivots, 'pivot')//', '//text_of(contact%degenerate_pivots)// &
              ' degenerate'
-      if (contact%joined) text = '  joined bodies: '//plural(contact%joined_steps, 'set')//', '// &
-                                 plural(contact%pivots, 'exchange')//' of pairs'
+      if (contact%sets > 0) text = '  joined bodies: '//plural(contact%sets, 'set')//', '// &
+                                   plural(contact%pivots, 'exchange')//' of pairs'
       call listing%line(text//when(size(run%answer%history) > 1, ', in the last solve'))
       if (size(contact%history) > 0) call put_table(run, 'pivots', listing)
       if (size(contact%history) > 0 .and. contact%pivots > size(contact%history)) &

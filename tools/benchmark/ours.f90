@@ -108,7 +108,7 @@ contains
     call solve_once(spent)
     spent(all_stages) = sum(spent(ordering:displacing))
     begun = now()
-    call bodies%estimate_condition(scene, condition)
+    call bodies%estimate_condition(condition)
     spent(conditioning) = lap()
     do k = 1, further
       call solve_once(again)

@@ -1,0 +1,196 @@
+!> RULE JOINED: all bodies are one sparse system, and their contact is found without a flexibility matrix. Of
+!> many pairs that takes longest.
+module epcont_linear_joined_rule
+  use epcont_assembly_bodies, only: factored_bodies
+  use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: lost_digits, negligible
+  use epcont_contact_equilibrium, only: find_rigid_start, rigid_start
+  use epcont_contact_problem, only: contact_no_equilibrium, contact_solved, new_solution
+  use epcont_contact_uniqueness, only: find_undetermined_motions
+  use epcont_element_kinematics, only: directions
+  use epcont_flexibility_flexibility, only: gap_opening, terms_of_openings
+  use epcont_linear_contact_rule, only: contact_loads, contact_rule, contact_sensitivity
+  use epcont_linear_joined_response, only: are_unique, respond_joined, sensitivity_probe
+  use epcont_linear_joined_search, only: joined_search
+  use epcont_linear_joined_springs, only: new_springs
+  use epcont_linear_load_line, only: load_line
+  use epcont_linear_solved_state, only: solved_state
+  use epcont_plan_planned_model, only: planned_model
+  use epcont_system_stopwatch, only: stage_contact, stopwatch
+  implicit none
+  private
+  public :: joined_rule
+
+  type, extends(contact_rule) :: joined_rule
+    type(joined_search), private :: search
+    type(load_line), private :: line          !! from whose states the next contact is sought
+    type(rigid_start), private :: rigid       !! whether rigid bodies can carry the loads
+    type(sensitivity_probe), private :: probe
+  contains
+    procedure :: take_case
+    procedure :: factor
+    procedure :: solve
+    procedure :: refine
+    procedure :: is_unique
+    procedure :: respond
+    procedure :: sensitivity
+    procedure :: compliance
+    procedure, private :: settle
+  end type joined_rule
+
+contains
+
+  !> A load case: whether rigid bodies can carry it, and the springs of motions that it does not need held.
+  subroutine take_case(self, scene, bodies)
+    class(joined_rule), intent(inout) :: self
+    type(planned_model), intent(in) :: scene           !! numbered as one system
+    class(factored_bodies), intent(inout) :: bodies    !! with a law; their springs are made
+    logical, allocatable :: redundant(:)               ! of the case before
+
+    self%failed = .false.
+    call self%line%take_load(scene%model%load)
+    if (allocated(self%search%gamma)) redundant = self%rigid%redundant
+    associate (motion => self%problem%motion, unit => self%problem%motion%units())
+      call find_rigid_start(motion%over(unit), self%resultant/unit, spread(0.0_wp, 1, motion%pairs), &
+                            self%rigid)
+    end associate
+    if (.not. self%rigid%balanced) return
+    if (allocated(redundant)) then
+      if (all(redundant .eqv. self%rigid%redundant)) return
+    end if
+    if (allocated(self%line%last)) deallocate (self%line%last)
+    self%search%threads = self%threads
+    self%search%motion = self%problem%motion
+    call new_springs(scene, bodies, self%rigid%redundant, self%search%joined_springs)
+  end subroutine take_case
+
+  !> Factor the bodies with the springs of the set of contacts, as far as law or springs have changed. The
+  !! contact may have another set factored.
+  subroutine factor(self, scene, bodies, failed_body, watch)
+    class(joined_rule), intent(inout) :: self
+    type(planned_model), intent(in) :: scene
+    class(factored_bodies), intent(inout) :: bodies
+    integer, intent(out) :: failed_body
+    class(stopwatch), intent(inout) :: watch
+    logical :: sound
+
+    if (bodies%factorizations == 0) call self%take_case(scene, bodies)   ! springs are those of the first law
+    sound = .true.
+    if (self%rigid%balanced) call self%search%factor(scene, bodies, self%threads, sound, watch)
+    failed_body = merge(0, 1, sound)
+  end subroutine factor
+
+  !> Find deformation, approach and contact forces. `failed` where there are none, or motions are neutral.
+  subroutine solve(self, scene, bodies, load_factor, start, state, watch)
+    class(joined_rule), intent(inout) :: self
+    type(planned_model), intent(in) :: scene
+    class(factored_bodies), intent(inout) :: bodies
+    real(wp), intent(in) :: load_factor
+    logical, allocatable, intent(in) :: start(:)
+    type(solved_state), intent(inout) :: state
+    class(stopwatch), intent(inout) :: watch
+
+    associate (search => self%search, motion => self%problem%motion)
+      search%load_factor = load_factor
+      search%fixed_gap = self%problem%initial_gap + load_factor*self%travel_gap
+      if (allocated(self%line%last)) then
+        state = self%line%next()
+        associate (opened => search%fixed_gap + gap_opening(scene%model, state%deformation) - &
+                             motion%times(state%contact%approach))
+          if (any(state%contact%force > search%gamma*opened .neqv. search%closed)) state = self%line%last
+        end associate
+      else
+        allocate (state%deformation(directions, scene%model%nodes), source=0.0_wp)
+        state%contact = new_solution(scene%model%pairs, scene%motions%count)
+      end if
+      if (.not. self%rigid%balanced) then
+        state%contact%state = contact_no_equilibrium
+        state%contact%escape = self%rigid%escape/motion%units()
+        return
+      end if
+      call search%find_set(scene, bodies, self%rigid%redundant, allocated(self%line%last), state, watch)
+    end associate
+    if (state%contact%state == contact_solved) then
+      call self%settle(scene, state)
+      call self%line%keep(state)
+    else
+      self%failed = .true.
+    end if
+    call watch%lap(stage_contact)
+  end subroutine solve
+
+  !> What follows from the forces and gaps that were found: which pairs touch, and which motions are free.
+  subroutine settle(self, scene, state)
+    class(joined_rule), intent(in) :: self
+    type(planned_model), intent(in) :: scene
+    type(solved_state), intent(inout) :: state
+    real(wp) :: terms(scene%model%pairs)   ! what gaps are the sum of
+
+    associate (contact => state%contact, motion => self%problem%motion)
+      where (contact%force <= negligible*maxval([contact%force, 0.0_wp])) contact%force = 0.0_wp
+      where (motion%sizes() <= 0.0_wp) contact%approach = 0.0_wp
+      terms = abs(self%search%fixed_gap) + terms_of_openings(scene%model, state%deformation) + &
+              motion%times(contact%approach, magnitudes=.true.)
+      contact%touching = contact%force > 0.0_wp .or. contact%gap <= negligible*terms
+      where (contact%touching) contact%gap = 0.0_wp
+      contact%motion_free = find_undetermined_motions(motion%over(motion%units()), contact%touching, &
+          contact%force > lost_digits*maxval([contact%force, 0.0_wp]))
+    end associate
+  end subroutine settle
+
+  !> There is nothing to gain: the steps of `solve` end where nothing changes.
+  subroutine refine(self, scene, bodies, load_factor, state, refined, watch)
+    class(joined_rule), intent(inout) :: self
+    type(planned_model), intent(in) :: scene
+    class(factored_bodies), intent(in) :: bodies
+    real(wp), intent(in) :: load_factor
+    type(solved_state), intent(inout) :: state
+    logical, intent(out) :: refined
+    class(stopwatch), intent(inout) :: watch
+
+    refined = .false.
+  end subroutine refine
+
+  !> Are the contact forces the only ones? If not, the solution cannot say which ones are indeterminate.
+  logical function is_unique(self, scene, bodies)
+    class(joined_rule), intent(inout) :: self
+    type(planned_model), intent(in) :: scene
+    class(factored_bodies), intent(in) :: bodies
+
+    ! Those of the load case before may have had the same factor.
+    if (.not. self%search%unique) self%search%unique = are_unique(self%search, scene, bodies)
+    is_unique = self%search%unique
+  end function is_unique
+
+  !> Find forces and displacements under unit loads.
+  subroutine respond(self, scene, bodies, state, loads, known)
+    class(joined_rule), intent(inout), target :: self
+    type(planned_model), intent(in) :: scene
+    class(factored_bodies), intent(inout) :: bodies
+    class(solved_state), intent(in) :: state
+    type(contact_loads), intent(inout) :: loads
+    logical, intent(in) :: known
+    type(sensitivity_probe) :: none
+
+    if (.not. known) self%probe = none
+    call respond_joined(self%search, scene, bodies, self%problem, state, self%probe, loads)
+  end subroutine respond
+
+  !> How much errors of the stiffness and of the gaps change the contact forces.
+  function sensitivity(self, state, condition) result(found)
+    class(joined_rule), intent(inout), target :: self
+    class(solved_state), intent(in) :: state
+    real(wp), intent(in) :: condition
+    type(contact_sensitivity) :: found
+
+    found = self%probe%found(condition, self%search%correction)
+  end function sensitivity
+
+  !> What a half-plane gives way by at each pair.
+  pure function compliance(self)
+    class(joined_rule), intent(in) :: self
+    real(wp), allocatable :: compliance(:)
+
+    compliance = self%search%compliance
+  end function compliance
+end module epcont_linear_joined_rule

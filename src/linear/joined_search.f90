@@ -1,0 +1,335 @@
+!> Search for the contact of bodies that are one system, without their flexibility.
+!>
+!> With forces lambda that are known, gaps g(u) and a spring of stiffness gamma at each pair,
+!>
+!>     K u = f + N'R,   R = max(lower, min(upper, lambda - gamma g(u)))
+!>
+!> has one solution, where a convex function of u is least; for lambda = R it is that of the contact. Newton
+!> steps have the springs of the pairs whose force is between its bounds, the active set (Hintermueller, Ito
+!> and Kunisch 2002). Where a step does not change the set, lambda follows R, and gaps that are left fall by
+!> gamma times the flexibility, thousands, with each step: of gamma nothing is left in the answer. SUPORT
+!> freedoms have springs, too, so weak that they matter where no pair holds a body yet; each step has them
+!> where it begins.
+!>
+!> Lambda waits until the set stays: each step is one of that function, cut where full ones run in circles.
+module epcont_linear_joined_search
+  use epcont_assembly_bodies, only: factored_bodies, half_solved_body, prescribe
+  use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: lost_digits, negligible, valid_to
+  use epcont_contact_problem, only: contact_solved, contact_stalled
+  use epcont_contact_uniqueness, only: find_undetermined_motions
+  use epcont_element_kinematics, only: directions
+  use epcont_flexibility_flexibility, only: gap_opening, pair_forces
+  use epcont_flexibility_motion_matrix, only: motion_matrix
+  use epcont_linear_contact_ends, only: reach_ends
+  use epcont_linear_joined_path, only: joined_path
+  use epcont_linear_joined_springs, only: add_suport_forces, joined_springs, suport_values
+  use epcont_linear_line_search, only: has_settled, least_at, part_of_largest
+  use epcont_linear_solved_state, only: solved_state
+  use epcont_model_springs, only: spring_forces
+  use epcont_plan_planned_model, only: planned_model
+  use epcont_system_stopwatch, only: stopwatch
+  implicit none
+  private
+  public :: joined_search
+
+  !> Full steps; then an interior path leads to a set, which is held for some steps, and cut steps follow.
+  !! Most models take 1 to 10 steps.
+  integer, parameter :: full_steps = 12, held_steps = 4, step_limit = 200
+  !> Springs of pairs become firmer if a step leaves more than this part of what is wrong of forces.
+  real(wp), parameter :: slow = 0.1_wp
+  !> Forces that change by no more are good enough for displacements to follow: two steps are to come.
+  real(wp), parameter :: nearly = 1.0e-3_wp
+
+  !> While the set changes, only what pairs and SUPORT freedoms do is solved for; where it stays, all
+  !! displacements, from those of the state, whose rounding is all that the answer has.
+  type, extends(joined_springs) :: joined_search
+    integer :: threads = 1                         !! that share the fronts
+    type(motion_matrix) :: motion                  !! A, closing of the gaps by the rigid-body modes
+    real(wp) :: load_factor = 0.0_wp               !! of the loads
+    real(wp), allocatable :: fixed_gap(:)          !! initial gap and prescribed part of it [length] [pairs]
+    real(wp) :: correction = huge(1.0_wp)          !! of forces by the last step, of the largest
+    !> Forces in balance; gaps; a step adds to them [pairs]
+    real(wp), allocatable, private :: borne(:), gap(:), opening(:)
+    real(wp), allocatable, private :: pull(:)      !! lambda - gamma g [force] [pairs]
+    !> Forces that the springs of SUPORT freedoms bear, and what a step moves these by [motions]
+    real(wp), allocatable, private :: held(:), moved(:)
+    !> Residual at the displacements of the state, and a step from there [directions, nodes]
+    real(wp), allocatable, private :: unbalanced(:, :), step(:, :)
+    logical, allocatable, private :: wanted(:)     !! the next set [pairs]
+    real(wp), private :: change(2)                 !! of forces and strains in this step
+    integer, private :: taken = 0                  !! steps
+    integer, private :: last_held = 0              !! steps until signs are judged again
+    logical, private :: stays = .false.            !! the set, and lambda follows
+    logical, private :: whole = .false.            !! the step is one of all displacements
+    !> It is from the state, all forces that are not in balance there being new
+    logical, private :: afresh = .false.
+  contains
+    procedure :: find_set
+    procedure, private :: begin
+    procedure, private :: begin_set
+    procedure, private :: begin_at_state
+    procedure, private :: begin_afresh
+    procedure, private :: balance
+    procedure, private :: lead_to_set
+    procedure, private :: find_wanted
+    procedure, private :: choose_set
+    procedure, private :: find_step
+    procedure, private :: length_of_step
+    procedure, private :: take_step
+    procedure, private :: take_displacements
+    procedure, private :: judge
+  end type joined_search
+
+contains
+
+  !> Newton steps to the set of contacts and its forces.
+  subroutine find_set(self, scene, bodies, redundant, knows_set, state, watch)
+    class(joined_search), intent(inout) :: self
+    type(planned_model), intent(in) :: scene
+    class(factored_bodies), intent(inout) :: bodies
+    logical, intent(in) :: redundant(:)           !! nothing resists the motion [motions]
+    logical, intent(in) :: knows_set              !! the state is near the answer
+    type(solved_state), intent(inout) :: state
+    class(stopwatch), intent(inout) :: watch
+    real(wp) :: before(2), length
+    logical :: sound
+
+    call self%begin(scene, bodies, redundant, knows_set, state)
+    do
+      self%taken = self%taken + 1
+      if (self%taken > step_limit) exit
+      if (self%taken == full_steps) call self%lead_to_set(scene, bodies, state)
+      call self%factor(scene, bodies, self%threads, sound, watch)
+      if (.not. sound) exit
+      call self%find_step(scene, bodies)
+      before = self%change
+      length = 1.0_wp
+      if (self%taken >= full_steps + held_steps .and. .not. self%whole) length = self%length_of_step()
+      call self%take_step(length, state)
+      if (self%stays .and. self%whole) call self%judge(scene, bodies, before, state)
+      if (state%contact%state == contact_solved) exit
+      self%whole = self%stays .and. (self%whole .or. self%change(1) <= nearly .or. &
+                                     self%change(1) > 0.5_wp*before(1))
+      if (self%whole) call self%begin_at_state(scene, state)
+      if (self%stays) cycle
+      self%change = huge(1.0_wp)
+      if (self%taken < full_steps) call reach_ends(self%closed, self%wanted)
+      call self%choose_set(state)
+    end do
+    state%contact%gap = self%gap
+    deallocate (self%unbalanced)
+    if (allocated(self%step)) deallocate (self%step)
+  end subroutine find_set
+
+  !> The state that the search begins at, and the first set.
+  subroutine begin(self, scene, bodies, redundant, knows_set, state)
+    class(joined_search), intent(inout) :: self
+    type(planned_model), intent(in) :: scene
+    class(factored_bodies), intent(in) :: bodies
+    logical, intent(in) :: redundant(:), knows_set
+    type(solved_state), intent(inout) :: state
+
+    state%contact%state = contact_stalled
+    state%contact%pivots = 0
+    state%contact%sets = 0
+    self%taken = 0
+    self%last_held = 0
+    call prescribe(scene, self%load_factor, state%deformation)
+    state%strain = bodies%operator%strains(scene%model, state%deformation, self%load_factor)
+    call self%balance(scene, bodies, state)
+    call self%begin_at_state(scene, state)
+    call self%begin_afresh()
+    call self%find_wanted(state%contact%force)
+    if (knows_set) call self%choose_set(state)
+    if (.not. knows_set) call self%begin_set(redundant)
+  end subroutine begin
+
+  !> The first set: pairs that are as near as contact may give way, and overlap, if they hold all motions;
+  !! else all pairs. Those that are far apart would bend bodies into each other.
+  subroutine begin_set(self, redundant)
+    class(joined_search), intent(inout) :: self
+    logical, intent(in) :: redundant(:)
+    logical :: near(size(self%gap))
+
+    near = self%gap <= maxval(self%compliance)*maxval(sum(abs(self%unbalanced), dim=2)) - &
+           min(0.0_wp, minval(self%gap))
+    associate (free => find_undetermined_motions(self%motion%over(self%motion%units()), near, near))
+      if (all(free .eqv. redundant)) self%closed = near
+    end associate
+  end subroutine begin_set
+
+  !> The next step begins at the state.
+  subroutine begin_at_state(self, scene, state)
+    class(joined_search), intent(inout) :: self
+    type(planned_model), intent(in) :: scene
+    type(solved_state), intent(in) :: state
+
+    self%gap = self%fixed_gap + gap_opening(scene%model, state%deformation) - &
+               self%motion%times(state%contact%approach)
+    self%pull = state%contact%force - self%gamma*self%gap
+  end subroutine begin_at_state
+
+  !> Nothing is known of the steps to come.
+  subroutine begin_afresh(self)
+    class(joined_search), intent(inout) :: self
+
+    self%afresh = .true.
+    self%whole = .false.
+    self%change = huge(1.0_wp)
+    self%borne = 0.0_wp*self%gap
+    self%held = 0.0_wp*self%hold
+  end subroutine begin_afresh
+
+  !> The residual at the state.
+  subroutine balance(self, scene, bodies, state)
+    class(joined_search), intent(inout) :: self
+    type(planned_model), intent(in) :: scene
+    class(factored_bodies), intent(in) :: bodies
+    type(solved_state), intent(in) :: state
+
+    self%unbalanced = self%load_factor*scene%model%load - &
+                      bodies%operator%nodal_forces(scene%model, bodies%law%stress(state%strain)) - &
+                      spring_forces(scene%model, state%deformation)
+  end subroutine balance
+
+  !> Full steps run in circles, as where contacts open or bodies rock: an interior path leads near the set.
+  subroutine lead_to_set(self, scene, bodies, state)
+    class(joined_search), intent(inout) :: self
+    type(planned_model), intent(in) :: scene
+    class(factored_bodies), intent(inout) :: bodies
+    type(solved_state), intent(inout) :: state
+    type(joined_path) :: path
+
+    call self%begin_at_state(scene, state)
+    call self%begin_afresh()
+    path = joined_path(self%gap, self%unbalanced, self%gamma, self%compliance)
+    call path%follow(scene, self%threads, bodies)
+    state%contact%force = path%force
+    state%contact%sets = state%contact%sets + path%steps
+    self%closed = path%closed
+    self%unique = .false.
+    self%last_held = self%taken + held_steps - 1
+    self%pull = state%contact%force - self%gamma*self%gap
+  end subroutine lead_to_set
+
+  !> The pairs that press; those that do so by rounding alone keep their state.
+  subroutine find_wanted(self, force)
+    class(joined_search), intent(inout) :: self
+    real(wp), intent(in) :: force(:)     !! so far [pairs]
+
+    self%wanted = self%pull > 0.0_wp
+    where (abs(self%pull) <= negligible*maxval([abs(force), tiny(1.0_wp)])) self%wanted = self%closed
+  end subroutine find_wanted
+
+  !> The next set has the pairs that press.
+  subroutine choose_set(self, state)
+    class(joined_search), intent(inout) :: self
+    type(solved_state), intent(inout) :: state
+
+    state%contact%pivots = state%contact%pivots + count(self%wanted .neqv. self%closed)
+    self%closed = self%wanted
+  end subroutine choose_set
+
+  !> What is out of balance is solved for: after a step that of pairs and moved SUPORT freedoms alone.
+  subroutine find_step(self, scene, bodies)
+    class(joined_search), intent(inout) :: self
+    type(planned_model), intent(in) :: scene
+    class(factored_bodies), intent(in) :: bodies
+    type(half_solved_body), allocatable :: half(:)
+    real(wp) :: force(directions, scene%model%nodes)
+
+    if (self%whole .or. self%afresh) then
+      force = self%unbalanced + pair_forces(scene%model, merge(self%pull, 0.0_wp, self%closed))
+    else
+      force = pair_forces(scene%model, merge(self%pull, 0.0_wp, self%closed) - self%borne)
+    end if
+    call add_suport_forces(scene, self%held, force)
+    self%afresh = .false.
+    call bodies%add_forces(scene, force, 0.0_wp, half)
+    self%step = bodies%finish(scene, half, 0.0_wp, at_contact=.not. self%whole)
+    self%opening = gap_opening(scene%model, self%step)
+    self%moved = suport_values(scene, self%step)
+  end subroutine find_step
+
+  !> How much of a step makes the function least.
+  real(wp) function length_of_step(self) result(length)
+    class(joined_search), intent(in) :: self
+    real(wp) :: curvature, descent
+
+    descent = sum(self%held*self%moved) - sum(self%borne*self%opening)
+    curvature = descent + sum((self%pull - self%gamma*self%opening)*self%opening, mask=self%closed) - &
+                sum(self%hold*self%moved**2)
+    length = least_at(max(0.0_wp, curvature), descent, self%pull, self%gamma*self%opening, self%opening)
+  end function length_of_step
+
+  !> Go along a step; lambda follows a full one with the same set, but the first of all displacements.
+  subroutine take_step(self, length, state)
+    class(joined_search), intent(inout) :: self
+    real(wp), intent(in) :: length       !! part of the step
+    type(solved_state), intent(inout) :: state
+    real(wp), allocatable :: next(:)
+
+    state%contact%sets = state%contact%sets + 1
+    associate (force => state%contact%force)
+      self%borne = (1.0_wp - length)*self%borne + &
+                   length*merge(force - self%gamma*(self%gap + self%opening), 0.0_wp, self%closed)
+      self%held = (1.0_wp - length)*self%held + length*self%hold*self%moved
+      self%gap = self%gap + length*self%opening
+      self%pull = force - self%gamma*self%gap
+      call self%find_wanted(force)
+      if (self%taken <= self%last_held) self%wanted = self%closed
+      self%stays = length >= 1.0_wp .and. all(self%wanted .eqv. self%closed)
+      if (.not. self%stays .or. self%whole .and. self%change(2) > 1.0_wp) return
+      next = merge(self%pull, 0.0_wp, self%closed)
+      self%change(1) = maxval([abs(next - force), 0.0_wp])/maxval([next, tiny(1.0_wp)])
+      force = next
+      self%pull = force - self%gamma*self%gap
+    end associate
+  end subroutine take_step
+
+  !> Displacements follow a whole step. Is the contact found, or must the springs be firmer?
+  subroutine judge(self, scene, bodies, before, state)
+    class(joined_search), intent(inout) :: self
+    type(planned_model), intent(in) :: scene
+    class(factored_bodies), intent(in) :: bodies
+    real(wp), intent(in) :: before(2)             !! change by the step before
+    type(solved_state), intent(inout) :: state
+    logical :: firmer
+
+    call self%take_displacements(scene, bodies, state)
+    if (all(has_settled(self%change, before))) then
+      self%correction = self%change(1)
+      associate (force => state%contact%force)
+        if (self%taken > self%last_held .or. minval(force) >= -valid_to*maxval(force)) &
+          state%contact%state = contact_solved   ! no pair pulls
+      end associate
+      if (state%contact%state == contact_solved) return
+      self%last_held = 0
+    end if
+    if (self%change(1) > max(slow*before(1), lost_digits) .and. before(1) < nearly) then
+      call self%make_firmer(firmer)
+      if (firmer) self%change(1) = huge(1.0_wp)
+    end if
+    call self%balance(scene, bodies, state)
+  end subroutine judge
+
+  !> The displacements follow.
+  subroutine take_displacements(self, scene, bodies, state)
+    class(joined_search), intent(inout) :: self
+    type(planned_model), intent(in) :: scene
+    class(factored_bodies), intent(in) :: bodies
+    type(solved_state), intent(inout) :: state
+    real(wp), allocatable :: strain(:, :)
+
+    call scene%motions%add(scene%model, -self%moved, self%step)
+    strain = bodies%operator%strains(scene%model, self%step, 0.0_wp)
+    state%deformation = state%deformation + self%step
+    state%strain = state%strain + strain
+    state%contact%approach = state%contact%approach + self%moved
+    self%held = 0.0_wp
+    ! Of stiff bodies among soft ones stresses tell what strains do not.
+    self%change(2) = max(part_of_largest(strain, state%strain), &
+                         part_of_largest(bodies%law%increment(strain), bodies%law%stress(state%strain)))
+  end subroutine take_displacements
+end module epcont_linear_joined_search

@@ -1,0 +1,280 @@
+!> RULE CONRY: each body is factored by itself, F is found by inversion, and a simplex finds the contact.
+module epcont_linear_simplex_rule
+  use epcont_assembly_bodies, only: factored_bodies, half_solved_body
+  use epcont_base_kinds, only: wp
+  use epcont_contact_basis, only: contact_basis, renew_basis
+  use epcont_contact_equilibrium, only: find_rigid_start, rigid_start
+  use epcont_contact_problem, only: contact_solution, contact_solved
+  use epcont_contact_scaling, only: diagonal_of, drop_motions, scale_problem, scaled_problem
+  use epcont_contact_solver, only: solve_contact
+  use epcont_flexibility_flexibility, only: gap_opening, pair_forces
+  use epcont_flexibility_motion_matrix, only: dense_motions
+  use epcont_linear_borne_loads, only: borne_loads
+  use epcont_linear_contact_rule, only: contact_loads, contact_rule, contact_sensitivity
+  use epcont_linear_simplex_response, only: find_sensitivity, load_pairs
+  use epcont_linear_solved_state, only: solved_state
+  use epcont_linear_whole_flexibility, only: add_flexibilities, complete_flexibility
+  use epcont_model_controls, only: solver_frontal
+  use epcont_model_springs, only: spring_forces
+  use epcont_plan_planned_model, only: planned_model
+  use epcont_plan_side_by_side, only: heaviest_first, threads_for
+  use epcont_system_stopwatch, only: stage_contact, stage_displacements, stage_factor, stage_flexibility, &
+    stopwatch
+  use epcont_system_threads, only: use_one_thread_each
+  implicit none
+  private
+  public :: simplex_rule
+
+  type, extends(contact_rule) :: simplex_rule
+    !> Of bodies that cannot yield, if others can [length/force] [pairs, pairs]
+    real(wp), allocatable, private :: lasting_flexibility(:, :)
+    type(contact_basis), private :: basis      !! of the last contact with this flexibility
+    type(borne_loads), private :: borne        !! in a load case before
+  contains
+    procedure :: take_case
+    procedure :: factor
+    procedure :: solve
+    procedure :: refine
+    procedure :: is_unique
+    procedure :: respond
+    procedure :: sensitivity
+    procedure :: compliance
+    procedure, private :: find_flexibility
+    procedure, private :: find_contact
+    procedure, private :: scale_pressed
+  end type simplex_rule
+
+contains
+
+  !> Another load case, with the factors of the case before.
+  subroutine take_case(self, scene, bodies)
+    class(simplex_rule), intent(inout) :: self
+    type(planned_model), intent(in) :: scene
+    class(factored_bodies), intent(inout) :: bodies
+
+    self%failed = .false.
+    call bodies%settle(scene)
+  end subroutine take_case
+
+  !> Factor the bodies and invert for the flexibility; after the first time only bodies that can yield, as far
+  !! as the law of their elements has changed.
+  subroutine factor(self, scene, bodies, failed_body, watch)
+    class(simplex_rule), intent(inout) :: self
+    type(planned_model), intent(in) :: scene
+    class(factored_bodies), intent(inout) :: bodies
+    integer, intent(out) :: failed_body
+    class(stopwatch), intent(inout) :: watch
+
+    if (allocated(self%basis%factor)) deallocate (self%basis%factor)   ! of the flexibility before
+    call factor_bodies(scene, scene%numbering%body%can_yield .or. .not. allocated(self%problem%flexibility), &
+                       self%threads, bodies, failed_body)
+    bodies%law%changed = .false.
+    call watch%lap(stage_factor)
+    if (failed_body > 0) return
+    call bodies%settle(scene)
+    call watch%lap(stage_displacements)
+    call self%find_flexibility(scene, bodies)
+    call watch%lap(stage_flexibility)
+  end subroutine factor
+
+  !> Assemble and factor some bodies, in parallel if that pays.
+  subroutine factor_bodies(scene, chosen, threads, bodies, failed_body)
+    type(planned_model), intent(in) :: scene
+    logical, intent(in) :: chosen(:)     !! [bodies]
+    integer, intent(in) :: threads       !! that share the bodies
+    class(factored_bodies), intent(inout) :: bodies
+    integer, intent(out) :: failed_body
+    integer, allocatable :: body(:)
+    integer :: i, many
+
+    body = pack([(i, i=1, size(chosen))], chosen)
+    body = body(heaviest_first(scene%numbering%body(body)%operations))
+    many = threads_for(scene%numbering%body(body)%operations, &
+                       scene%numbering%body(body)%solver == solver_frontal, threads)
+    !$omp parallel do num_threads(many) if (many > 1) schedule(dynamic)
+    do i = 1, size(body)
+      call use_one_thread_each()
+      call bodies%body(body(i))%assemble(scene, bodies%operator, bodies%law, bodies%spring, body(i))
+      call bodies%body(body(i))%factor()
+    end do
+    !$omp end parallel do
+    bodies%factorizations = bodies%factorizations + count(chosen .and. scene%numbering%body%equations > 0)
+    failed_body = findloc([(chosen(i) .and. .not. bodies%body(i)%is_sound(), i=1, size(chosen))], &
+                          .true., dim=1)
+  end subroutine factor_bodies
+
+  !> F of all bodies: what bodies that cannot yield give to it is found once.
+  subroutine find_flexibility(self, scene, bodies)
+    class(simplex_rule), intent(inout) :: self
+    type(planned_model), intent(in) :: scene
+    class(factored_bodies), intent(in) :: bodies
+
+    associate (yields => scene%numbering%body%can_yield, n => scene%model%pairs)
+      if (.not. allocated(self%problem%flexibility)) then
+        allocate (self%problem%flexibility(n, n), source=0.0_wp)
+        call add_flexibilities(scene, bodies%body, .not. yields, self%threads, self%problem%flexibility)
+        if (any(yields) .and. .not. all(yields)) self%lasting_flexibility = self%problem%flexibility
+      else if (all(yields)) then
+        self%problem%flexibility = 0.0_wp
+      else if (any(yields)) then
+        self%problem%flexibility = self%lasting_flexibility
+      end if
+      call add_flexibilities(scene, bodies%body, yields, self%threads, self%problem%flexibility)
+      call complete_flexibility(self%problem%flexibility)
+    end associate
+  end subroutine find_flexibility
+
+  !> Contact with the gaps that the loads open alone, then the deformation under loads and contact forces.
+  subroutine solve(self, scene, bodies, load_factor, start, state, watch)
+    class(simplex_rule), intent(inout) :: self
+    type(planned_model), intent(in) :: scene
+    class(factored_bodies), intent(inout) :: bodies
+    real(wp), intent(in) :: load_factor
+    logical, allocatable, intent(in) :: start(:)
+    type(solved_state), intent(inout) :: state
+    class(stopwatch), intent(inout) :: watch
+    real(wp), allocatable :: force(:, :), opening(:)
+    type(half_solved_body), allocatable :: half(:)
+
+    force = load_factor*scene%model%load
+    if (allocated(scene%model%free_strain)) then   ! stresses without deformation
+      force = force - bodies%operator%nodal_forces(scene%model, bodies%law%stress( &
+              bodies%operator%strains(scene%model, 0.0_wp*force, load_factor)))
+    else if (any(bodies%law%initial_stress /= 0.0_wp)) then
+      force = force - bodies%operator%nodal_forces(scene%model, bodies%law%initial_stress)
+    end if
+    self%borne%keeps = self%keeps
+    call self%borne%bear(scene, bodies, force, load_factor, half, opening)
+    if (allocated(self%problem%known_gap)) deallocate (self%problem%known_force, self%problem%known_gap)
+    self%problem%load_gap = opening + load_factor*self%travel_gap
+    call watch%lap(stage_displacements)
+    call self%find_contact(load_factor, start, state%contact)
+    call watch%lap(stage_contact)
+    if (state%contact%state /= contact_solved) return
+    call bodies%add_forces(scene, pair_forces(scene%model, state%contact%force), 0.0_wp, half)
+    ! Strains are of the deformation: added to a long travel it would lose their digits.
+    state%deformation = bodies%finish(scene, half, load_factor, .false.)
+    state%strain = bodies%operator%strains(scene%model, state%deformation, load_factor)
+  end subroutine solve
+
+  !> The contact with the gaps of the problem as they now are.
+  subroutine find_contact(self, load_factor, start, contact)
+    class(simplex_rule), intent(inout) :: self
+    real(wp), intent(in) :: load_factor
+    logical, allocatable, intent(in) :: start(:)       !! guess of the pairs in contact, if allocated [pairs]
+    type(contact_solution), intent(inout) :: contact
+
+    self%problem%resultant = load_factor*self%resultant
+    call solve_contact(self%problem, contact, start, self%basis)
+  end subroutine find_contact
+
+  !> One step of refinement: the deformation under the residual is added, the contact follows the deformation,
+  !! and that the contact.
+  subroutine refine(self, scene, bodies, load_factor, state, refined, watch)
+    class(simplex_rule), intent(inout) :: self
+    type(planned_model), intent(in) :: scene
+    class(factored_bodies), intent(in) :: bodies
+    real(wp), intent(in) :: load_factor
+    type(solved_state), intent(inout) :: state
+    logical, intent(out) :: refined
+    class(stopwatch), intent(inout) :: watch
+    logical, allocatable :: guess(:)
+
+    call deform(scene, bodies, load_factor*scene%model%load + pair_forces(scene%model, state%contact%force) &
+                - bodies%operator%nodal_forces(scene%model, bodies%law%stress(state%strain)) &
+                - spring_forces(scene%model, state%deformation), state)
+    call watch%lap(stage_displacements)
+    ! F tells what a change of the forces that made the deformation opens.
+    call move_alloc(state%contact%touching, guess)
+    associate (problem => self%problem, &
+               opening => gap_opening(scene%model, state%deformation) + load_factor*self%travel_gap)
+      problem%known_force = state%contact%force
+      problem%known_gap = problem%initial_gap + opening
+      problem%load_gap = opening - matmul(problem%flexibility, problem%known_force)
+    end associate
+    call self%find_contact(load_factor, guess, state%contact)
+    call watch%lap(stage_contact)
+    refined = state%contact%state == contact_solved
+    ! Not under all forces again: in a slender body even the rounding of these opens gaps.
+    if (refined) call deform(scene, bodies, pair_forces(scene%model, state%contact%change), state)
+  end subroutine refine
+
+  !> Add the deformation under some forces.
+  subroutine deform(scene, bodies, force, state)
+    type(planned_model), intent(in) :: scene
+    class(factored_bodies), intent(in) :: bodies
+    real(wp), intent(in) :: force(:, :)         !! [directions, nodes]
+    type(solved_state), intent(inout) :: state   !! deformation, strain
+    real(wp), allocatable :: step(:, :)
+
+    step = bodies%displacements(scene, force, 0.0_wp)
+    state%deformation = state%deformation + step
+    state%strain = state%strain + bodies%operator%strains(scene%model, step, 0.0_wp)
+  end subroutine deform
+
+  !> The solution says itself which forces are indeterminate.
+  logical function is_unique(self, scene, bodies)
+    class(simplex_rule), intent(inout) :: self
+    type(planned_model), intent(in) :: scene
+    class(factored_bodies), intent(in) :: bodies
+
+    is_unique = .true.
+  end function is_unique
+
+  !> Find forces under unit loads, by the contact's own factor of the pairs with a force.
+  subroutine respond(self, scene, bodies, state, loads, known)
+    class(simplex_rule), intent(inout), target :: self
+    type(planned_model), intent(in) :: scene
+    class(factored_bodies), intent(inout) :: bodies
+    class(solved_state), intent(in) :: state
+    type(contact_loads), intent(inout) :: loads
+    logical, intent(in) :: known
+    type(scaled_problem) :: scaled
+
+    if (known) return
+    call self%scale_pressed(state%contact, scaled)
+    call load_pairs(scaled, self%basis, loads)
+  end subroutine respond
+
+  !> How much errors of the stiffness and of the gaps change the contact forces.
+  function sensitivity(self, state, condition) result(found)
+    class(simplex_rule), intent(inout), target :: self
+    class(solved_state), intent(in) :: state
+    real(wp), intent(in) :: condition
+    type(contact_sensitivity) :: found
+    type(scaled_problem) :: scaled
+
+    call self%scale_pressed(state%contact, scaled)
+    found = find_sensitivity(scaled, self%basis, state%contact%force, &
+                             abs(self%problem%initial_gap) + abs(self%problem%load_gap) + &
+                             self%problem%motion%times(state%contact%approach, magnitudes=.true.), condition)
+  end function sensitivity
+
+  !> The problem in its own units, with a basis of the pairs that have a force. Of modes that none of these
+  !! resists as many are held as are independent, which says nothing of the others.
+  subroutine scale_pressed(self, contact, scaled)
+    class(simplex_rule), intent(inout), target :: self
+    type(contact_solution), intent(in) :: contact
+    type(scaled_problem), intent(out) :: scaled
+    type(rigid_start) :: start
+    integer, allocatable :: pressed(:)
+    integer :: k
+
+    scaled = scale_problem(self%problem)
+    if (any(contact%motion_free)) then
+      pressed = pack([(k, k=1, size(contact%force))], contact%force > 0.0_wp)
+      call find_rigid_start(dense_motions(scaled%motion%rows(pressed)), 0*scaled%resultant, &
+                            0*scaled%gap(pressed), start)
+      call drop_motions(scaled, start%redundant)
+    end if
+    call renew_basis(self%basis, scaled, contact%force > 0.0_wp)
+  end subroutine scale_pressed
+
+  !> The diagonal of F.
+  pure function compliance(self)
+    class(simplex_rule), intent(in) :: self
+    real(wp), allocatable :: compliance(:)
+
+    compliance = diagonal_of(self%problem%flexibility)
+  end function compliance
+end module epcont_linear_simplex_rule
