@@ -1,4 +1,4 @@
-!> Bodies that pass through each other, in words: where, how deep, and what would mend it.
+!> Sentences about bodies that penetrate each other: where, how deep, and what may help.
 module epcont_messages_scene_text
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: short_real, text_of
@@ -12,7 +12,7 @@ module epcont_messages_scene_text
   private
   public :: scene_sentence
 
-  !> What a sentence is about: why a scene is not sound; or what is warned of, in the order of the warnings.
+  !> Subject of a sentence: why a model is not sound, or a warning, in the order of the warnings.
   integer, parameter, public :: &
     unsound = 0, &
     body_in_itself = 1, &   !! a body passes through itself
@@ -23,210 +23,222 @@ module epcont_messages_scene_text
     sides_slid = 6, &       !! sides slide too far along each other where they press
     scene_warnings = 6
 
-  !> Depths that differ by less than this part are not told apart.
+  !> Depths whose ratio is below this are treated as equal.
   real(wp), parameter, public :: deeper = 1.1_wp
 
-  !> Sentences about a place; `word_for` says what stands for the names in braces.
-  character(len=*), parameter :: &
-    lies_in = 'the body of {body} lies {depth} deep in that of {other body}, '// &
-              'at {point} on {side}, behind {other side}', &
-    is_off = 'at {point} on {side} is {depth} off {other side}', &
-    by_much = '{share} % of the largest displacement, {moved}: ', &
-    mending = '; {allowed} is allowed. What may mend it: '
+  character(len=*), parameter :: may_help = ' is allowed. What may mend it: '
 
-  character(len=*), parameter :: warning(scene_warnings) = [character(len=300) :: &
-    'a body passes through itself: it lies {depth} deep, at {point} on {side}, behind {other side}; '// &
-    '{allowed} is allowed', &
-    'a body passes through its mirror image: {beyond}, to which its body is held; '// &
-    'no harm where that is no line of symmetry', &
-    'bodies lie in each other by '//by_much//lies_in//'{finer}', &
-    'a pair presses across a gap of '//by_much//is_off//'{finer}', &
-    'displacements are not small: {changed side} is turned or stretched by {change}', &
-    'displacements are not small: bodies that press on each other slide by {depth} along each other, '// &
-    'at {point} on {side}, where sides are {length} long; contact is that of undeformed places']
-
-  !> Of bodies in each other, pairs apart or beside the other body, bodies that passed, rings beyond the axis.
-  character(len=*), parameter :: fault(5) = [character(len=300) :: &
-    'bodies pass through each other: '//lies_in//'; {allowed} is allowed{deepest}. '// &
-    'What may mend it: {remedy}', &
-    'pair {pair} presses across a gap: '//is_off//mending//'pairs of nodes, or lines, that face each other', &
-    'pair {pair} presses beside the other body: at {point} on {side} is {depth} beside the end of '// &
-    '{other side}'//mending//'bodies drawn where they come to, or longer ones: '// &
-    'contact is that of undeformed places', &
-    'bodies pass through each other on their way: {passing} of the body of {body} goes through that of '// &
-    '{other body}, {depth} deep at {point}, behind {other side}'//mending// &
-    '{remedy}, or loads and supports that move it another way', &
-    'a ring is pressed to a radius below 0: {beyond}; where displacements are small radii stay above 0']
+  !> Words for a place where bodies penetrate each other, or where a pair presses across a gap.
+  type :: place_words
+    character(len=:), allocatable :: depth, allowed
+    character(len=:), allocatable :: at                        !! point, and the edge on which it is
+    character(len=:), allocatable :: other_side                !! the edge of the other body
+    character(len=:), allocatable :: body, other_body
+    character(len=:), allocatable :: penetration, distance     !! clauses
+  end type place_words
 
 contains
 
-  !> What speaks against a scene, or is to be known of it though it may be sound; empty: nothing.
+  !> Write the sentence about one subject. It is empty if there is nothing to say.
   pure function scene_sentence(model, scene, about) result(text)
-    type(model_type), intent(in) :: model   !! the model
-    type(overlaps_type), intent(in) :: scene   !! as the certificate has it
-    integer, intent(in) :: about            !! one of the subjects above
+    type(model_type), intent(in) :: model      !! the model
+    type(overlaps_type), intent(in) :: scene   !! findings of the certificate
+    integer, intent(in) :: about               !! one of the subjects above
     character(len=:), allocatable :: text
-    type(overlap_place) :: place, faulty(4), warned(scene_warnings)
-    type(beyond_place) :: farthest
-    logical :: speaks(scene_warnings)
+
+    text = ''
+    select case (about)
+    case (unsound)
+      text = fault(model, scene)
+    case (beyond_mirror)
+      if (scene%mirror%node > 0) &
+        text = 'a body passes through its mirror image: '//beyond(model, scene%mirror)// &
+               ', to which its body is held; no harm where that is no line of symmetry'
+    case (side_changed)
+      if (scene%change > largest_change) &
+        text = 'displacements are not small: '//side_name(model, scene%changed_side)// &
+               ' is turned or stretched by '//short_real(scene%change)
+    case (body_in_itself)
+      if (scene%itself%ratio > 1.0_wp) text = place_warning(model, scene, about, scene%itself)
+    case (much_overlap)
+      if (scene%deep%ratio > 1.0_wp .and. scene%sound()) text = place_warning(model, scene, about, scene%deep)
+    case (much_gap)
+      if (scene%wide%ratio > 1.0_wp .and. scene%sound()) text = place_warning(model, scene, about, scene%wide)
+    case (sides_slid)
+      if (scene%slid%ratio > 1.0_wp) text = place_warning(model, scene, about, scene%slid)
+    end select
+  end function scene_sentence
+
+  !> Write a warning about a place.
+  pure function place_warning(model, scene, about, place) result(text)
+    type(model_type), intent(in) :: model
+    type(overlaps_type), intent(in) :: scene
+    integer, intent(in) :: about
+    type(overlap_place), intent(in) :: place
+    character(len=:), allocatable :: text, by_much, finer
+    type(place_words) :: word
+    real(wp) :: side   ! length [length]
+
+    word = words_of(model, place)
+    side = longest_side(model, place)
+    by_much = text_of(nint(100.0_wp*place%depth/scene%moved))//' % of the largest displacement, '// &
+              short_real(scene%moved)//': '
+    ! Depths shrink with the edges at corners, and faster elsewhere. Sliding and rotation do not shrink.
+    finer = '; sides of about '//short_real(side/max(place%ratio, tiny(side)))//' there would leave 10 %'
+    if (place%moving) finer = '; turns and slides there are not small'
+    select case (about)
+    case (body_in_itself)
+      text = 'a body passes through itself: it lies '//word%depth//' deep, at '//word%at//', behind '// &
+             word%other_side//'; '//word%allowed//' is allowed'
+    case (much_overlap)
+      text = 'bodies lie in each other by '//by_much//word%penetration//finer
+    case (much_gap)
+      text = 'a pair presses across a gap of '//by_much//word%distance//finer
+    case default
+      text = 'displacements are not small: bodies that press on each other slide by '//word%depth// &
+             ' along each other, at '//word%at//', where sides are '//short_real(side)// &
+             ' long; contact is that of undeformed places'
+    end select
+  end function place_warning
+
+  !> Write why a model is not sound, and what may help.
+  pure function fault(model, scene) result(text)
+    type(model_type), intent(in) :: model
+    type(overlaps_type), intent(in) :: scene
+    character(len=:), allocatable :: passing, text
+    type(overlap_place) :: faulty(4), place
+    type(place_words) :: word
     integer :: worst
 
-    if (about == unsound) then
-      faulty = [scene%inside, scene%apart, scene%beside, scene%passed]
-      worst = maxloc(faulty%ratio, dim=1)
-      place = faulty(worst)
-      farthest = scene%axis
-      text = told(fault(merge(5, worst, scene%axis%node > 0)))
+    if (scene%axis%node > 0) then
+      text = 'a ring is pressed to a radius below 0: '//beyond(model, scene%axis)// &
+             '; where displacements are small radii stay above 0'
       return
     end if
-    warned = [scene%itself, overlap_place(), scene%deep, scene%wide, overlap_place(), scene%slid]
-    speaks = warned%ratio > 1.0_wp
-    if (.not. scene%sound()) speaks([much_overlap, much_gap]) = .false.
-    speaks(beyond_mirror) = scene%mirror%node > 0
-    speaks(side_changed) = scene%change > largest_change
-    place = warned(about)
-    farthest = scene%mirror
+    faulty = [scene%inside, scene%apart, scene%beside, scene%passed]
+    worst = maxloc(faulty%ratio, dim=1)
+    place = faulty(worst)
+    word = words_of(model, place)
     text = ''
-    if (speaks(about)) text = told(warning(about))
+    if (worst == 2 .or. worst == 3) text = 'pair '//text_of(model%pair_id(place%pair))//' presses '
+    select case (worst)
+    case (1)
+      text = 'bodies pass through each other: '//word%penetration//'; '//word%allowed//' is allowed'
+      if (scene%deepest%depth > deeper*place%depth) &
+        text = text//' (deepest, '//short_real(scene%deepest%depth)//', they are at '// &
+               point_name(scene%deepest%x)//', where '//short_real(scene%deepest%allowed)//' is allowed)'
+      text = text//'. What may mend it: '//remedy(model, [place%side, place%other])
+    case (2)
+      text = text//'across a gap: '//word%distance//'; '//word%allowed//may_help// &
+             'pairs of nodes, or lines, that face each other'
+    case (3)
+      text = text//'beside the other body: at '//word%at//' is '//word%depth//' beside the end of '// &
+             word%other_side//'; '//word%allowed//may_help//'bodies drawn where they come to, '// &
+             'or longer ones: contact is that of undeformed places'
+    case (4)
+      passing = model%name_of(of_element, model%body_outline%element(place%side))
+      if (place%node > 0) passing = model%name_of(of_node, place%node)
+      text = 'bodies pass through each other on their way: '//passing//' of the body of '//word%body// &
+             ' goes through that of '//word%other_body//', '//word%depth//' deep at '// &
+             point_name(place%x)//', behind '//word%other_side//'; '//word%allowed//may_help// &
+             remedy(model, [place%side, place%other])//', or loads and supports that move it another way'
+    end select
+  end function fault
 
-  contains
+  !> Find the words for a place.
+  pure type(place_words) function words_of(model, place) result(word)
+    type(model_type), intent(in) :: model
+    type(overlap_place), intent(in) :: place
 
-    !> A sentence about the place, filled in.
-    pure function told(sentence) result(text)
-      character(len=*), intent(in) :: sentence
-      character(len=:), allocatable :: text
-      integer :: brace, from
+    word%depth = short_real(place%depth)
+    word%allowed = short_real(place%allowed)
+    word%at = point_name(place%x)//' on '//side_name(model, place%side)
+    word%other_side = side_name(model, place%other)
+    associate (outline => model%body_outline)
+      word%body = first_grid(model, outline%part_of == outline%part(place%side))
+      word%other_body = first_grid(model, outline%part_of == outline%part(place%other))
+    end associate
+    word%penetration = 'the body of '//word%body//' lies '//word%depth//' deep in that of '// &
+                       word%other_body//', at '//word%at//', behind '//word%other_side
+    word%distance = 'at '//word%at//' is '//word%depth//' off '//word%other_side
+  end function words_of
 
-      text = ''
-      from = 1
-      do
-        brace = from + index(sentence(from:), '{') - 1
-        if (brace < from) exit
-        text = text//sentence(from:brace - 1)
-        from = brace + index(sentence(brace:), '}')
-        text = text//word_for(sentence(brace + 1:from - 2))
-      end do
-      text = text//trim(sentence(from:))
-    end function told
+  !> Write how far a node is displaced beyond a line.
+  pure function beyond(model, place) result(text)
+    type(model_type), intent(in) :: model
+    type(beyond_place), intent(in) :: place
+    character(len=:), allocatable :: text
 
-    !> What stands in a sentence for one of the names in braces.
-    pure function word_for(name) result(text)
-      character(len=*), intent(in) :: name
-      character(len=:), allocatable :: text
+    text = model%name_of(of_node, place%node)//' comes '//short_real(place%depth)//' beyond '// &
+           merge('x', 'y', place%component == 1)//' = '//short_real(place%line)
+  end function beyond
 
-      text = ''
-      select case (name)
-      case ('point')
-        text = point_name(place%x)
-      case ('depth')
-        text = short_real(place%depth)
-      case ('allowed')
-        text = short_real(place%allowed)
-      case ('side')
-        text = side_name(place%side)
-      case ('other side')
-        text = side_name(place%other)
-      case ('body')
-        text = body_name(place%side)
-      case ('other body')
-        text = body_name(place%other)
-      case ('pair')
-        text = text_of(model%pair_id(place%pair))
-      case ('passing')
-        text = model%name_of(of_element, model%body_outline%element(place%side))
-        if (place%node > 0) text = model%name_of(of_node, place%node)
-      case ('length')
-        text = short_real(longest_side())
-      case ('share')
-        text = text_of(nint(100.0_wp*place%depth/scene%moved))
-      case ('moved')
-        text = short_real(scene%moved)
-      case ('finer')   ! depths shrink with the sides at corners, faster elsewhere; what is left is not told
-        text = '; sides of about '//short_real(longest_side()/place%ratio)//' there would leave 10 %'
-        if (place%moving) text = '; turns and slides there are not small'
-      case ('deepest')
-        if (scene%deepest%depth > deeper*place%depth) &
-          text = ' (deepest, '//short_real(scene%deepest%depth)//', they are at '// &
-                 point_name(scene%deepest%x)//', where '//short_real(scene%deepest%allowed)//' is allowed)'
-      case ('remedy')
-        text = remedy([place%side, place%other])
-      case ('beyond')
-        text = model%name_of(of_node, farthest%node)//' comes '//short_real(farthest%depth)//' beyond '// &
-               merge('x', 'y', farthest%component == 1)//' = '//short_real(farthest%line)
-      case ('changed side')
-        text = side_name(scene%changed_side)
-      case ('change')
-        text = short_real(scene%change)
-      end select
-    end function word_for
+  !> Name an edge of the outlines by its ends.
+  pure function side_name(model, side) result(name)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: side
+    character(len=:), allocatable :: name
 
-    !> A side of the outlines by its ends.
-    pure function side_name(side) result(name)
-      integer, intent(in) :: side
-      character(len=:), allocatable :: name
+    associate (outline => model%body_outline)
+      name = 'side '//model%name_of(of_node, outline%node(1, side))//' to '// &
+             text_of(model%node_id(outline%node(2, side)))//' of '// &
+             model%name_of(of_element, outline%element(side))
+    end associate
+  end function side_name
 
-      name = 'side '//model%name_of(of_node, model%body_outline%node(1, side))//' to '// &
-             text_of(model%node_id(model%body_outline%node(2, side)))// &
-             ' of '//model%name_of(of_element, model%body_outline%element(side))
-    end function side_name
+  !> Length of the longer of the two undeformed edges at a place [length].
+  pure real(wp) function longest_side(model, place) result(longest)
+    type(model_type), intent(in) :: model
+    type(overlap_place), intent(in) :: place
 
-    !> The body that a side belongs to, by its first node.
-    pure function body_name(side) result(name)
-      integer, intent(in) :: side
-      character(len=:), allocatable :: name
+    associate (node => model%body_outline%node(:2, [place%side, place%other]))
+      longest = maxval(norm2(model%x(:, node(2, :)) - model%x(:, node(1, :)), dim=1))
+    end associate
+  end function longest_side
 
-      name = first_grid(model, model%body_outline%part_of == model%body_outline%part(side))
-    end function body_name
+  !> Name cards that would keep the bodies apart at two of their edges.
+  pure function remedy(model, side) result(text)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: side(2)
+    character(len=:), allocatable :: text
+    logical :: of_slave(2), of_master(2)
+    integer :: k, line(2)
 
-    !> Length of the longer of the two sides at the place, as drawn [length].
-    pure real(wp) function longest_side() result(longest)
-      associate (node => model%body_outline%node(:2, [place%side, place%other]))
-        longest = maxval(norm2(model%x(:, node(2, :)) - model%x(:, node(1, :)), dim=1))
-      end associate
-    end function longest_side
+    do k = size(model%line_contact), 1, -1
+      of_slave = are_of(model, model%line_contact(k)%slave, side)
+      of_master = are_of(model, model%line_contact(k)%master, side)
+      if (.not. any(of_slave .and. of_master([2, 1]))) cycle
+      text = 'shorter sides of both lines there'
+      if (of_master(1)) text = 'SLAVE and MASTER of BCONP '//text_of(model%line_contact(k)%bconp(1))// &
+                               ' exchanged, or '//text
+      return
+    end do
+    line = 0
+    do k = 1, size(model%line)
+      where ([any(model%line(k)%side == side(1)), any(model%line(k)%side == side(2))]) line = k
+    end do
+    if (all(line > 0)) then
+      text = 'a BCONP between BLSEG '//text_of(model%line(line(1))%id)//' and BLSEG '// &
+             text_of(model%line(line(2))%id)
+    else if (any(line > 0)) then
+      text = 'a BLSEG along '//side_name(model, side(minloc(line, dim=1)))// &
+             ', and a BCONP between it and BLSEG '//text_of(model%line(maxval(line))%id)
+    else
+      text = 'a BLSEG along each of the two sides, and a BCONP between the lines'
+      if (is_mate(find_mates(model), model%body_outline%node(:, side(1)), &
+                  model%body_outline%part(side(2)))) text = 'more CGAPs there, or '//text
+    end if
+  end function remedy
 
-    !> What would keep the bodies apart at two sides of theirs.
-    pure function remedy(side) result(text)
-      integer, intent(in) :: side(2)
-      character(len=:), allocatable :: text
-      logical :: of_slave(2), of_master(2)
-      integer :: k, line(2)
+  !> Which of two edges of the outlines belong to a line?
+  pure function are_of(model, line, side)
+    type(model_type), intent(in) :: model
+    class(boundary_line), intent(in) :: line
+    integer, intent(in) :: side(2)
+    logical :: are_of(2)
+    integer :: k
 
-      do k = size(model%line_contact), 1, -1
-        of_slave = are_of(model%line_contact(k)%slave, side)
-        of_master = are_of(model%line_contact(k)%master, side)
-        if (.not. any(of_slave .and. of_master([2, 1]))) cycle
-        text = 'shorter sides of both lines there'
-        if (of_master(1)) text = 'SLAVE and MASTER of BCONP '//text_of(model%line_contact(k)%bconp(1))// &
-                                 ' exchanged, or '//text
-        return
-      end do
-      line = 0
-      do k = 1, size(model%line)
-        where ([any(model%line(k)%side == side(1)), any(model%line(k)%side == side(2))]) line = k
-      end do
-      if (all(line > 0)) then
-        text = 'a BCONP between BLSEG '//text_of(model%line(line(1))%id)//' and BLSEG '// &
-               text_of(model%line(line(2))%id)
-      else if (any(line > 0)) then
-        text = 'a BLSEG along '//side_name(side(minloc(line, dim=1)))// &
-               ', and a BCONP between it and BLSEG '//text_of(model%line(maxval(line))%id)
-      else
-        text = 'a BLSEG along each of the two sides, and a BCONP between the lines'
-        if (is_mate(find_mates(model), model%body_outline%node(:, side(1)), &
-                    model%body_outline%part(side(2)))) text = 'more CGAPs there, or '//text
-      end if
-    end function remedy
-
-    !> Which of two sides of the bodies' outlines belong to a line.
-    pure function are_of(line, side)
-      class(boundary_line), intent(in) :: line
-      integer, intent(in) :: side(2)
-      logical :: are_of(2)
-      integer :: k
-
-      are_of = [(any(line%segment(1, :) == model%body_outline%node(1, side(k)) .and. &
-                     line%element == model%body_outline%element(side(k))), k=1, 2)]
-    end function are_of
-  end function scene_sentence
+    are_of = [(any(line%segment(1, :) == model%body_outline%node(1, side(k)) .and. &
+                   line%element == model%body_outline%element(side(k))), k=1, 2)]
+  end function are_of
 end module epcont_messages_scene_text

@@ -19,8 +19,7 @@ PAGE = [VERSION, "src/app/help.f90", "src/app/options.f90"]   # what the manual 
 FILE_LINES, PROCEDURE_LINES, ARGUMENTS = 400, 120, 7
 #: Longer procedures that still exist, as file.procedure, and their lines. The table may only shrink.
 LONG = {
-    "equilibrium.find_rigid_start": 174, "loading.follow_load": 190,
-    "scene_text.scene_sentence": 168, "solver.solve_contact": 257}
+    "equilibrium.find_rigid_start": 174, "loading.follow_load": 190, "solver.solve_contact": 257}
 #: Columns of a line: of the sources, and of tests, whose assertions are long.
 COLUMNS, TEST_COLUMNS = 110, 132
 #: Lines of the procedures of the sources, with their internal procedures: the median, and what 90 % do not exceed.
