@@ -4,11 +4,12 @@ module epcont_report_case_table
   use epcont_base_text, only: short_real, text_of
   use epcont_report_columns, only: column, columns_text, estimate, estimate_number, known, length, number, &
       part, rounding, stress, table_type, unknown, whole, word
+  use epcont_messages_names, only: when
   use epcont_messages_outcome, only: limit_of_pressure, unbounded
   use epcont_report_run, only: run_results
   implicit none
   private
-  public :: case_row, case_columns_text, put_cases, put_worst_case, row_of_case
+  public :: accuracy_text, case_row, case_columns_text, put_cases, put_worst_case, row_of_case
 
   !> What came of a case. Numbers are those of its summary; negative where they are not known.
   type :: case_row
@@ -85,35 +86,51 @@ contains
     end do
   end subroutine put_cases
 
-  !> What a wanted accuracy has come to: the case whose largest pressure is worth least.
-  subroutine put_worst_case(row, accuracy, listing)
-    type(case_row), intent(in) :: row(:)       !! of all cases
-    real(wp), intent(in) :: accuracy           !! wanted, relative; 0.0: none is
+  !> Error of the largest pressure, relative; negative if there is no pressure, huge if the error is unknown.
+  elemental real(wp) function relative_error(row) result(error)
+    type(case_row), intent(in) :: row   !! of a load case
+
+    error = -1.0_wp
+    if (row%pressure <= 0.0_wp) return
+    error = huge(error)
+    if (row%pressure_error >= 0.0_wp .and. row%limit /= unbounded) error = row%pressure_error/row%pressure
+  end function relative_error
+
+  !> Say whether a load case has the accuracy of PARAM ACCURACY.
+  pure function accuracy_text(row, wanted) result(text)
+    type(case_row), intent(in) :: row       !! of the load case
+    real(wp), intent(in) :: wanted          !! relative
+    character(len=:), allocatable :: text
+
+    if (row%pressure <= 0.0_wp) then
+      text = 'not known: no pair has a pressure'
+    else if (row%limit == unbounded) then
+      text = 'not to be had: the largest pressure is unbounded'
+    else if (row%pressure_error < 0.0_wp) then
+      text = 'not known: too few pairs are in contact'
+    else
+      text = when(relative_error(row) > wanted, 'not reached', 'reached')// &
+             ': the error of the mesh is estimated at '//estimate_number(relative_error(row))
+    end if
+  end function accuracy_text
+
+  !> Name the load case with the largest relative error.
+  subroutine put_worst_case(row, wanted, listing)
+    type(case_row), intent(in) :: row(:)       !! of all load cases
+    real(wp), intent(in) :: wanted             !! PARAM ACCURACY, relative; 0 if there is none
     type(table_type), intent(inout) :: listing
-    real(wp) :: error(size(row))               ! relative; negative: nothing presses
-    character(len=:), allocatable :: found
+    character(len=:), allocatable :: text
     integer :: worst
 
-    if (accuracy <= 0.0_wp) return
-    error = -1.0_wp
-    where (row%pressure > 0.0_wp) error = huge(error)
-    where (row%pressure > 0.0_wp .and. row%pressure_error >= 0.0_wp .and. row%limit /= unbounded) &
-      error = row%pressure_error/row%pressure
-    worst = maxloc(error, dim=1)
-    found = 'reached in all'
-    if (error(worst) < 0.0_wp) then
-      found = 'nothing presses'
-    else if (error(worst) > accuracy) then
-      found = 'worst in SUBCASE '//text_of(row(worst)%subcase)//': not '
-      if (row(worst)%limit == unbounded) then
-        found = found//'to be had, the largest pressure is unbounded'
-      else if (error(worst) >= huge(error)) then
-        found = found//'known, there are too few pairs in contact'
-      else
-        found = found//'reached, the error of the mesh is estimated at '//estimate_number(error(worst))
-      end if
+    if (wanted <= 0.0_wp) return
+    worst = maxloc(relative_error(row), dim=1)
+    text = accuracy_text(row(worst), wanted)
+    if (relative_error(row(worst)) > wanted) then
+      text = 'worst in SUBCASE '//text_of(row(worst)%subcase)//': '//text
+    else if (row(worst)%pressure > 0.0_wp) then
+      text = 'reached in all'
     end if
     call listing%line('')
-    call listing%line('  wanted error of contact pressures '//short_real(accuracy)//', '//found)
+    call listing%say('wanted error of contact pressures '//short_real(wanted)//', '//text)
   end subroutine put_worst_case
 end module epcont_report_case_table

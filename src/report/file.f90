@@ -21,6 +21,7 @@ module epcont_report_file
     character(len=:), allocatable, private :: path
   contains
     procedure :: line
+    procedure :: say
     procedure :: heading
     procedure :: add
     procedure :: is_empty
@@ -197,6 +198,14 @@ contains
     call put(self, trim(text))
     call put(self, newline)
   end subroutine line
+
+  !> Add a line, two blanks from the margin.
+  subroutine say(self, text)
+    class(text_file), intent(inout) :: self
+    character(len=*), intent(in) :: text   !! of the line
+
+    call self%line('  '//text)
+  end subroutine say
 
   !> Add characters.
   subroutine put(self, text)

@@ -6,11 +6,12 @@ module epcont_report_listing
   use epcont_base_version, only: program_name, program_version
   use epcont_certificate_scene, only: little, overlap_place
   use epcont_deck_render, only: printable
+  use epcont_report_case_table, only: accuracy_text, row_of_case
   use epcont_report_columns, only: estimate_number, listed_number, number, part, right, &
       rounding_number, table_type
   use epcont_report_echo, only: list_cards
   use epcont_messages_names, only: centre_name, joined, percent, point_name, when
-  use epcont_messages_outcome, only: limit_of_pressure, poisson_text, remark_lines, unbounded
+  use epcont_messages_outcome, only: poisson_text, remark_lines
   use epcont_messages_sentences, only: most_pairs
   use epcont_report_run, only: run_results
   use epcont_messages_scene_text, only: deeper
@@ -49,15 +50,15 @@ contains
       call listing%line(program_name//' '//program_version// &
                         '   elastoplastic contact of plane bodies and rings')
       call listing%line('')
-      if (len(run%deck%title) > 0) call say(listing, printable(run%deck%title))
+      if (len(run%deck%title) > 0) call listing%say(printable(run%deck%title))
       if (.not. run%has_cases()) call list_titles(run, listing)
       units = run%deck%parameter_word('UNITS')
       if (units == '') units = 'as the deck has them'
-      call say(listing, 'units: '//units)
+      call listing%say('units: '//units)
       call listing%heading('DECK')
       do k = 1, size(run%deck%card)
         if (run%deck%card(k)%count > 0) &
-          call say(listing, run%deck%card(k)%entry%name//'  '//right(text_of(run%deck%card(k)%count), 9))
+          call listing%say(run%deck%card(k)%entry%name//'  '//right(text_of(run%deck%card(k)%count), 9))
       end do
     end subroutine list_deck
   end subroutine list_scene
@@ -68,8 +69,8 @@ contains
     type(table_type), intent(inout) :: listing
 
     associate (case => run%deck%subcase(run%case))
-      if (len(case%subtitle) > 0) call say(listing, printable(case%subtitle))
-      if (len(case%label) > 0) call say(listing, printable(case%label))
+      if (len(case%subtitle) > 0) call listing%say(printable(case%subtitle))
+      if (len(case%label) > 0) call listing%say(printable(case%label))
     end associate
   end subroutine list_titles
 
@@ -139,7 +140,7 @@ contains
     character(len=44) :: label
 
     label = name
-    call say(listing, label//right(value, 13)//note)
+    call listing%say(label//right(value, 13)//note)
   end subroutine list_figure
 
   !> Figures of the summary that have a name, and whose keys begin so; a key that ends in `|` is one alone.
@@ -165,11 +166,11 @@ contains
     call put_table(run, 'history', listing)
     call listing%line('')
     if (run%answer%load_steps > run%model%controls%load_steps) &
-      call say(listing, 'in '//plural(run%model%controls%load_steps, 'load step')// &
+      call listing%say('in '//plural(run%model%controls%load_steps, 'load step')// &
                ' no answer was found; tried again in '//text_of(run%answer%load_steps)//' (AUTO)')
-    if (any(run%answer%history%by_tangent)) call say(listing,  &
+    if (any(run%answer%history%by_tangent)) call listing%say(&
       'the last step is one by the tangent: its change is what the others have left')
-    call say(listing, plural(count(run%answer%plastic), 'element')//' of '// &
+    call listing%say(plural(count(run%answer%plastic), 'element')//' of '// &
              text_of(run%model%elements)//' beyond the yield point')
     call list_elements('beyond the last point of its table, whose last slope goes on', &
                        count(run%answer%beyond), findloc(run%answer%beyond, .true., dim=1))
@@ -183,7 +184,7 @@ contains
       character(len=*), intent(in) :: what
       integer, intent(in) :: count, first
 
-      if (count > 0) call say(listing, what//': element '//text_of(run%model%element_id(first))// &
+      if (count > 0) call listing%say(what//': element '//text_of(run%model%element_id(first))// &
                               when(count > 1, ' and '//text_of(count - 1)//' more'))
     end subroutine list_elements
   end subroutine list_iterations
@@ -204,7 +205,7 @@ contains
       call listing%line(text//when(size(run%answer%history) > 1, ', in the last solve'))
       if (size(contact%history) > 0) call put_table(run, 'pivots', listing)
       if (size(contact%history) > 0 .and. contact%pivots > size(contact%history)) &
-        call say(listing, 'and '//text_of(contact%pivots - size(contact%history))//' more')
+        call listing%say('and '//text_of(contact%pivots - size(contact%history))//' more')
     end associate
     call put_table(run, 'zones', listing)
     if (size(run%answer%lines) > 0) call put_table(run, 'lines', listing)
@@ -252,7 +253,7 @@ contains
 
     call list_figures(listing, figures, [character(len=21) :: 'contact_amplification', 'mesh_error_'])
     if (size(run%accuracy%worst) > 0) &
-      call say(listing, 'refine first: element '//joined(run%model%element_id(run%accuracy%worst), ' ')// &
+      call listing%say('refine first: element '//joined(run%model%element_id(run%accuracy%worst), ' ')// &
                ', the first at '//centre_name(run%model, run%accuracy%worst(1))//'; '// &
                percent(sum(run%accuracy%element(run%accuracy%worst)), sum(run%accuracy%element))// &
                ' of the error')
@@ -269,7 +270,7 @@ contains
       logical, allocatable :: chosen(:)
 
       chosen = run%accuracy%weak .and. (run%answer%contact%touching .eqv. touching)
-      if (any(chosen)) call say(listing, what//', '//plural(count(chosen), 'pair')//': '// &
+      if (any(chosen)) call listing%say(what//', '//plural(count(chosen), 'pair')//': '// &
                                 joined(pack(run%model%pair_id, chosen), ' ', most_pairs))
     end subroutine list_pairs
   end subroutine list_mesh
@@ -284,37 +285,27 @@ contains
                        text_of(run%answer%locking%elements), '')
       call list_figure(listing, 'scatter of their mean stress / equivalent', &
                        listed_number(number, run%answer%locking%scatter, 1.0_wp), '')
-      call say(listing, '  ('//poisson_text(run%answer)// &
+      call listing%say('  ('//poisson_text(run%answer)// &
                ': they are too stiff there; six-node elements and CQUAD4 are not)')
     end if
     if (run%answer%gradient%part > 0.0_wp) then
       call list_figure(listing, 'not small: turned, stretched by over 0.1', &
                        listed_number(part, run%answer%gradient%part, 0.0_wp), '   of the volume')
-      call say(listing, '  (most at '//centre_name(run%model, run%answer%gradient%worst)//', '// &
+      call listing%say('  (most at '//centre_name(run%model, run%answer%gradient%worst)//', '// &
                estimate_number(run%answer%gradient%largest)//'; equilibrium and contact are those of '// &
                'the undeformed shape: loads, moduli, units?)')
     end if
   end subroutine list_doubtful_elements
 
-  !> The wish, and what stands in its way: PARAM ACCURACY sets the solution, but the mesh has the last word.
+  !> Say whether the mesh gives the accuracy of PARAM ACCURACY.
   subroutine list_wanted(listing, run)
     type(table_type), intent(inout) :: listing
     type(run_results), intent(in) :: run
-    real(wp) :: left
 
-    call list_figure(listing, 'wanted error of contact pressures', short_real(run%model%controls%accuracy), &
-                     '')
-    if (limit_of_pressure(run) == unbounded) then
-      call say(listing, '  not to be had: the largest pressure is unbounded: it grows with every finer mesh')
-    else if (run%accuracy%max_pressure < 0.0_wp .or. .not. any(run%answer%contact%force > 0.0_wp)) then
-      call say(listing, '  (of the mesh''s error nothing is known: no pressure, or too few pairs in contact)')
-    else
-      left = run%accuracy%max_pressure/maxval(run%answer%pressure)
-      call say(listing, when(left > run%model%controls%accuracy, &
-                    '  not reached: the error of the mesh is estimated at '// &
-                    estimate_number(left)//'; refine the elements named above', &
-                    '  reached: the error of the mesh is estimated at '//estimate_number(left)))
-    end if
+    associate (wanted => run%model%controls%accuracy)
+      call list_figure(listing, 'wanted error of contact pressures', short_real(wanted), '')
+      call listing%say('  '//accuracy_text(row_of_case(run), wanted))
+    end associate
   end subroutine list_wanted
 
   !> Warnings and notes.
@@ -334,14 +325,6 @@ contains
       from = to + 1
     end do
   end subroutine list_remarks
-
-  !> Add a line, two blanks from the margin.
-  subroutine say(listing, text)
-    type(table_type), intent(inout) :: listing
-    character(len=*), intent(in) :: text
-
-    call listing%line('  '//text)
-  end subroutine say
 
   !> Add text, on lines of at most 132 columns.
   subroutine wrap(listing, text)

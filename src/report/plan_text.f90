@@ -6,7 +6,6 @@ module epcont_report_plan_text
   use epcont_model_controls, only: method_inistr, method_name, method_newton, rule_joined, solver_auto, &
       solver_band, solver_frontal, solver_name
   use epcont_model_model, only: line_contact, model_type
-  use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_plan_joining, only: many_of
   use epcont_plan_numbering, only: many_of_flexibility, many_operations
   use epcont_plan_planned_model, only: planned_model
@@ -39,36 +38,34 @@ contains
     type(planned_model), intent(in) :: scene   !! what is to be solved, and how
     character(len=*), intent(in), optional :: of   !! these load cases
     character(len=:), allocatable :: text
-    type(iteration_plan) :: iteration
     type(table_type) :: plan
     integer :: k
 
-    iteration = scene%iteration
     plan%text = ''
     if (present(of)) call plan%heading('PLAN  ('//of//')')
     if (.not. present(of)) call plan%heading('PLAN')
-    call say(plan, plural(scene%model%nodes, 'node')//', '//plural(scene%model%elements, 'element')//', '// &
+    call plan%say(plural(scene%model%nodes, 'node')//', '//plural(scene%model%elements, 'element')//', '// &
              plural(scene%model%pairs, 'pair')//'; bodies: '//text_of(scene%model%bodies))
-    if (iteration%from_first_pivot) &
-      call say(plan, 'ORIGINAL: as the program of about 1980, each contact from its first pivot on')
-    call say_iteration(plan, scene, iteration)
-    call say_rule(plan, scene, iteration)
+    if (scene%iteration%from_first_pivot) &
+      call plan%say('ORIGINAL: as the program of about 1980, each contact from its first pivot on')
+    call say_iteration(plan, scene)
+    call say_rule(plan, scene)
     do k = 1, min(most, size(scene%model%line_contact))
       call say_contact(plan, scene, scene%model%line_contact(k))
     end do
     call say_further(size(scene%model%line_contact), 'further contact', ' of lines')
     do k = 1, min(most, scene%motions%count)
-      call say(plan, 'free motion: '//motion_name(scene, k))
+      call plan%say('free motion: '//motion_name(scene, k))
     end do
     call say_further(scene%motions%count, 'further free motion', '')
     call say_factors()
     if (scene%model%controls%accuracy > 0.0_wp) call say_choices()
     call say_bodies()
     call plan%line('')
-    call say(plan, 'memory '//megabytes(scene%expected%bytes)// &
-             when(iteration%joined, ' (up to '//megabytes(scene%expected%apart_bytes)// &
+    call plan%say('memory '//megabytes(scene%expected%bytes)// &
+             when(scene%iteration%joined, ' (up to '//megabytes(scene%expected%apart_bytes)// &
                   ' should bodies have to be solved apart)')// &
-             ', operations '//short_real(scene%expected%operations)//when(iteration%yields, ' a solve'))
+             ', operations '//short_real(scene%expected%operations)//when(scene%iteration%yields, ' a solve'))
     text = plan%lines()
 
   contains
@@ -78,7 +75,7 @@ contains
       integer, intent(in) :: count
       character(len=*), intent(in) :: noun, behind
 
-      if (count > most) call say(plan, 'and '//plural(count - most, noun)//behind)
+      if (count > most) call plan%say('and '//plural(count - most, noun)//behind)
     end subroutine say_further
 
     !> How bodies are factored, where it is not in panels of their bands alone.
@@ -86,10 +83,10 @@ contains
       integer :: fronts
 
       fronts = count(scene%numbering%body%solver == solver_frontal)
-      if (fronts > 0 .and. .not. iteration%joined) then
-        call say(plan, 'bodies factored in nested fronts (FRONTAL): '//text_of(fronts))
+      if (fronts > 0 .and. .not. scene%iteration%joined) then
+        call plan%say('bodies factored in nested fronts (FRONTAL): '//text_of(fronts))
         if (scene%model%controls%solver == solver_auto) &
-          call say(plan, '  chosen here (AUTO): faster where a band (BAND) takes more than '// &
+          call plan%say('  chosen here (AUTO): faster where a band (BAND) takes more than '// &
                    short_real(many_operations)//' operations, the flexibility by it '// &
                    short_real(many_of_flexibility))
       end if
@@ -99,12 +96,12 @@ contains
     subroutine say_choices()
       character(len=:), allocatable :: chosen
 
-      chosen = when(iteration%yields .and. scene%model%controls%tolerance == 0.0_wp, &
-                    ', TOL '//short_real(iteration%tolerance))// &
-               when(iteration%yields .and. iteration%chosen_here, &
-                    ', METHOD '//trim(method_name(iteration%method)))
+      chosen = when(scene%iteration%yields .and. scene%model%controls%tolerance == 0.0_wp, &
+                    ', TOL '//short_real(scene%iteration%tolerance))// &
+               when(scene%iteration%yields .and. scene%iteration%chosen_here, &
+                    ', METHOD '//trim(method_name(scene%iteration%method)))
       if (len(chosen) == 0) chosen = ', nothing: no iteration, or the deck sets TOL and METHOD'
-      call say(plan, 'ACCURACY '//short_real(scene%model%controls%accuracy)//' chooses '//chosen(3:))
+      call plan%say('ACCURACY '//short_real(scene%model%controls%accuracy)//' chooses '//chosen(3:))
     end subroutine say_choices
 
     !> A row a body: what its matrix is like, how often that is factored, and how its flexibility follows from
@@ -120,7 +117,7 @@ contains
           width = text_of(body%half_bandwidth)
           if (body%solver /= solver_band) width = solver_name(body%solver)
           times = '1'
-          if (body%can_yield .and. iteration%method /= method_inistr) times = 'each iteration'
+          if (body%can_yield .and. scene%iteration%method /= method_inistr) times = 'each iteration'
           if (body%equations == 0) times = '0'
           way = '-'
           if (body%contact_equations > 0) way = merge('inversion   ', 'substitution', body%contact_last)
@@ -132,58 +129,50 @@ contains
     end subroutine say_bodies
   end function plan_text
 
-  !> Add a line, two blanks from the margin.
-  subroutine say(plan, text)
-    type(table_type), intent(inout) :: plan
-    character(len=*), intent(in) :: text
-
-    call plan%line('  '//text)
-  end subroutine say
-
   !> Whether the scene can yield, and how that is iterated.
-  subroutine say_iteration(plan, scene, iteration)
+  subroutine say_iteration(plan, scene)
     type(table_type), intent(inout) :: plan
     type(planned_model), intent(in) :: scene
-    type(iteration_plan), intent(in) :: iteration
 
-    if (.not. iteration%yields) then
-      call say(plan, 'elastic material only: one solve, no iteration')
+    if (.not. scene%iteration%yields) then
+      call plan%say('elastic material only: one solve, no iteration')
       return
     end if
-    call say(plan, when(scene%model%controls%flow_theory, 'flow', 'total')// &
+    call plan%say(when(scene%model%controls%flow_theory, 'flow', 'total')// &
              ' theory of plasticity; bodies that can yield: '//text_of(count(yielding_bodies(scene%model))))
-    call say(plan, 'iteration '//trim(method_name(iteration%method))//': '//method_text(iteration%method))
-    if (iteration%chosen_here) call say(plan, '  chosen here (AUTO): '// &
-      when(iteration%method == method_newton, 'it needs the fewest factorizations', &
+    associate (method => scene%iteration%method)
+      call plan%say('iteration '//trim(method_name(method))//': '//method_text(method))
+    end associate
+    if (scene%iteration%chosen_here) call plan%say('  chosen here (AUTO): '// &
+      when(scene%iteration%method == method_newton, 'it needs the fewest factorizations', &
            'the method of the paper, as MUP PAPER has no tangent for NEWTON'))
-    call say(plan, '  until no displacement changes, or is estimated to be off, by more than '// &
-             short_real(iteration%tolerance)//' of the largest,')
-    call say(plan, '  and no stress is off its curve by more than '//short_real(iteration%off_curve)// &
+    call plan%say('  until no displacement changes, or is estimated to be off, by more than '// &
+             short_real(scene%iteration%tolerance)//' of the largest,')
+    call plan%say('  and no stress is off its curve by more than '//short_real(scene%iteration%off_curve)// &
              ' of the stress there; at most '//plural(scene%model%controls%most_iterations, 'iteration'))
-    if (iteration%load_steps > 1) &
-      call say(plan, plural(iteration%load_steps, 'load step')//when(scene%model%controls%flow_theory, &
+    if (scene%iteration%load_steps > 1) &
+      call plan%say(plural(scene%iteration%load_steps, 'load step')//when(scene%model%controls%flow_theory, &
         ', each from the plastic strains of the one before', '; elastic unloading is not modelled'))
-    if (scene%model%controls%paper_ratio) call say(plan, 'MUP PAPER: Poisson''s ratio in the equivalent '// &
+    if (scene%model%controls%paper_ratio) call plan%say('MUP PAPER: Poisson''s ratio in the equivalent '// &
       'strain by formula (2-4): stresses up to (1 - 2 nu)/3 below the curve')
   end subroutine say_iteration
 
   !> How the pairs in contact are found.
-  subroutine say_rule(plan, scene, iteration)
+  subroutine say_rule(plan, scene)
     type(table_type), intent(inout) :: plan
     type(planned_model), intent(in) :: scene
-    type(iteration_plan), intent(in) :: iteration
 
     if (scene%model%pairs == 0) then
-      call say(plan, 'no pairs: no flexibility, no simplex')
-    else if (iteration%joined) then
-      call say(plan, 'contact by joined bodies, one system below, without their flexibility (JOINED)')
-      if (iteration%rule_chosen_here) call say(plan, '  chosen here (AUTO): faster where the '// &
+      call plan%say('no pairs: no flexibility, no simplex')
+    else if (scene%iteration%joined) then
+      call plan%say('contact by joined bodies, one system below, without their flexibility (JOINED)')
+      if (scene%iteration%rule_chosen_here) call plan%say('  chosen here (AUTO): faster where the '// &
         'flexibility takes more than '//short_real(many_of(scene%model))//' operations a node')
     else
-      call say(plan, 'contact by the simplex with contact entry rule (CONRY)')
+      call plan%say('contact by the simplex with contact entry rule (CONRY)')
     end if
-    if (scene%model%controls%rule == rule_joined .and. .not. (iteration%joined .or. scene%other_rule)) &
-      call say(plan, '  not JOINED: nothing gives way at any pair')
+    if (scene%model%controls%rule == rule_joined .and. .not. (scene%iteration%joined .or. scene%other_rule)) &
+      call plan%say('  not JOINED: nothing gives way at any pair')
   end subroutine say_rule
 
   !> A contact of lines.
@@ -195,7 +184,7 @@ contains
 
     master = joined(contact%master_id, ', ')
     associate (gap => scene%model%initial_gap(contact%first:contact%last))
-      call say(plan, 'BCONP '//joined(contact%bconp, ', ')//': nodes of BLSEG '// &
+      call plan%say('BCONP '//joined(contact%bconp, ', ')//': nodes of BLSEG '// &
                joined(contact%slave_id, ', ')//' against sides of BLSEG '//master//': '// &
                plural(size(gap), 'pair')//', initial gaps '//short_real(minval(gap))//' to '// &
                short_real(maxval(gap))// &
@@ -203,10 +192,10 @@ contains
                     short_real(contact%search)//': '//plural(contact%nodes_left_out, 'node')))
     end associate
     if (contact%last >= contact%first_of_master) &
-      call say(plan, '  of these nodes of BLSEG '//master//' that stand on sides of the former: '// &
+      call plan%say('  of these nodes of BLSEG '//master//' that stand on sides of the former: '// &
                text_of(contact%last - contact%first_of_master + 1))
     if (contact%is_wider .or. size(contact%came_near) > 0) &
-      call say(plan, '  solved anew, with nodes that came near')
+      call plan%say('  solved anew, with nodes that came near')
     call say_corners(contact%slave, contact%slave_id)
     call say_corners(contact%master, contact%master_id)
 
@@ -222,7 +211,7 @@ contains
       ends = line%corner .and. .not. line%mirrored
       node = [pack(line%segment(1, :), ends(1, :)), &
               pack(line%segment(2, :), ends(2, :) .and. line%neighbour(2, :) == 0)]
-      if (size(node) > 0) call say(plan, '  corners of BLSEG '//joined(id, ', ')//': GRID '// &
+      if (size(node) > 0) call plan%say('  corners of BLSEG '//joined(id, ', ')//': GRID '// &
           joined(scene%model%node_id(node), ', ', most_corners))
     end subroutine say_corners
   end subroutine say_contact

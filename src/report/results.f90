@@ -1,12 +1,11 @@
-!> All that a run writes: the listing for people, ASCII, at most 132 columns, with nothing in it that varies
-!> from run to run; and the tables beside it. Of several load cases each is added once it is solved, and
-!> nothing is written before the last.
+!> All files of a run: the listing (ASCII, at most 132 columns, with nothing that varies from run to run) and
+!> the tables. Several load cases are added one by one, and written after the last.
 module epcont_report_results
   use epcont_base_error, only: error_type
   use epcont_report_case_table, only: case_row, put_cases, put_worst_case, row_of_case
   use epcont_base_text, only: text_of
   use epcont_report_columns, only: table_type
-  use epcont_report_file, only: new_text_file, remove_file, text_file
+  use epcont_report_file, only: new_text_file, remove_file
   use epcont_report_listing, only: list_case, list_scene
   use epcont_messages_names, only: joined
   use epcont_report_plan_text, only: plan_text
@@ -40,15 +39,13 @@ module epcont_report_results
     result_file('.contact.vtu', 'the boundary in contact, for ParaView, with --vtk: pressures, gaps'), &
     result_file('.pvd', 'of several load cases: DECK.caseN.vtu and .caseN.contact.vtu, for ParaView')]
 
-  !> The tables that are files, and have rows of each load case.
-  character(len=8), parameter :: table_name(*) = [character(len=8) :: &
-    'summary', 'contact', 'zones', 'bodies', 'history', 'pivots', 'nodes', 'elements']
+  !> The first of these are the listing, the summary, and tables with rows of each load case.
+  integer, parameter :: listing = 1, summary = 2, of_each_case = 9
 
-  !> What there is to write of one of several load cases.
+  !> Results of one load case. If there are several, its part of each file is held in memory.
   type :: case_results
     type(case_row) :: row
-    type(table_type) :: listing
-    type(table_type) :: table(size(table_name))
+    type(table_type) :: part(of_each_case)
   end type case_results
 
   !> What a run writes, and what of several load cases is written already, in memory.
@@ -96,165 +93,112 @@ contains
     end if
   end subroutine add_plan
 
-  !> Take what came of a load case; that of the only one is written.
+  !> Take the results of a load case. Those of an only one are written.
   subroutine add_case(self, run, error)
     class(results_type), intent(inout) :: self
-    type(run_results), intent(in) :: run                  !! what is known of the run, with that case
+    type(run_results), intent(in) :: run                  !! with the results of that case
     type(error_type), allocatable, intent(out) :: error   !! a file cannot be written
     type(figure_type), allocatable :: figures(:)
     integer :: k
 
     if (run%case == 1) call remove_results(self%stem)
-    ! Of a run that is stopped, too, the next one finds what to remove.
+    ! Also if the run is stopped, the next run finds the files to remove.
     if (run%case == 1 .and. self%vtk .and. run%has_cases()) &
       call write_collection(self%stem, run%deck%subcase%id, error)
-    if (allocated(error)) return
     figures = summarise(run)
-    if (run%has_cases()) then
-      call hold_case(self%case(run%case))
-    else
-      call write_listing()
-    end if
-    do k = 1, size(table_name)
-      if (is_wanted(trim(table_name(k)))) &
-        call write_table(trim(table_name(k)), self%case(run%case)%table(k))
+    self%case(run%case)%row = row_of_case(run)
+    do k = 1, of_each_case
+      if (.not. allocated(error) .and. is_wanted(self, run, trim(result_files(k)%suffix))) &
+        call put_part(self, run, figures, k, self%case(run%case)%part(k), error)
     end do
     if (self%vtk .and. run%outcome%has_answer .and. .not. allocated(error)) &
       call write_vtk(run, self%stem//run%case_suffix(), error)
-
-  contains
-
-    !> One of several is added to no file yet.
-    subroutine hold_case(case)
-      type(case_results), intent(inout) :: case
-
-      case%row = row_of_case(run)
-      case%listing = table_type(text='')
-      call list_case(run, figures, self%all_tables, case%listing)
-      do k = 1, size(table_name)
-        case%table(k) = table_type(text='', listed=.false., subcase=case%row%subcase)
-      end do
-    end subroutine hold_case
-
-    !> Has the case such a table, and is it asked for?
-    pure logical function is_wanted(name)
-      character(len=*), intent(in) :: name
-
-      is_wanted = run%outcome%has_answer .and. .not. self%brief
-      select case (name)
-      case ('summary')
-        is_wanted = .true.
-      case ('bodies')
-        is_wanted = is_wanted .and. run%model%pairs > 0
-      case ('pivots')
-        is_wanted = is_wanted .and. self%all_tables
-        if (is_wanted) is_wanted = size(run%answer%pivot) > 0
-      case ('nodes')
-        is_wanted = is_wanted .and. run%wants_nodes(self%all_tables)
-      case ('elements')
-        is_wanted = is_wanted .and. run%wants_elements(self%all_tables)
-      end select
-    end function is_wanted
-
-    !> The listing of the only case.
-    subroutine write_listing()
-      type(table_type) :: listing
-
-      call new_text_file(self%stem//'.lst', listing, error)
-      if (allocated(error)) return
-      call list_scene(run, plan_text(run%planned_model), listing)
-      call list_case(run, figures, self%all_tables, listing)
-      call listing%finish(error)
-    end subroutine write_listing
-
-    !> The rows of a table, in a file of its own or held, where all has gone well so far.
-    subroutine write_table(name, held)
-      character(len=*), intent(in) :: name
-      type(table_type), intent(inout) :: held   !! of one of several cases
-      type(table_type) :: table
-
-      if (allocated(error)) return
-      if (run%has_cases()) then
-        call put_rows(name, held)
-      else
-        call new_text_file(self%stem//'.'//name//'.csv', table, error)
-        if (allocated(error)) return
-        table%listed = .false.
-        call put_rows(name, table)
-        call table%finish(error)
-      end if
-    end subroutine write_table
-
-    !> The rows.
-    subroutine put_rows(name, table)
-      character(len=*), intent(in) :: name
-      type(table_type), intent(inout) :: table
-
-      if (name == 'summary') then
-        call put_summary(figures, table)
-      else
-        call put_table(run, name, table)
-      end if
-    end subroutine put_rows
   end subroutine add_case
 
-  !> Write what several load cases have left.
+  !> Has the load case such a file, and is it asked for?
+  pure logical function is_wanted(self, run, suffix)
+    class(results_type), intent(in) :: self
+    type(run_results), intent(in) :: run
+    character(len=*), intent(in) :: suffix
+
+    is_wanted = run%outcome%has_answer .and. .not. self%brief
+    select case (suffix)
+    case ('.lst', '.summary.csv')
+      is_wanted = .true.
+    case ('.bodies.csv')
+      is_wanted = is_wanted .and. run%model%pairs > 0
+    case ('.pivots.csv')
+      is_wanted = is_wanted .and. self%all_tables
+      if (is_wanted) is_wanted = size(run%answer%pivot) > 0
+    case ('.nodes.csv')
+      is_wanted = is_wanted .and. run%wants_nodes(self%all_tables)
+    case ('.elements.csv')
+      is_wanted = is_wanted .and. run%wants_elements(self%all_tables)
+    end select
+  end function is_wanted
+
+  !> Put the part of a load case in a file. An only load case writes it.
+  subroutine put_part(self, run, figures, k, part, error)
+    class(results_type), intent(in) :: self
+    type(run_results), intent(in) :: run
+    type(figure_type), intent(in) :: figures(:)           !! of the summary
+    integer, intent(in) :: k                              !! which file
+    type(table_type), intent(inout) :: part
+    type(error_type), allocatable, intent(out) :: error
+
+    if (run%has_cases()) then
+      part = table_type(text='', subcase=merge(0, run%deck%subcase(run%case)%id, k == listing))
+    else
+      call new_text_file(self%stem//trim(result_files(k)%suffix), part, error)
+      if (allocated(error)) return
+    end if
+    part%listed = k == listing
+    select case (k)
+    case (listing)
+      if (.not. run%has_cases()) call list_scene(run, plan_text(run%planned_model), part)
+      call list_case(run, figures, self%all_tables, part)
+    case (summary)
+      call put_summary(figures, part)
+    case default
+      call put_table(run, result_files(k)%suffix(2:index(result_files(k)%suffix, '.csv') - 1), part)
+    end select
+    if (.not. run%has_cases()) call part%finish(error)
+  end subroutine put_part
+
+  !> Write the results of several load cases.
   subroutine finish(self, run, error)
     class(results_type), intent(inout) :: self
-    type(run_results), intent(in) :: run                  !! what is known of the run
+    type(run_results), intent(in) :: run                  !! of the last load case
     type(error_type), allocatable, intent(out) :: error   !! a file cannot be written
     type(table_type) :: file
-    integer :: k
+    logical :: empty(size(self%case))
+    integer :: c, k
 
     if (.not. run%has_cases()) return
-    call new_text_file(self%stem//'.lst', file, error)
-    if (allocated(error)) return
-    call list_scene(run, self%plan, file)
-    do k = 1, size(self%case)
-      call file%add(self%case(k)%listing)
-    end do
-    call put_cases(self%case%row, file)
-    call put_worst_case(self%case%row, run%model%controls%accuracy, file)
-    call file%finish(error)
-    do k = 1, size(table_name)
-      call write_table(k)
-    end do
-    if (.not. self%brief) call write_cases()
-    if (self%vtk .and. .not. allocated(error)) &
-      call write_collection(self%stem, pack(self%case%row%subcase, self%case%row%has_answer), error)
-
-  contains
-
-    !> The rows of all cases, below one line of heads.
-    subroutine write_table(t)
-      integer, intent(in) :: t   !! which table
-      type(text_file) :: file
-      logical :: begun
-      integer :: k
-
-      if (all([(self%case(k)%table(t)%is_empty(), k=1, size(self%case))])) return
-      if (.not. allocated(error)) &
-        call new_text_file(self%stem//'.'//trim(table_name(t))//'.csv', file, error)
+    do k = 1, of_each_case
+      empty = [(self%case(c)%part(k)%is_empty(), c=1, size(empty))]
+      if (all(empty)) cycle
+      call new_text_file(self%stem//trim(result_files(k)%suffix), file, error)
       if (allocated(error)) return
-      begun = .false.
-      do k = 1, size(self%case)
-        if (self%case(k)%table(t)%is_empty()) cycle
-        call file%add(self%case(k)%table(t), without_head=begun)
-        begun = .true.
+      if (k == listing) call list_scene(run, self%plan, file)
+      do c = 1, size(empty)
+        if (.not. empty(c)) call file%add(self%case(c)%part(k), &   ! one head for all
+                                          without_head=k /= listing .and. .not. all(empty(:c - 1)))
       end do
+      if (k == listing) call put_cases(self%case%row, file)
+      if (k == listing) call put_worst_case(self%case%row, run%model%controls%accuracy, file)
       call file%finish(error)
-    end subroutine write_table
-
-    !> What came of each case.
-    subroutine write_cases()
-      type(table_type) :: file
-
-      if (.not. allocated(error)) call new_text_file(self%stem//'.cases.csv', file, error)
+      if (allocated(error)) return
+    end do
+    if (.not. self%brief) then
+      call new_text_file(self%stem//'.cases.csv', file, error)
       if (allocated(error)) return
       file%listed = .false.
       call put_cases(self%case%row, file)
       call file%finish(error)
-    end subroutine write_cases
+    end if
+    if (self%vtk .and. .not. allocated(error)) &
+      call write_collection(self%stem, pack(self%case%row%subcase, self%case%row%has_answer), error)
   end subroutine finish
 
   !> Figures in full.

@@ -84,12 +84,11 @@ class Wanted(unittest.TestCase):
         self.assertRegex(listing, r"\n    reached: the error of the mesh is estimated at \d\.\dE-\d\d\n")
         _, listing, _ = self.run_deck("hertz/hertz330_elastic", "ACCURACY,0.001")
         self.assertRegex(listing, r"\n  refine first: element \d+")
-        self.assertRegex(listing, r"\n    not reached: the error of the mesh is estimated at \d\.\dE-\d\d; "
-                                  r"refine the elements named above\n")
+        self.assertRegex(listing, r"\n    not reached: the error of the mesh is estimated at \d\.\dE-\d\d\n")
         _, listing, _ = self.run_deck("flat_punch/flat_punch", "ACCURACY,0.01")
-        self.assertIn("\n    not to be had: the largest pressure is unbounded: it grows with every finer mesh\n", listing)
+        self.assertIn("\n    not to be had: the largest pressure is unbounded\n", listing)
         _, listing, _ = self.run_deck("tube/tube16", "ACCURACY,0.01")
-        self.assertIn("\n    (of the mesh's error nothing is known: no pressure, or too few pairs in contact)\n", listing)
+        self.assertIn("\n    not known: no pair has a pressure\n", listing)
         _, listing, _ = self.run_deck("hertz/hertz330_elastic", "UNITS,KGF-MM")
         self.assertNotIn("wanted error", listing)
 
