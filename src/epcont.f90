@@ -7,9 +7,9 @@ module epcont
       status_usage, status_valid
   use epcont_base_kinds, only: wp
   use epcont_base_version, only: program_version
-  use epcont_contact_geometry_complete, only: complete_model
+  use epcont_contact_geometry_complete, only: complete_arrays
   use epcont_element_kinematics, only: axisymmetric, plane_strain, plane_stress
-  use epcont_model_arrays, only: add_elements, body_load, line_couple, linear_equation, named_line, &
+  use epcont_model_arrays, only: add_elements, body_load, dof_tie, line_couple, linear_equation, named_line, &
       new_scene, scene_type, set_pairs, set_sections, side_pressure, spring_type, turning_platen
   use epcont_model_controls, only: controls_type, method_auto, method_inistr, method_modsec, method_newton, &
       method_secant, rule_auto, rule_conry, rule_joined, solver_auto, solver_band, &
@@ -17,7 +17,7 @@ module epcont
   use epcont_model_finding, only: findings
   use epcont_model_yield_curve, only: bilinear_curve
   use epcont_plasticity_observer, only: observer
-  use epcont_messages_array_words, only: in_array_words
+  use epcont_messages_array_words, only: in_array_words, name_item
   use epcont_messages_outcome, only: judge, outcome_type
   use epcont_solution, only: solution_type
   use epcont_system_threads, only: one_thread, threads_now, use_threads
@@ -26,7 +26,8 @@ module epcont
   public :: wp, program_version
   ! A scene.
   public :: scene_type, new_scene, add_elements, set_sections, set_pairs
-  public :: side_pressure, body_load, named_line, line_couple, turning_platen, linear_equation, spring_type
+  public :: side_pressure, body_load, named_line, line_couple
+  public :: dof_tie, turning_platen, linear_equation, spring_type
   public :: plane_strain, plane_stress, axisymmetric, uniaxial_curve, bilinear_curve
   ! What a deck says by PARAM.
   public :: controls_type, method_auto, method_secant, method_modsec, method_inistr, method_newton, &
@@ -57,7 +58,7 @@ contains
     call ieee_set_halting_mode(ieee_all, .false.)
     before = threads_now()
     call use_threads(one_thread)
-    call complete_model(scene, solution%model, found)
+    call complete_arrays(scene, solution%model, found)
     if (found%errors == 0) call solution%find_motions(found)
     outcome%status = status_deck
     outcome%word = 'refused'
@@ -90,10 +91,7 @@ contains
       if (found%count == 0) allocate (found%list(0))
       found%list = found%list(:found%count)
       do k = 1, found%count
-        associate (one => found%list(k))
-          one%what = in_array_words(solution%model%name_of(one%of, one%which)//one%what)
-          one%remedy = in_array_words(one%remedy)
-        end associate
+        call name_item(solution%model, found%list(k))
       end do
       k = findloc(found%list%severity, severity_error, dim=1)
       if (k > 0) outcome%sentence = found%list(k)%what//' (wanted: '//found%list(k)%remedy//')'

@@ -146,7 +146,7 @@ contains
     call watch%lap(stage_model)
     if (run%faults%errors > 0) return
     call run%find_motions(run%faults)
-    call tell(run%deck, run%model%kinds, run%faults, 1)
+    call tell(run%deck, run%faults, 1)
     call check_patterns()
     call watch%lap(stage_plan)
 
@@ -162,7 +162,7 @@ contains
         faults = diagnostics()
         call build_model(run%deck, other%model, faults, of_pattern=p)
         if (faults%errors == 0) call other%find_motions(faults)
-        call tell(run%deck, other%model%kinds, faults, findloc(run%cases%case%pattern, p, dim=1))
+        call tell(run%deck, faults, findloc(run%cases%case%pattern, p, dim=1))
         do i = 1, faults%count
           if (.not. run%faults%has(faults%list(i))) call run%faults%add(faults%list(i))
         end do

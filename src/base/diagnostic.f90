@@ -35,6 +35,9 @@ module epcont_base_diagnostic
     integer :: errors = 0, warnings = 0, notes = 0   !! how many there are of each severity
     integer :: count = 0
     type(diagnostic), allocatable :: list(:)         !! [count or more]
+    !> Items that come from others: of, which, item of the first, then of the other [6, origins or more]
+    integer, allocatable, private :: origin(:, :)
+    integer, private :: origins = 0
   contains
     generic :: add_error => add_error_at, add_error_of
     procedure, private :: add_error_at
@@ -44,6 +47,8 @@ module epcont_base_diagnostic
     procedure, private :: add_note_at
     procedure, private :: add_note_of
     procedure :: add
+    procedure :: add_origin
+    procedure :: origin_of
     procedure :: has
     procedure :: in_deck_order
   end type diagnostics
@@ -118,6 +123,30 @@ contains
       self%notes = self%notes + 1
     end select
   end subroutine add
+
+  !> Note that an item comes from another one.
+  pure subroutine add_origin(self, item, from)
+    class(diagnostics), intent(inout) :: self
+    integer, intent(in) :: item(3), from(3)   !! of, which, item; of the other one
+
+    if (.not. allocated(self%origin)) allocate (self%origin(6, 16))
+    if (self%origins == size(self%origin, 2)) &   ! room doubles
+      self%origin = reshape([self%origin, self%origin], [6, 2*self%origins])
+    self%origins = self%origins + 1
+    self%origin(:, self%origins) = [item, from]
+  end subroutine add_origin
+
+  !> What an item comes from: of, which, item; itself if nothing has been noted.
+  pure function origin_of(self, item) result(from)
+    class(diagnostics), intent(in) :: self
+    integer, intent(in) :: item(3)   !! of, which, item
+    integer :: from(3), k
+
+    from = item
+    do k = 1, self%origins
+      if (all(self%origin(:3, k) == item)) from = self%origin(4:, k)
+    end do
+  end function origin_of
 
   !> The faults by line, then column, then arrival; those of the deck as a whole come last.
   pure function in_deck_order(self) result(order)

@@ -1,34 +1,29 @@
 !> From the cards of a deck to the scene, and what is found of it to messages with their places in the deck.
 module epcont_build_build
   use epcont_base_diagnostic, only: diagnostic, diagnostics
-  use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: sorted_order
   use epcont_base_text, only: text_of
-  use epcont_build_cases, only: build_cases
+  use epcont_build_cases, only: read_cases
   use epcont_build_choices, only: check_once, read_controls
-  use epcont_build_contacts, only: build_contacts
-  use epcont_build_mesh, only: build_mesh, element_cards
+  use epcont_build_contacts, only: read_contacts
+  use epcont_build_mesh, only: element_cards, read_mesh, take_ids
   use epcont_build_reference, only: card_index, check_unique, chosen_sets, index_of, note_unnamed
-  use epcont_build_supports, only: build_ties, check_displacements, hold_nodes
-  use epcont_build_temperatures, only: build_temperatures
-  use epcont_contact_geometry_complete, only: check_controls, finish_model
-  use epcont_contact_geometry_line_contacts, only: find_line_contacts
+  use epcont_build_supports, only: read_references, read_supports, read_ties
+  use epcont_build_temperatures, only: read_temperatures
+  use epcont_build_tie_cards, only: read_equations, read_springs
+  use epcont_contact_geometry_complete, only: complete_model
   use epcont_deck_card_kinds, only: card_bconp, card_blseg, card_celas1, card_celas2, card_cgap, &
-      card_cord2r, card_grav, card_grid, card_load, card_mat1, card_mats1, card_mpc, card_mpcadd, &
-      card_nlparm, card_param, card_pelas, card_pgap, card_pshell, card_psolid, card_rbe2, card_rforce, &
-      card_spc, card_spc1, card_tables1
+      card_cord2r, card_grav, card_grid, card_load, card_mat1, card_mats1, card_mpcadd, card_nlparm, &
+      card_param, card_pelas, card_pgap, card_pshell, card_psolid, card_rbe2, card_rforce, card_spc, &
+      card_spc1, card_tables1
   use epcont_deck_case_control, only: subcase_control
   use epcont_deck_deck, only: deck_type
-  use epcont_deck_entry, only: least_cause
   use epcont_element_element_kind, only: element_kind
   use epcont_element_element_kinds, only: element_kinds
-  use epcont_element_kinematics, only: directions
-  use epcont_model_body_checks, only: check_body_loads
-  use epcont_model_element_shapes, only: check_axis
-  use epcont_model_arrays, only: angle
-  use epcont_model_finding, only: and_more, findings, of_body, of_body_load, of_couple, of_element, &
-      of_equation, of_line, of_node, of_pair, of_paper_ratio, of_scene, of_theory
-  use epcont_model_load_cases, only: contact_all, contact_none, load_cases, put_case
+  use epcont_model_arrays, only: scene_type
+  use epcont_model_finding, only: and_more, findings, of_body, of_body_load, of_couple, of_element, of_line, &
+      of_node, of_pair, of_paper_ratio, of_scene, of_section, of_theory
+  use epcont_model_load_cases, only: contact_all, contact_none, load_cases
   use epcont_model_model, only: model_type
   implicit none
   private
@@ -38,127 +33,87 @@ module epcont_build_build
   integer, parameter :: own_ids(11) = [card_grid, card_mat1, card_mats1, card_tables1, card_pgap, &
       card_cord2r, card_blseg, card_bconp, card_load, card_mpcadd, card_nlparm]
 
+  !> Fields of parts of a body load: item_acceleration, item_centre, item_spin_up.
+  character(len=*), parameter :: body_load_field(3) = ['N1  ', 'G   ', 'RACC']
+
 contains
 
-  !> Build the scene; whatever is wrong with it is added to `faults`, and the model serves only without
-  !! errors.
+  !> Build the model of a deck. Everything that is wrong with it is added to `faults`; the model serves only
+  !! without errors.
   subroutine build_model(deck, model, faults, all_cases, of_pattern)
     type(deck_type), intent(in) :: deck          !! its cards
     type(model_type), intent(out) :: model       !! the scene, with the first load case of that pattern
     type(diagnostics), intent(inout) :: faults   !! of the deck; they are added to
     type(load_cases), intent(out), optional :: all_cases   !! of the deck
     integer, intent(in), optional :: of_pattern  !! of supports and contacts; else that of the first case
-    type(card_index) :: nodes
+    type(element_kind), allocatable :: kinds(:)
     type(load_cases) :: cases
-    integer :: chosen, pattern   ! contacts, and what of_pattern says
-    logical, allocatable :: always_held(:, :)   ! by all patterns [angle, nodes]
-    integer :: k
+    integer :: case, pattern   ! the first of that pattern, and what of_pattern says
 
     pattern = 1
     if (present(of_pattern)) pattern = of_pattern
-    model%kinds = element_kinds()
+    kinds = element_kinds()
+    call check_ids(deck, kinds, faults)
+    call read_data(deck, kinds, pattern, model%scene_type, cases, faults)
+    call take_ids(deck, kinds, model)
+    case = findloc(cases%case%pattern, pattern, dim=1)
+    call complete_model(model, cases, case, faults)
+    call note_without_effect(deck, kinds, cases, faults)
+    if (present(all_cases)) all_cases = cases
+    call tell(deck, faults)
+  end subroutine build_model
+
+  !> Ids are unique.
+  subroutine check_ids(deck, kinds, faults)
+    type(deck_type), intent(in) :: deck
+    type(element_kind), intent(in) :: kinds(:)
+    type(diagnostics), intent(inout) :: faults
+    integer :: k
+
     do k = 1, size(own_ids)
       call check_unique(deck, own_ids(k:k), faults)
     end do
     call check_unique(deck, [card_pshell, card_psolid], faults)
-    call check_unique(deck, [element_cards(deck, model%kinds), card_rbe2, card_cgap, card_celas1, &
-                            card_celas2], faults)
+    call check_unique(deck, [element_cards(deck, kinds), card_rbe2, card_cgap, card_celas1, card_celas2], &
+                      faults)
+  end subroutine check_ids
+
+  !> Read the model data from the cards.
+  subroutine read_data(deck, kinds, pattern, data, cases, faults)
+    type(deck_type), intent(in) :: deck
+    type(element_kind), intent(in) :: kinds(:)
+    integer, intent(in) :: pattern
+    type(scene_type), intent(out) :: data
+    type(load_cases), intent(out) :: cases
+    type(diagnostics), intent(inout) :: faults
+    type(card_index) :: nodes
+    logical, allocatable :: idle(:, :)   ! DOFs that are fixed, but not in all patterns [angle, nodes]
+
     nodes = index_of(deck, card_grid)
-    call build_mesh(deck, nodes, model, faults)
-    model%controls = read_controls(deck)
-    call build_cases(deck, nodes, model, cases, faults)
-    call build_temperatures(deck, nodes, model, cases, faults)
-    call hold_patterns()
-    call build_ties(deck, nodes, always_held, model, faults)
-    chosen = cases%case(findloc(cases%case%pattern, pattern, dim=1))%contact
-    call check_axis(model, faults)
-    ! What iterations of a mesher leave of zero. Sides are longer by far, but what it makes of gaps would load
-    ! the scene.
-    where (abs(model%x) < least_cause) model%x = 0.0_wp
-    call build_contacts(deck, nodes, chosen, model, faults)
-    model%contact_is_off = chosen /= contact_all
-    call find_line_contacts(model, faults)
-    call check_once(deck, model%controls%original, faults)
-    call check_controls(model, faults)
-    if (model%elements == 0 .and. faults%errors == 0) &
-      call faults%add_error(of_scene, 0, 0, 'the deck has no elements', 'CTRIA3 cards')
-    if (faults%errors == 0) then
-      call put_case(cases, findloc(cases%case%pattern, pattern, dim=1), model)
-      call check_body_loads(model, cases%body%given, faults)
-      call finish_model(model, faults)
-    end if
-    call note_without_effect(deck, model, cases, faults)
-    if (present(all_cases)) all_cases = cases
-    call find_card_of_contact(deck, chosen, faults)
-    call tell(deck, model%kinds, faults)
-
-  contains
-
-    !> The patterns of the load cases: of the freedoms that their supports hold, and of their contacts.
-    subroutine hold_patterns()
-      logical, allocatable :: held(:, :, :)   ! by each pattern, as `held_now` has them
-      integer, allocatable :: first(:)        ! case of each pattern
-      integer :: k
-
-      allocate (held(angle, model%nodes, 0), first(0))
-      do k = 1, size(cases%case)
-        call take_pattern(k, held, first)
-      end do
-      cases%patterns = size(first)
-      always_held = all(held, dim=3)
-      call check_displacements(cases, model, held, faults)
-      call hold(held(:, :, min(pattern, cases%patterns)))
-    end subroutine hold_patterns
-
-    !> The pattern of a load case.
-    subroutine take_pattern(k, held, first)
-      integer, intent(in) :: k
-      logical, allocatable, intent(inout) :: held(:, :, :)
-      integer, allocatable, intent(inout) :: first(:)
-      integer :: before, p
-
-      associate (case => cases%case)
-        before = findloc(case(:k - 1)%supports, case(k)%supports, dim=1)
-        if (before == 0) call hold_nodes(deck, nodes, case(k)%supports, model, faults)
-        if (before > 0) call hold(held(:, :, case(before)%pattern))
-        do p = 1, size(first)
-          if (case(k)%contact == case(first(p))%contact .and. all(held(:, :, p) .eqv. held_now())) exit
-        end do
-        case(k)%pattern = p
-      end associate
-      if (p <= size(first)) return
-      first = [first, k]
-      held = reshape([held, held_now()], [angle, model%nodes, p])
-    end subroutine take_pattern
-
-    !> The freedoms of all nodes that are held, and the angles of those that lead and turn [angle, nodes].
-    pure function held_now() result(held)
-      logical, allocatable :: held(:, :)
-
-      allocate (held(angle, model%nodes), source=.false.)
-      held(:directions, :) = model%held
-      held(angle, model%platen%leader) = model%platen%held
-    end function held_now
-
-    !> Hold them.
-    subroutine hold(held)
-      logical, intent(in) :: held(:, :)
-
-      model%held = held(:directions, :)
-      model%platen%held = held(angle, model%platen%leader)
-    end subroutine hold
-  end subroutine build_model
+    call read_mesh(deck, nodes, kinds, data, faults)
+    data%controls = read_controls(deck)
+    call check_once(deck, data%controls%original, faults)
+    call read_cases(deck, nodes, kinds, data, cases, faults)
+    call read_temperatures(deck, nodes, data, cases, faults)
+    call read_supports(deck, nodes, pattern, data, cases, idle, faults)
+    call read_ties(deck, nodes, data, faults)
+    call read_references(deck, nodes, idle, data, faults)
+    call read_equations(deck, nodes, data, faults)
+    call read_springs(deck, nodes, data, faults)
+    call read_contacts(deck, nodes, cases%case(findloc(cases%case%pattern, pattern, dim=1))%contact, data, &
+                       faults)
+  end subroutine read_data
 
   !> Note the cards that nothing uses: no other card, or no load case.
-  subroutine note_without_effect(deck, model, cases, faults)
+  subroutine note_without_effect(deck, kinds, cases, faults)
     type(deck_type), intent(in) :: deck
-    type(model_type), intent(in) :: model
+    type(element_kind), intent(in) :: kinds(:)
     type(load_cases), intent(in) :: cases
     type(diagnostics), intent(inout) :: faults
     integer, allocatable :: sections(:)
     integer :: c
 
-    associate (elements => element_cards(deck, model%kinds), cid => deck%card(card_cgap)%column('CID'))
+    associate (elements => element_cards(deck, kinds), cid => deck%card(card_cgap)%column('CID'))
       sections = [(ids(elements(c), 2), c=1, size(elements))]
       call note_unnamed(deck, card_pshell, 1, sections, 'element', faults)
       call note_unnamed(deck, card_psolid, 1, sections, 'element', faults)
@@ -186,31 +141,15 @@ contains
       ids = nint(deck%card(card)%value(column, :))
     end function ids
   end subroutine note_without_effect
-
-  !> Of contacts the only one is chosen: what is found of it is of its card.
-  subroutine find_card_of_contact(deck, chosen, faults)
-    type(deck_type), intent(in) :: deck
-    integer, intent(in) :: chosen
-    type(diagnostics), intent(inout) :: faults
-    integer :: i
-
-    if (chosen <= 0) return
-    do i = 1, faults%count
-      if (faults%list(i)%of == of_couple) &
-        faults%list(i)%which = findloc(nint(deck%card(card_bconp)%value(1, :)), chosen, dim=1)
-    end do
-  end subroutine find_card_of_contact
-
   !> Put the names of their cards before what was found of the scene, with the places of these.
-  subroutine tell(deck, kinds, faults, case)
+  subroutine tell(deck, faults, case)
     type(deck_type), intent(in) :: deck          !! its cards
-    type(element_kind), intent(in) :: kinds(:)   !! of elements
     type(diagnostics), intent(inout) :: faults   !! of the deck, and findings of the scene that it makes
     integer, intent(in), optional :: case        !! the first one with the supports of the scene
     integer, allocatable :: elements(:)   ! the cards of elements
     integer :: i
 
-    elements = element_cards(deck, kinds)
+    elements = element_cards(deck, element_kinds())
     do i = 1, faults%count
       if (faults%list(i)%of /= of_scene) call name_card(faults%list(i))
     end do
@@ -237,8 +176,8 @@ contains
       type(diagnostic), intent(in) :: one
       integer :: card(3), c
 
-      card = [one%of, one%which, one%item]
-      select case (one%of)
+      card = faults%origin_of([one%of, one%which, one%item])
+      select case (card(1))
       case (of_node, of_body)
         card(1) = card_grid
       case (of_element)
@@ -250,6 +189,8 @@ contains
         if (card(3) < 0) &   ! a node: behind id and section
           card(3) = findloc(deck%card(card(1))%value(:, card(2)), &
                             deck%card(card_grid)%value(1, -card(3)), dim=1, back=.true.)
+      case (of_section)
+        card(:2) = behind(card_pshell, card_psolid, card(2))
       case (of_pair)
         card(1) = card_cgap
       case (of_line)
@@ -258,17 +199,23 @@ contains
       case (of_couple)
         card(1) = card_bconp
       case (of_body_load)
-        card(1) = card_grav
-        if (card(2) > deck%card(card_grav)%count) &
-          card(:2) = [card_rforce, card(2) - deck%card(card_grav)%count]
-      case (of_equation)
-        card(1) = card_mpc
+        card(:2) = behind(card_grav, card_rforce, card(2))
+        if (card(3) > 0) card(3) = deck%card(card(1))%column(body_load_field(card(3)))
       case (of_theory)
         card(:2) = [card_param, deck%parameter_row('THEORY')]
       case (of_paper_ratio)
         card(:2) = [card_param, max(deck%parameter_row('MUP'), deck%parameter_row('ORIGINAL'))]
       end select
     end function card_of
+
+    !> The k-th card of two tables: those of the second one are counted after those of the first.
+    pure function behind(first, second, k) result(card)
+      integer, intent(in) :: first, second, k
+      integer :: card(2)
+
+      card = [first, k]
+      if (k > deck%card(first)%count) card = [second, k - deck%card(first)%count]
+    end function behind
 
     !> The item of a BLSEG's list that names the k-th node of the line.
     pure integer function list_item(line, k) result(item)

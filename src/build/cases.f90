@@ -3,23 +3,23 @@
 module epcont_build_cases
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: new_id_index
-  use epcont_base_text, only: short_real, text_of
-  use epcont_build_mass_loads, only: build_mass_loads
-  use epcont_build_reference, only: card_index, check_combinations, chosen_sets, note_unnamed, &
-      note_unused, resolve
+  use epcont_base_text, only: short_real
+  use epcont_build_mass_loads, only: read_mass_loads
+  use epcont_build_mesh, only: element_cards
+  use epcont_build_reference, only: card_index, check_choices, check_combinations, chosen_sets, &
+      named_node, nodes_of_fields, note_unnamed, note_unused, resolve
   use epcont_deck_card_kinds, only: card_bconp, card_force, card_grav, card_load, card_moment, card_nlparm, &
       card_param, card_ploadx1, card_rforce, card_spc, card_spc1, card_spcd
   use epcont_deck_deck, only: deck_type
   use epcont_deck_entry, only: farthest, least_cause
-  use epcont_build_tie_cards, only: check_directions, find_moments, find_platens, names, turn
-  use epcont_model_arrays, only: angle, side_pressure
-  use epcont_model_finding, only: and_more, findings, of_element
-  use epcont_model_load_cases, only: load_case, load_cases, nodal_force, set_displacement, set_pressure
-  use epcont_model_model, only: model_type
-  use epcont_model_pressure, only: find_side
+  use epcont_build_tie_cards, only: check_directions, digit, dof_node, find_moments, find_platens, names
+  use epcont_element_element_kind, only: element_kind
+  use epcont_model_arrays, only: angle, scene_type, side_pressure
+  use epcont_model_finding, only: and_more, findings, of_pressure
+  use epcont_model_load_cases, only: load_case, load_cases, set_displacement, set_pressure
   implicit none
   private
-  public :: build_cases
+  public :: read_cases
 
   !> Cards whose first field is a set of loads, which LOAD may combine; and of supports.
   integer, parameter :: load_cards(*) = [card_force, card_ploadx1, card_spcd, card_grav, card_rforce, &
@@ -29,15 +29,17 @@ module epcont_build_cases
 contains
 
   !> The load cases of a deck, and what their sets say.
-  subroutine build_cases(deck, nodes, model, cases, found)
+  subroutine read_cases(deck, nodes, kinds, data, cases, found)
     type(deck_type), intent(in) :: deck        !! its cards
     type(card_index), intent(in) :: nodes      !! ids of GRID
-    type(model_type), intent(inout) :: model   !! the scene: its mesh; gets the RBE2 leaders that turn
+    type(element_kind), intent(in) :: kinds(:) !! of elements
+    type(scene_type), intent(inout) :: data    !! elements and sections; gets the RBE2 leaders that turn
     type(load_cases), intent(out) :: cases     !! of the scene
     type(findings), intent(inout) :: found     !! what is wrong with it is added
     integer, dimension(size(deck%subcase)) :: loads, supports
     integer, allocatable :: used(:)            ! sets of loads
     integer :: k
+    logical :: rings
 
     call chosen_sets(deck, support_cards, deck%subcase%spc, 'SPC', found, supports)
     call note_unused(deck, support_cards, supports, found)
@@ -53,17 +55,19 @@ contains
     end do
     call check_combinations(deck, card_load, load_cards, 'loads', &
                             'the set of FORCE, PLOADX1, MOMENT, GRAV, RFORCE or SPCD cards', found)
-    call check_contacts()
+    call check_choices(deck, deck%subcase%contact, nint(deck%card(card_bconp)%value(1, :)), 'BCONTACT', &
+                       'there is no such BCONP', 'ALL, NONE or the id of a BCONP', found)
     call choose_load_steps()
     call note_unused(deck, load_cards, used, found)
     call note_unused(deck, [card_load], loads, found)
-    call find_platens(deck, nodes, supports, used, model, found)
-    call find_moments(deck, nodes, used, model, cases%moment, found)
+    call find_platens(deck, nodes, supports, used, data, found)
+    call find_moments(deck, nodes, used, data, cases%moment, found)
     call add_forces(deck, nodes, used, cases, found)
-    call add_pressures(deck, nodes, model, used, cases, found)
-    call build_mass_loads(deck, nodes, model, used, cases%body, found)
-    call add_displacements(deck, nodes, model, card_spc, supports, cases%held_at, found)
-    call add_displacements(deck, nodes, model, card_spcd, used, cases%moved, found)
+    call add_pressures(deck, nodes, kinds, used, cases, found)
+    rings = .false.
+    if (size(data%block) > 0) rings = any(kinds%ring_card == data%block(1)%name)
+    call read_mass_loads(deck, nodes, rings, data%x, used, cases%body, found)
+    call add_displacements(deck, nodes, data, used, cases%moved, found)
 
   contains
 
@@ -87,43 +91,25 @@ contains
       end associate
     end subroutine combine
 
-    !> BCONTACT names a BCONP.
-    subroutine check_contacts()
-      integer :: k
-
-      do k = 1, size(deck%subcase)
-        associate (contact => deck%subcase(k)%contact)
-          if (contact%id <= 0 .or. any(nint(deck%card(card_bconp)%value(1, :)) == contact%id)) cycle
-          if (any(deck%subcase(:k - 1)%contact%id == contact%id)) cycle   ! it has been reported
-          call found%add_error(contact%place, 'BCONTACT = '//text_of(contact%id)// &
-                               ': there is no such BCONP', 'ALL, NONE or the id of a BCONP')
-        end associate
-      end do
-    end subroutine check_contacts
-
     !> The load steps of each case: those of its NLPARM, else of PARAM NLOAD.
     subroutine choose_load_steps()
       integer :: k, row
 
-      cases%case%load_steps = model%controls%load_steps
+      cases%case%load_steps = data%controls%load_steps
       associate (nlparm => deck%card(card_nlparm), choice => deck%subcase%nlparm)
         do k = 1, size(choice)
-          if (choice(k)%id == 0) cycle
           row = findloc(nint(nlparm%value(1, :)), choice(k)%id, dim=1)
-          if (row > 0) then
-            cases%case(k)%load_steps = nint(nlparm%number('NINC', row))
-          else if (all(choice(:k - 1)%id /= choice(k)%id) .and. deck%whole) then
-            call found%add_error(choice(k)%place, 'NLPARM = '//text_of(choice(k)%id)// &
-                                 ': there is no such NLPARM', 'the id of an NLPARM card')
-          end if
+          if (choice(k)%id > 0 .and. row > 0) cases%case(k)%load_steps = nint(nlparm%number('NINC', row))
         end do
+        call check_choices(deck, choice, nint(nlparm%value(1, :)), 'NLPARM', 'there is no such NLPARM', &
+                           'the id of an NLPARM card', found)
         call note_unnamed(deck, card_nlparm, 1, choice%id, 'load case', found)
         row = deck%parameter_row('NLOAD')
         if (row > 0 .and. any(choice%id > 0)) call found%add_error(card_param, row, 1, &
           ': NLPARM says the number of load steps, too', 'one of the two')
       end associate
     end subroutine choose_load_steps
-  end subroutine build_cases
+  end subroutine read_cases
 
   !> FORCE.
   subroutine add_forces(deck, nodes, used, cases, found)
@@ -187,86 +173,67 @@ contains
     end subroutine report_idle
   end subroutine add_forces
 
-  !> PLOADX1; one warning for all that press inside a body.
-  subroutine add_pressures(deck, nodes, model, used, cases, found)
+  !> PLOADX1.
+  subroutine add_pressures(deck, nodes, kinds, used, cases, found)
     type(deck_type), intent(in) :: deck
     type(card_index), intent(in) :: nodes
-    type(model_type), intent(in) :: model
+    type(element_kind), intent(in) :: kinds(:)
     integer, intent(in) :: used(:)
     type(load_cases), intent(inout) :: cases
     type(findings), intent(inout) :: found
-    integer, dimension(deck%card(card_ploadx1)%count) :: a, b, behind, element
+    integer, dimension(deck%card(card_ploadx1)%count) :: a, b, element
+    integer :: c, ga, i, last
     type(card_index) :: elements
-    type(set_pressure) :: all_of_them(size(a))
-    logical :: acts(size(a))
-    integer :: ends(3), ga, i
 
-    elements = card_index(new_id_index(model%element_id), 'element', found%errors == 0)
-    behind = 0
-    acts = .false.
-    associate (pressure => deck%card(card_ploadx1))
+    associate (cards => element_cards(deck, kinds), pressure => deck%card(card_ploadx1))
+      elements = card_index(new_id_index([(int(deck%card(cards(c))%value(1, :)), c=1, size(cards))]), &
+                            'element', found%errors == 0)
       ga = pressure%column('GA')
       call resolve(deck, card_ploadx1, 2, elements, found, element)
       call resolve(deck, card_ploadx1, ga, nodes, found, a)
       call resolve(deck, card_ploadx1, ga + 1, nodes, found, b)
+      allocate (cases%pressure(pressure%count))
+      last = 0
       do i = 1, pressure%count
         if (element(i) == 0 .or. a(i) == 0 .or. b(i) == 0) cycle
         if (all(used /= nint(pressure%value(1, i)))) cycle
-        if (any(model%connectivity(:model%node_count(element(i)), element(i)) == 0)) cycle
-        all_of_them(i)%set = nint(pressure%value(1, i))
-        all_of_them(i)%given = side_pressure(element(i), [a(i), b(i)], pressure%value(3:4, i), &
-                                             pressure%number('THETA', i))
-        call find_side(model, all_of_them(i)%given, ends, behind(i))
-        acts(i) = model%section(element(i)) > 0
-        if (ends(1) == 0) &
-          call found%add_error(card_ploadx1, i, ga, ': GA and GB are not the ends of a side of '// &
-                               model%name_of(of_element, element(i)), &
-                               'two neighbouring corners of the element')
+        last = last + 1
+        cases%pressure(last) = set_pressure(nint(pressure%value(1, i)), side_pressure( &
+                               element(i), [a(i), b(i)], pressure%value(3:4, i), pressure%number('THETA', i)))
+        call found%add_origin([of_pressure, last, 0], [card_ploadx1, i, ga])
       end do
     end associate
-    cases%pressure = pack(all_of_them, acts)
-    if (all(behind == 0)) return
-    i = findloc(behind > 0, .true., dim=1)
-    call found%add_warning(card_ploadx1, i, ga, ': presses inside a body, between '// &
-                           model%name_of(of_element, element(i))//' and '// &
-                           model%name_of(of_element, behind(i))// &
-                           and_more(count(behind > 0), '; so do ', ' more'), &
-                           'a side that one element alone has')
+    cases%pressure = cases%pressure(:last)
   end subroutine add_pressures
 
-  !> SPC and SPCD: nodes, directions and displacements, of the sets that are used.
-  subroutine add_displacements(deck, nodes, model, card, sets, displacements, found)
+  !> SPCD of the sets that are used.
+  subroutine add_displacements(deck, nodes, data, used, moved, found)
     type(deck_type), intent(in) :: deck
     type(card_index), intent(in) :: nodes
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: card, sets(:)
-    type(set_displacement), allocatable, intent(out) :: displacements(:)
+    type(scene_type), intent(in) :: data
+    integer, intent(in) :: used(:)
+    type(set_displacement), allocatable, intent(out) :: moved(:)
     type(findings), intent(inout) :: found
-    type(findings) :: unheard   ! of SPC all is told by the supports
-    integer :: c, i, k, last, node(deck%card(card)%count), platen
+    type(named_node), allocatable :: named(:)
+    integer :: at, c, i, last
 
+    named = nodes_of_fields(deck, card_spcd, [2, 5], nodes, found)
+    allocate (moved(angle*size(named)))
     last = 0
-    allocate (displacements(6*size(node)))   ! two nodes a card, in two directions, or an angle
-    do k = 2, 5, 3
-      if (card == card_spc) call resolve(deck, card, k, nodes, unheard, node)
-      if (card == card_spcd) call resolve(deck, card, k, nodes, found, node)
-      do i = 1, size(node)
-        associate (value => deck%card(card)%value(:, i))
-          if (node(i) == 0 .or. all(sets /= nint(value(1)))) cycle
-          if (value(k + 2) /= 0.0_wp) &
-            call check_directions(model, node(i), value(k + 1), [card, i, k + 1], found)
-          do c = 1, 2
-            if (all(mod(nint(value(k + 1))/10**[0, 1, 2, 3, 4, 5], 10) /= c)) cycle
-            last = last + 1
-            displacements(last) = set_displacement(nint(value(1)), c, node(i), value(k + 2), i, k)
-          end do
-          platen = findloc(model%platen%leader, node(i), dim=1)
-          if (platen == 0 .or. .not. names(value(k + 1), turn)) cycle
+    do i = 1, size(named)
+      associate (card => named(i)%card, digits => named(i)%digits, &
+                 value => deck%card(card_spcd)%value(:, named(i)%card(2)))
+        if (all(used /= nint(value(1)))) cycle
+        if (value(digits + 1) /= 0.0_wp) &
+          call check_directions(deck, data, named(i)%node, value(digits), [card(:2), digits], found)
+        do c = 1, angle
+          at = dof_node(data, c, named(i)%node)
+          if (at == 0 .or. .not. names(value(digits), digit(c))) cycle
           last = last + 1
-          displacements(last) = set_displacement(nint(value(1)), angle, platen, value(k + 2), i, k)
-        end associate
-      end do
+          moved(last) = set_displacement(nint(value(1)), c, at, value(digits + 1), card(2), card(3))
+        end do
+      end associate
     end do
-    displacements = displacements(:last)
+    moved = moved(:last)
   end subroutine add_displacements
 end module epcont_build_cases

@@ -6,23 +6,21 @@ module epcont_build_contacts
   use epcont_build_reference, only: card_index, index_of, resolve
   use epcont_deck_card_kinds, only: card_bconp, card_blseg, card_cgap, card_cord2r, card_pgap
   use epcont_deck_deck, only: deck_type
-  use epcont_model_arrays, only: set_pairs
-  use epcont_model_finding, only: findings
+  use epcont_model_arrays, only: scene_type, set_pairs
+  use epcont_model_finding, only: findings, of_couple
   use epcont_model_load_cases, only: contact_all, contact_none
-  use epcont_model_model, only: model_type
-  use epcont_model_single_pairs, only: complete_pairs
   implicit none
   private
-  public :: build_contacts
+  public :: read_contacts
 
 contains
 
   !> Pairs, then lines.
-  subroutine build_contacts(deck, nodes, chosen, model, found)
+  subroutine read_contacts(deck, nodes, chosen, data, found)
     type(deck_type), intent(in) :: deck        !! its cards
     type(card_index), intent(in) :: nodes      !! ids of GRID
     integer, intent(in) :: chosen              !! the only BCONP; contact_all or contact_none
-    type(model_type), intent(inout) :: model   !! the scene
+    type(scene_type), intent(inout) :: data    !! gets pairs, lines and couples
     type(findings), intent(inout) :: found     !! what is wrong with it is added
     !> x-axes in the plane of the systems: the basic one, number 0, and those of CORD2R
     real(wp) :: axis(2, 0:deck%card(card_cord2r)%count)
@@ -33,18 +31,23 @@ contains
       if (deck%card(card_cord2r)%sound(i)) call read_system()
     end do
     call read_pairs()
-    deallocate (model%line, model%couple)
-    allocate (model%line(deck%card(card_blseg)%count), model%couple(deck%card(card_bconp)%count))
-    model%line%id = nint(deck%card(card_blseg)%value(1, :))
-    model%couple%id = nint(deck%card(card_bconp)%value(1, :))
+    deallocate (data%line, data%couple)
+    allocate (data%line(deck%card(card_blseg)%count), data%couple(deck%card(card_bconp)%count))
+    data%line%id = nint(deck%card(card_blseg)%value(1, :))
+    data%couple%id = nint(deck%card(card_bconp)%value(1, :))
     do k = 1, 2
-      call resolve(deck, card_bconp, 1 + k, index_of(deck, card_blseg), found, model%couple%line(k))
+      call resolve(deck, card_bconp, 1 + k, index_of(deck, card_blseg), found, data%couple%line(k))
     end do
-    do i = 1, size(model%line)
-      model%line(i)%is_named = any(model%couple%line(1) == i .or. model%couple%line(2) == i)
+    do i = 1, size(data%line)
+      data%line(i)%is_named = any(data%couple%line(1) == i .or. data%couple%line(2) == i)
       call read_line()
     end do
-    if (chosen /= contact_all) model%couple = pack(model%couple, model%couple%id == chosen)
+    data%contact_is_off = chosen /= contact_all
+    if (chosen == contact_all) return
+    do k = 1, 3
+      call found%add_origin([of_couple, 1, k], [card_bconp, findloc(data%couple%id, chosen, dim=1), k])
+    end do
+    data%couple = pack(data%couple, data%couple%id == chosen)
 
   contains
 
@@ -89,11 +92,11 @@ contains
           if (property(i) > 0) gap(i) = deck%card(card_pgap)%number('U0', property(i))
           if (cgap%has('CID', i)) normal(:, i) = axis(:, system(i))
         end do
-        model%pairs = merge(0, cgap%count, chosen == contact_none)
-        call set_pairs(model%scene_type, node(:, :model%pairs), normal(:, :model%pairs), gap(:model%pairs))
-        model%pair_id = nint(cgap%value(1, :model%pairs))
+        associate (pairs => merge(0, cgap%count, chosen == contact_none))
+          call set_pairs(data, node(:, :pairs), normal(:, :pairs), gap(:pairs))
+        end associate
       end associate
-      call complete_pairs(model, deck%parameter_word('GAPGEOM') == 'YES', found)
+      data%gap_by_geometry = deck%parameter_word('GAPGEOM') == 'YES'
     end subroutine read_pairs
 
     !> The nodes of a BLSEG, ranges and steps written out; none where it is not sound.
@@ -113,10 +116,10 @@ contains
             exit   ! of a range the first one
           end do
         end do
-        model%line(i)%node = [integer ::]
-        if (sound) model%line(i)%node = [((nodes%find(id), id=blseg%list(k)%from, blseg%list(k)%to, &
+        data%line(i)%node = [integer ::]
+        if (sound) data%line(i)%node = [((nodes%find(id), id=blseg%list(k)%from, blseg%list(k)%to, &
             blseg%list(k)%step), k=first, last)]
       end associate
     end subroutine read_line
-  end subroutine build_contacts
+  end subroutine read_contacts
 end module epcont_build_contacts

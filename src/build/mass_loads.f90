@@ -1,35 +1,29 @@
 !> Body loads of a scene from GRAV and RFORCE.
 module epcont_build_mass_loads
   use epcont_base_kinds, only: wp
-  use epcont_build_reference, only: card_index, index_of, resolve
-  use epcont_deck_card_kinds, only: card_grav, card_mat1, card_rforce
+  use epcont_build_reference, only: card_index, resolve
+  use epcont_deck_card_kinds, only: card_grav, card_rforce
   use epcont_deck_deck, only: deck_type
   use epcont_model_arrays, only: body_load
-  use epcont_model_body_forces, only: are_massless
-  use epcont_model_finding, only: findings, of_section
+  use epcont_model_finding, only: findings
   use epcont_model_load_cases, only: set_body_load
-  use epcont_model_model, only: model_type
   implicit none
   private
-  public :: build_mass_loads
+  public :: read_mass_loads
 
 contains
 
   !> One body load for each GRAV, then for each RFORCE; those that no case has are left at the factor 0.
-  subroutine build_mass_loads(deck, nodes, model, used, body, found)
+  subroutine read_mass_loads(deck, nodes, rings, x, used, body, found)
     type(deck_type), intent(in) :: deck        !! its cards
     type(card_index), intent(in) :: nodes      !! ids of GRID
-    type(model_type), intent(in) :: model      !! the scene: its mesh
+    logical, intent(in) :: rings               !! are elements axisymmetric?
+    real(wp), intent(in) :: x(:, :)            !! coordinates of the nodes [length] [2, nodes]
     integer, intent(in) :: used(:)             !! sets of loads
     type(set_body_load), allocatable, intent(out) :: body(:)
     type(findings), intent(inout) :: found     !! what is wrong with it is added
-    character(len=*), parameter :: in_plane = '0.0: scenes lie in the x-y plane', &
-      of_rings = '0.0: rings bear nothing across their axis, which is y'
     integer :: i
-    logical :: rings
 
-    rings = .false.
-    if (model%elements > 0) rings = model%has_rings()
     associate (grav => deck%card(card_grav), rforce => deck%card(card_rforce))
       allocate (body(grav%count + rforce%count))
       body%set = nint([grav%value(1, :), rforce%value(1, :)])
@@ -37,7 +31,6 @@ contains
       call read_gravity(body(:grav%count)%given)
       call read_spins(body(grav%count + 1:)%given)
     end associate
-    if (any(body%given%factor /= 0.0_wp)) call refuse_massless()
 
   contains
 
@@ -51,8 +44,7 @@ contains
         do i = 1, size(load)
           if (load(i)%factor == 0.0_wp .or. .not. card%sound(i)) cycle
           direction = [card%number('N1', i), card%number('N2', i)]
-          if (rings) call want_zero(card_grav, i, 'N1', 'across the axis', of_rings)
-          call want_zero(card_grav, i, 'N3', 'off the plane', in_plane)
+          call want_zero(card_grav, i, 'N3', 'off the plane', '0.0: scenes lie in the x-y plane')
           if (all(direction == 0.0_wp)) &
             call found%add_error(card_grav, i, card%column('N1'), ': N1 and N2 are 0.0: no direction', &
                                  'where it acts to, such as 0.0 and -1.0')
@@ -84,12 +76,7 @@ contains
             card_rforce, i, card%column(axis), ': '//axis//' is 0.0: it has no axis', '1.0: '//axis_is())
           load(i)%spin = card%number('A', i)*card%number(axis, i)
           load(i)%spin_up = card%number('RACC', i)*card%number(axis, i)
-          if (centre(i) > 0) load(i)%centre = model%x(:, centre(i))
-          if (.not. rings) cycle
-          call want_zero(card_rforce, i, 'RACC', 'round the axis', of_rings)
-          if (load(i)%centre(1) /= 0.0_wp) &
-            call found%add_error(card_rforce, i, 2, ': field 3 (G) lies off the axis of the rings, x = 0.0', &
-                                 'a node on it, or blank')
+          if (centre(i) > 0) load(i)%centre = x(:, centre(i))
         end do
       end associate
     end subroutine read_spins
@@ -113,27 +100,5 @@ contains
                                table%entry%field_text(table%column(name))//' points '//where_to, remedy)
       end associate
     end subroutine want_zero
-
-    !> Where sections have no mass, that of their material must be given; each material is told of once.
-    subroutine refuse_massless()
-      type(card_index) :: materials
-      logical :: massless(size(model%density))
-      integer :: m, s
-      logical, allocatable :: told(:)
-
-      massless = are_massless(model)
-      materials = index_of(deck, card_mat1)
-      allocate (told(deck%card(card_mat1)%count), source=.false.)
-      do s = 1, size(massless)
-        if (.not. massless(s)) cycle
-        m = materials%find(model%material_id(s))
-        if (m == 0) cycle
-        if (told(m)) cycle
-        told(m) = .true.
-        call found%add_error(card_mat1, m, deck%card(card_mat1)%column('RHO'), ': field 6 (RHO) leaves '// &
-                             model%name_of(of_section, s)//' without mass, on which GRAV and RFORCE act', &
-                             'a density above 0.0')
-      end do
-    end subroutine refuse_massless
-  end subroutine build_mass_loads
+  end subroutine read_mass_loads
 end module epcont_build_mass_loads

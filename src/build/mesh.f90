@@ -3,21 +3,19 @@ module epcont_build_mesh
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: short_real
   use epcont_build_reference, only: card_index, index_of, resolve
-  use epcont_deck_card_kinds, only: card_grid, card_mat1, card_mats1, card_param, card_pshell, card_psolid, &
-      card_tables1
+  use epcont_deck_card_kinds, only: card_cgap, card_grid, card_mat1, card_mats1, card_param, card_pshell, &
+      card_psolid, card_tables1
   use epcont_deck_deck, only: deck_type
   use epcont_element_element_kind, only: element_kind
   use epcont_element_kinematics, only: axisymmetric, plane_strain, plane_stress
-  use epcont_model_arrays, only: add_elements, new_scene, set_sections
+  use epcont_model_arrays, only: add_elements, new_scene, scene_type, set_sections
   use epcont_model_controls, only: uniaxial_curve
-  use epcont_model_element_shapes, only: complete_elements
-  use epcont_model_finding, only: findings
-  use epcont_model_given, only: number_parts
+  use epcont_model_finding, only: findings, item_density, of_section
   use epcont_model_model, only: model_type
   use epcont_model_yield_curve, only: bilinear_curve, curve_fault, straighten
   implicit none
   private
-  public :: build_mesh, element_cards
+  public :: element_cards, read_mesh, take_ids
 
   real(wp), parameter :: &
     !> LIMIT1 and the table's yield stress may differ by this part.
@@ -30,24 +28,25 @@ module epcont_build_mesh
     real(wp) :: poisson = 0.0_wp
     real(wp) :: expansion = 0.0_wp             !! [1/temperature]
     real(wp) :: reference_temperature = 0.0_wp
-    real(wp) :: density = 0.0_wp    !! [mass/length**3]
+    real(wp) :: density = 1.0_wp    !! of a card that is faulty: not zero, which is a fault [mass/length**3]
     type(uniaxial_curve) :: curve
   end type material_card
 
 contains
 
   !> Nodes, materials, sections, elements.
-  subroutine build_mesh(deck, nodes, model, found)
-    type(deck_type), intent(in) :: deck       !! its cards
-    type(card_index), intent(in) :: nodes     !! ids of GRID
-    type(model_type), intent(inout) :: model  !! the scene, with the kinds of elements
-    type(findings), intent(inout) :: found    !! what is wrong with it is added
+  subroutine read_mesh(deck, nodes, kinds, data, found)
+    type(deck_type), intent(in) :: deck           !! its cards
+    type(card_index), intent(in) :: nodes         !! ids of GRID
+    type(element_kind), intent(in) :: kinds(:)    !! of elements
+    type(scene_type), intent(out) :: data         !! gets nodes, sections and elements
+    type(findings), intent(inout) :: found        !! what is wrong with it is added
     type(material_card), allocatable :: material(:)   ! of each MAT1
     integer, allocatable :: cards(:)                  ! of elements
     integer :: i
 
     associate (grid => deck%card(card_grid))
-      model%scene_type = new_scene(grid%value([grid%column('X1'), grid%column('X2')], :))
+      data = new_scene(grid%value([grid%column('X1'), grid%column('X2')], :))
       associate (z => grid%value(grid%column('X3'), :))
         do i = 1, grid%count
           if (z(i) /= 0.0_wp) &
@@ -57,26 +56,13 @@ contains
       end associate
     end associate
     call read_materials(deck, found, material)
-    call read_sections(deck, material, model, found)
-    cards = element_cards(deck, model%kinds)
+    call read_sections(deck, material, data, found)
+    cards = element_cards(deck, kinds)
     do i = 1, size(cards)
       call read_elements(cards(i))
     end do
-    call number_parts(model)
-    call take_ids()
-    call complete_elements(model, found)
 
   contains
-
-    !> Ids are those of the cards.
-    subroutine take_ids()
-      model%node_id = int(deck%card(card_grid)%value(1, :))
-      model%element_id = [(int(deck%card(cards(i))%value(1, :)), i=1, size(cards))]
-      associate (shell => deck%card(card_pshell), solid => deck%card(card_psolid))
-        model%property_id = nint([shell%value(1, :), solid%value(1, :)])
-        model%material_id = nint([shell%value(shell%column('MID1'), :), solid%value(solid%column('MID'), :)])
-      end associate
-    end subroutine take_ids
 
     !> The elements of a table.
     subroutine read_elements(card)
@@ -86,7 +72,7 @@ contains
       logical :: ring
 
       associate (table => deck%card(card))
-        ring = any(model%kinds%ring_card == table%entry%name)
+        ring = any(kinds%ring_card == table%entry%name)
         n = size(table%entry%field) - 2   ! without id and section
         allocate (node(n, table%count), section(table%count))
         call resolve(deck, card, 2, index_of(deck, merge(card_psolid, card_pshell, ring)), found, section)
@@ -96,10 +82,28 @@ contains
         end do
         ! In their order along the boundary
         if (ring .and. n > 4) node = node([(k, k=1, n, 2), (k, k=2, n, 2)], :)
-        call add_elements(model%scene_type, table%entry%name, node, section)
+        call add_elements(data, table%entry%name, node, section)
       end associate
     end subroutine read_elements
-  end subroutine build_mesh
+  end subroutine read_mesh
+
+  !> Take the ids of nodes, elements, sections and pairs from their cards.
+  subroutine take_ids(deck, kinds, model)
+    type(deck_type), intent(in) :: deck          !! its cards
+    type(element_kind), intent(in) :: kinds(:)   !! of elements
+    type(model_type), intent(inout) :: model     !! with its data; gets the ids
+    integer, allocatable :: cards(:)
+    integer :: i
+
+    cards = element_cards(deck, kinds)
+    model%node_id = int(deck%card(card_grid)%value(1, :))
+    model%element_id = [(int(deck%card(cards(i))%value(1, :)), i=1, size(cards))]
+    associate (shell => deck%card(card_pshell), solid => deck%card(card_psolid))
+      model%property_id = nint([shell%value(1, :), solid%value(1, :)])
+      model%material_id = nint([shell%value(shell%column('MID1'), :), solid%value(solid%column('MID'), :)])
+    end associate
+    model%pair_id = nint(deck%card(card_cgap)%value(1, :size(model%initial_gap)))
+  end subroutine take_ids
 
   !> A field is at fault.
   subroutine refuse(deck, card, i, name, what, remedy, found)
@@ -225,10 +229,10 @@ contains
   end subroutine read_table
 
   !> PSHELL, then PSOLID.
-  subroutine read_sections(deck, material, model, found)
+  subroutine read_sections(deck, material, data, found)
     type(deck_type), intent(in) :: deck
     type(material_card), intent(in) :: material(:)
-    type(model_type), intent(inout) :: model
+    type(scene_type), intent(inout) :: data
     type(findings), intent(inout) :: found
     type(material_card) :: section(deck%card(card_pshell)%count + deck%card(card_psolid)%count)
     type(card_index) :: materials
@@ -242,22 +246,24 @@ contains
       kinematics = axisymmetric
       do s = 1, size(named)
         if (named(s) > 0) section(s) = material(named(s))
+        call found%add_origin([of_section, s, item_density], &
+                         [card_mat1, named(s), deck%card(card_mat1)%column('RHO')])
         if (s <= shell%count) call choose_kinematics(deck, s, kinematics(s), found)
       end do
       if (deck%parameter_word('PLANE') == 'STRESS' .and. all(kinematics /= plane_stress) .and. &
           shell%count > 0) &
         call found%add_note(card_param, deck%parameter_row('PLANE'), 2, &
                             ': no PSHELL leaves the choice to it')
-      call set_sections(model%scene_type, section%young, section%poisson, kinematics)
-      model%curve = section%curve
-      model%expansion = section%expansion
-      model%reference_temperature = section%reference_temperature
-      model%thickness(:shell%count) = shell%value(shell%column('T'), :)
-      model%density = section%density
-      where (model%thickness(:shell%count) > 0.0_wp) &
-        model%density(:shell%count) = model%density(:shell%count) + &
-                                      shell%value(shell%column('NSM'), :)/model%thickness(:shell%count)
-      model%density = deck%parameter_value('WTMASS', 1.0_wp)*model%density
+      call set_sections(data, section%young, section%poisson, kinematics)
+      data%curve = section%curve
+      data%expansion = section%expansion
+      data%reference_temperature = section%reference_temperature
+      data%thickness(:shell%count) = shell%value(shell%column('T'), :)
+      data%density = section%density
+      where (data%thickness(:shell%count) > 0.0_wp) &
+        data%density(:shell%count) = data%density(:shell%count) + &
+                                      shell%value(shell%column('NSM'), :)/data%thickness(:shell%count)
+      data%density = deck%parameter_value('WTMASS', 1.0_wp)*data%density
     end associate
   end subroutine read_sections
 

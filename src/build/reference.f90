@@ -12,13 +12,20 @@ module epcont_build_reference
   implicit none
   private
   public :: card_index, index_of, check_combinations, check_unique, resolve, chosen_sets
-  public :: note_unnamed, note_unused
+  public :: check_choices, named_node, nodes_of_fields, nodes_of_lists, note_unnamed, note_unused
 
   !> The ids that fields may name, and what they are of.
   type, extends(id_index) :: card_index
     character(len=8) :: noun = ''    !! GRID, or `element`
     logical :: whole = .true.        !! what is not found is not there; else it may be what was not read
   end type card_index
+
+  !> A node that a card names, with some of its freedoms.
+  type :: named_node
+    integer :: card(3) = 0   !! table, card, field or item of its list that names the node
+    integer :: node = 0      !! which
+    integer :: digits = 0    !! the field that names the freedoms
+  end type named_node
 
 contains
 
@@ -95,7 +102,7 @@ contains
     type(findings), intent(inout) :: found   !! what is wrong with it is added
     integer, intent(out) :: set(:)           !! 0: there is none [cases]
     integer, allocatable :: id(:), row(:), table(:)   ! of all cards, as far as they are given
-    integer :: c, i, k
+    integer :: c, i
 
     id = [(nint(deck%card(cards(c))%value(1, :)), c=1, size(cards))]
     table = [(spread(cards(c), 1, deck%card(cards(c))%count), c=1, size(cards))]
@@ -112,13 +119,27 @@ contains
         return
       end if
     end if
-    do k = 1, size(set)
-      if (set(k) == 0 .or. any(id == set(k)) .or. .not. deck%whole .or. any(id == 0)) cycle
-      if (any(set(:k - 1) == set(k))) cycle   ! it has been reported
-      call found%add_error(choice(k)%place, word//' = '//text_of(set(k))// &
-                           ': the deck has no such set', 'the set of the cards in the deck')
-    end do
+    if (all(id /= 0)) &
+      call check_choices(deck, choice, id, word, 'the deck has no such set', &
+                         'the set of the cards in the deck', found)
   end subroutine chosen_sets
+
+  !> Report each choice of case control that no card has, once.
+  pure subroutine check_choices(deck, choice, ids, word, what, remedy, found)
+    type(deck_type), intent(in) :: deck            !! its cards
+    type(set_choice), intent(in) :: choice(:)      !! of the load cases
+    integer, intent(in) :: ids(:)                  !! of the cards
+    character(len=*), intent(in) :: word           !! of case control: SPC
+    character(len=*), intent(in) :: what, remedy   !! is wrong; would be right
+    type(findings), intent(inout) :: found         !! errors are added
+    integer :: k
+
+    do k = 1, size(choice)
+      if (choice(k)%id <= 0 .or. any(ids == choice(k)%id) .or. .not. deck%whole) cycle
+      if (any(choice(:k - 1)%id == choice(k)%id)) cycle
+      call found%add_error(choice(k)%place, word//' = '//text_of(choice(k)%id)//': '//what, remedy)
+    end do
+  end subroutine check_choices
 
   !> Check the cards that combine sets under one id, LOAD or MPCADD. Their id is not that of a set, and the
   !! sets exist: they are those of other cards.
@@ -195,4 +216,66 @@ contains
       end associate
     end do
   end subroutine note_unused
+  !> SPC and SUPORT: nodes, each with its directions in the next field.
+  function nodes_of_fields(deck, card, columns, nodes, found) result(named)
+    type(deck_type), intent(in) :: deck
+    integer, intent(in) :: card, columns(:)   !! which table, the fields of its nodes
+    type(card_index), intent(in) :: nodes
+    type(findings), intent(inout) :: found
+    type(named_node), allocatable :: named(:)
+    integer :: i, k, node(deck%card(card)%count)
+
+    allocate (named(size(columns)*size(node)))
+    do k = 1, size(columns)
+      call resolve(deck, card, columns(k), nodes, found, node)
+      do i = 1, size(node)
+        named((k - 1)*size(node) + i) = named_node([card, i, columns(k)], node(i), columns(k) + 1)
+      end do
+    end do
+    named = pack(named, named%node > 0)
+  end function nodes_of_fields
+
+  !> SPC1 and RBE2: directions, then a list of nodes. Of a range some may be missing.
+  function nodes_of_lists(deck, card, nodes, found) result(named)
+    type(deck_type), intent(in) :: deck
+    integer, intent(in) :: card   !! which table
+    type(card_index), intent(in) :: nodes
+    type(findings), intent(inout) :: found
+    type(named_node), allocatable :: named(:)
+    integer :: i, item, k, last
+    integer, allocatable :: node(:)
+
+    last = 0
+    allocate (named(64))
+    associate (table => deck%card(card))
+      do i = 1, table%count
+        do item = table%list_start(i), table%list_start(i + 1) - 1
+          node = nodes%within(table%list(item)%from, table%list(item)%to)
+          if (size(node) == 0 .and. nodes%whole) call refuse(i, item)
+          do while (last + size(node) > size(named))   ! room doubles
+            named = [named, named]
+          end do
+          do k = 1, size(node)
+            named(last + k) = named_node([card, i, -item], node(k), table%entry%list_slot - 1)
+          end do
+          last = last + size(node)
+        end do
+      end do
+    end associate
+    named = named(:last)
+
+  contains
+
+    !> There is none of these nodes.
+    subroutine refuse(i, item)
+      integer, intent(in) :: i, item
+      character(len=:), allocatable :: ids
+
+      associate (from => deck%card(card)%list(item)%from, to => deck%card(card)%list(item)%to)
+        ids = text_of(from)
+        if (to > from) ids = ids//' to '//text_of(to)
+      end associate
+      call found%add_error(card, i, -item, ': there is no GRID '//ids, 'the id of a GRID')
+    end subroutine refuse
+  end function nodes_of_lists
 end module epcont_build_reference

@@ -1,45 +1,77 @@
-!> Supports, ties and reference freedoms from GRID PS, SPC, SPC1, RBE2, SUPORT, MPC and springs.
+!> Supports, ties and reference freedoms from GRID PS, SPC, SPC1, RBE2 and SUPORT.
 module epcont_build_supports
   use epcont_base_kinds, only: wp
-  use epcont_base_text, only: text_of
-  use epcont_build_tie_cards, only: build_equations, build_springs, check_directions, names, turn
-  use epcont_build_reference, only: card_index, resolve
+  use epcont_build_reference, only: card_index, named_node, nodes_of_fields, nodes_of_lists, resolve
+  use epcont_build_tie_cards, only: check_directions, digit, direction_text, dof_node, names
   use epcont_deck_card_kinds, only: card_grid, card_rbe2, card_spc, card_spc1, card_spcd, card_suport
   use epcont_deck_deck, only: deck_type
   use epcont_element_kinematics, only: directions
-  use epcont_model_finding, only: findings, of_node
-  use epcont_model_arrays, only: angle
-  use epcont_model_freedoms, only: follow_to_the_end, freedom, set_reference, tie
-  use epcont_model_load_cases, only: load_cases
-  use epcont_model_model, only: model_type
-  use epcont_model_ties, only: complete_ties, turn_with
+  use epcont_model_arrays, only: angle, dof_tie, scene_type
+  use epcont_model_finding, only: findings, of_platen, of_reference, of_tie
+  use epcont_model_load_cases, only: load_cases, set_displacement
   implicit none
   private
-  public :: build_ties, check_displacements, hold_nodes
-
-  !> A node that a card names, with some of its freedoms.
-  type :: named_node
-    integer :: card(3) = 0   !! table, card, field or item of its list that names the node
-    integer :: node = 0      !! which
-    integer :: digits = 0    !! the field that names the freedoms
-  end type named_node
+  public :: read_references, read_supports, read_ties
 
 contains
 
-  !> The freedoms that GRID PS and a set of supports hold, and where.
-  subroutine hold_nodes(deck, nodes, set, model, found)
-    type(deck_type), intent(in) :: deck        !! its cards
-    type(card_index), intent(in) :: nodes      !! ids of GRID
-    integer, intent(in) :: set                 !! of SPC and SPC1; 0: none
-    type(model_type), intent(inout) :: model   !! the scene
-    type(findings), intent(inout) :: found     !! what is wrong with it is added
-    type(named_node), allocatable :: named(:)
-    integer :: i, ps
+  !> The DOFs that the supports of each load case fix. Cases with the same ones and the same contacts are a
+  !! pattern; the data get the supports of one pattern.
+  subroutine read_supports(deck, nodes, pattern, data, cases, idle, found)
+    type(deck_type), intent(in) :: deck         !! its cards
+    type(card_index), intent(in) :: nodes       !! ids of GRID
+    integer, intent(in) :: pattern              !! whose supports the data get
+    type(scene_type), intent(inout) :: data     !! with the leaders that rotate; gets the supports
+    type(load_cases), intent(inout) :: cases    !! get their patterns
+    !> Fixed in this pattern, but not in all: a SUPORT DOF has no effect [angle, nodes]
+    logical, allocatable, intent(out) :: idle(:, :)
+    type(findings), intent(inout) :: found      !! what is wrong is added
+    logical, allocatable :: held(:, :, :)       ! by each pattern [angle, nodes, patterns]
+    logical, allocatable :: now(:, :)           ! by a load case [angle, nodes]
+    integer, allocatable :: first(:)            ! case of each pattern
+    integer :: before, k, p
 
-    model%held = .false.
-    model%prescribed = 0.0_wp
-    model%platen%held = .false.
-    model%platen%prescribed = 0.0_wp
+    allocate (held(angle, size(data%held, 2), 0), first(0), cases%held_at(0))
+    do k = 1, size(cases%case)
+      associate (case => cases%case)
+        before = findloc(case(:k - 1)%supports, case(k)%supports, dim=1)
+        if (before > 0) then
+          now = held(:, :, case(before)%pattern)
+        else
+          call find_held(deck, nodes, case(k)%supports, data, now, cases%held_at, found)
+        end if
+        do p = 1, size(first)
+          if (case(k)%contact == case(first(p))%contact .and. all(held(:, :, p) .eqv. now)) exit
+        end do
+        case(k)%pattern = p
+      end associate
+      if (p <= size(first)) cycle
+      first = [first, k]
+      held = reshape([held, now], [angle, size(data%held, 2), p])
+    end do
+    cases%patterns = size(first)
+    call check_displacements(deck, data, cases, held, found)
+    now = held(:, :, min(pattern, cases%patterns))
+    idle = now .and. .not. all(held, dim=3)
+    data%held = now(:directions, :)
+    data%platen%held = now(angle, data%platen%leader)
+  end subroutine read_supports
+
+  !> The DOFs that GRID PS and a set of supports fix.
+  subroutine find_held(deck, nodes, set, data, held, moved, found)
+    type(deck_type), intent(in) :: deck
+    type(card_index), intent(in) :: nodes
+    integer, intent(in) :: set                 !! of SPC and SPC1; 0: none
+    type(scene_type), intent(in) :: data       !! which leaders rotate
+    logical, allocatable, intent(out) :: held(:, :)   !! [angle, nodes]
+    type(set_displacement), allocatable, intent(inout) :: moved(:)   !! those that are not 0 are added
+    type(findings), intent(inout) :: found
+    type(named_node), allocatable :: named(:)
+    real(wp), allocatable :: prescribed(:, :)  ! as `held` [length]
+    integer :: c, i, ps
+
+    allocate (held(angle, deck%card(card_grid)%count), source=.false.)
+    allocate (prescribed(angle, size(held, 2)), source=0.0_wp)
     associate (grid => deck%card(card_grid))
       ps = grid%column('PS')
       do i = 1, grid%count
@@ -51,14 +83,19 @@ contains
     do i = 1, size(named)
       call hold(named(i))
     end do
+    do i = 1, size(held, 2)
+      do c = 1, angle
+        if (prescribed(c, i) /= 0.0_wp) moved = [moved, set_displacement(set, c, dof_node(data, c, i), &
+                                                                         prescribed(c, i))]
+      end do
+    end do
 
   contains
 
-    !> What a card says of the freedoms of a node. Of those that are held at another displacement already one
-    !! is told.
+    !> Fix the DOFs of a node that a card names. Of those with another displacement already one is reported.
     subroutine hold(named)
       type(named_node), intent(in) :: named
-      integer :: c, conflict, i
+      integer :: c, conflict
       real(wp) :: displacement
 
       conflict = 0
@@ -67,32 +104,27 @@ contains
                  value => deck%card(named%card(1))%value(:, named%card(2)))
         if (card(1) /= card_grid .and. nint(value(1)) /= set) return
         if (card(1) == card_spc) displacement = value(named%digits + 1)
-        do c = 1, directions
-          if (.not. names(value(named%digits), c)) cycle
-          if (model%held(c, node) .and. model%prescribed(c, node) /= displacement) conflict = c
-          model%held(c, node) = .true.
-          model%prescribed(c, node) = displacement
-        end do
-        do i = 1, size(model%platen)
-          associate (platen => model%platen(i))
-            if (platen%leader /= node .or. .not. names(value(named%digits), turn)) cycle
-            if (platen%held .and. platen%prescribed /= displacement) conflict = angle
-            platen%held = .true.
-            platen%prescribed = displacement
-          end associate
+        if (displacement /= 0.0_wp) call check_directions(deck, data, node, value(named%digits), &
+                                                          [card(:2), named%digits], found)
+        do c = 1, angle
+          if (.not. names(value(named%digits), digit(c)) .or. dof_node(data, c, node) == 0) cycle
+          if (held(c, node) .and. prescribed(c, node) /= displacement) conflict = c
+          held(c, node) = .true.
+          prescribed(c, node) = displacement
         end do
         if (conflict > 0) call found%add_error( &
-          card(1), card(2), card(3), ': '//freedom(model, conflict, node)// &
+          card(1), card(2), card(3), ': '//direction_text(deck, conflict, node)// &
           ' is held at another displacement already', 'one displacement for each freedom')
       end associate
     end subroutine hold
-  end subroutine hold_nodes
+  end subroutine find_held
 
   !> Check that each SPCD of a load case moves a DOF that the supports of the case fix, and that no DOF has
   !! two different displacements. Each SPCD is reported once.
-  subroutine check_displacements(cases, model, held, found)
+  subroutine check_displacements(deck, data, cases, held, found)
+    type(deck_type), intent(in) :: deck
+    type(scene_type), intent(in) :: data
     type(load_cases), intent(in) :: cases
-    type(model_type), intent(in) :: model
     logical, intent(in) :: held(:, :, :)      !! DOFs that are fixed, by direction or `angle`, node, pattern
     type(findings), intent(inout) :: found    !! what is wrong is added
     logical :: reported(size(cases%moved))
@@ -101,12 +133,12 @@ contains
 
     reported = .false.
     do k = 1, size(cases%case)
-      before = spread(spread(0, 1, angle), 2, model%nodes)
+      before = spread(spread(0, 1, angle), 2, size(held, 2))
       do i = 1, size(reported)
         associate (at => cases%moved(i))
           if (all(cases%case(k)%set /= at%set) .or. reported(i)) cycle
           node = at%node
-          if (at%c == angle) node = model%platen(at%node)%leader
+          if (at%c == angle) node = data%platen(at%node)%leader
           if (before(at%c, node) == 0) before(at%c, node) = i
           if (.not. held(at%c, node, cases%case(k)%pattern)) then
             call refuse(' is not fixed', 'SPC or SPC1 of this direction, in the set that the case has')
@@ -130,59 +162,45 @@ contains
 
       reported(i) = .true.
       associate (at => cases%moved(i))
-        call found%add_error(card_spcd, at%card, at%field, ': '//freedom(model, at%c, node)//why// &
+        call found%add_error(card_spcd, at%card, at%field, ': '//direction_text(deck, at%c, node)//why// &
                              cases%case(k)%where_text(), remedy)
       end associate
     end subroutine refuse
   end subroutine check_displacements
 
-  !> Ties of the freedoms that no support holds, of which chains are followed to their end; then the reference
-  !! freedoms, which must be free of both.
-  subroutine build_ties(deck, nodes, always_held, model, found)
+  !> RBE2: ties, and followers of the leaders that rotate.
+  subroutine read_ties(deck, nodes, data, found)
     type(deck_type), intent(in) :: deck        !! its cards
     type(card_index), intent(in) :: nodes      !! ids of GRID
-    !> Fixed in all load cases; a SUPORT DOF that is fixed in some of them has no effect there [angle, nodes]
-    logical, intent(in) :: always_held(:, :)
-    type(model_type), intent(inout) :: model   !! the scene, with its supports
-    type(findings), intent(inout) :: found     !! what is wrong with it is added
+    type(scene_type), intent(inout) :: data    !! gets the ties and followers
+    type(findings), intent(inout) :: found     !! what is wrong is added
     type(named_node), allocatable :: named(:)
-    integer :: c, i, leader(deck%card(card_rbe2)%count), platen
+    integer :: c, i, last, leader(deck%card(card_rbe2)%count), platen
 
-    model%sum_of = spread([0, 0], 2, model%nodes)
     call resolve(deck, card_rbe2, 2, nodes, found, leader)
     call check_ties()
     named = nodes_of_lists(deck, card_rbe2, nodes, found)
+    deallocate (data%tie)
+    allocate (data%tie(directions*size(named)))
+    last = 0
     do i = 1, size(named)
       associate (card => named(i)%card, node => named(i)%node)
-        platen = findloc(model%platen%leader, leader(card(2)), dim=1)
-        if (platen > 0) call turn_with(model, platen, node, card, found)
-        do c = 1, merge(directions, 0, platen == 0)
-          if (leader(card(2)) > 0 .and. names(deck%card(card_rbe2)%value(named(i)%digits, card(2)), c)) &
-            call tie(model, c, node, leader(card(2)), card, found)
-        end do
-      end associate
-    end do
-    call follow_to_the_end(model%leader)
-    named = nodes_of_fields(deck, card_suport, [1, 3, 5, 7], nodes, found)
-    do i = 1, size(named)
-      associate (card => named(i)%card, node => named(i)%node)
+        platen = findloc(data%platen%leader, leader(card(2)), dim=1)
+        if (platen > 0) then
+          data%platen(platen)%follower = [data%platen(platen)%follower, node]
+          call found%add_origin([of_platen, platen, -size(data%platen(platen)%follower)], card)
+          cycle
+        end if
         do c = 1, directions
-          if (model%held(c, node) .and. .not. always_held(c, node)) cycle
-          if (names(deck%card(card_suport)%value(named(i)%digits, card(2)), c)) &
-            call set_reference(model, c, node, card, found)
+          if (leader(card(2)) == 0) exit
+          if (.not. names(deck%card(card_rbe2)%value(named(i)%digits, card(2)), c)) cycle
+          last = last + 1
+          data%tie(last) = dof_tie(c, node, leader(card(2)))
+          call found%add_origin([of_tie, last, 0], card)
         end do
-        call check_directions(model, node, deck%card(card_suport)%value(named(i)%digits, card(2)), &
-                              [card_suport, card(2), named(i)%digits], found)
-        platen = findloc(model%platen%leader, node, dim=1)
-        if (platen == 0) cycle
-        if (model%platen(platen)%held .and. .not. always_held(angle, node)) cycle
-        if (names(deck%card(card_suport)%value(named(i)%digits, card(2)), turn)) &
-          call set_reference(model, angle, node, card, found)
       end associate
     end do
-    call build_equations(deck, nodes, model, found)
-    call complete_ties(model, found)
-    call build_springs(deck, nodes, model, found)
+    data%tie = data%tie(:last)
 
   contains
 
@@ -194,77 +212,40 @@ contains
       do i = 1, size(leader)
         tied = names(deck%card(card_rbe2)%value(3, i), [1, 2])
         if (all(tied) .or. leader(i) == 0) cycle
-        if (any(model%platen%leader == leader(i))) then
-          call found%add_note(card_rbe2, i, 3, &
-            ': '//model%name_of(of_node, leader(i))//' rotates, so GM follow in directions 1 and 2')
+        if (any(data%platen%leader == leader(i))) then
+          call found%add_note(card_rbe2, i, 3, ': '//deck%card(card_grid)%identity(leader(i))// &
+                              ' rotates, so GM follow in directions 1 and 2')
         else if (.not. any(tied)) then
           call found%add_warning(card_rbe2, i, 3, ': field 4 (CM) ties neither direction 1 nor 2', &
                                  'the directions in which GM move as GN does, such as 12')
         end if
       end do
     end subroutine check_ties
-  end subroutine build_ties
+  end subroutine read_ties
 
-  !> SPC and SUPORT: nodes, each with its directions in the next field.
-  function nodes_of_fields(deck, card, columns, nodes, found) result(named)
-    type(deck_type), intent(in) :: deck
-    integer, intent(in) :: card, columns(:)   !! which table, the fields of its nodes
-    type(card_index), intent(in) :: nodes
-    type(findings), intent(inout) :: found
+  !> SUPORT.
+  subroutine read_references(deck, nodes, idle, data, found)
+    type(deck_type), intent(in) :: deck        !! its cards
+    type(card_index), intent(in) :: nodes      !! ids of GRID
+    logical, intent(in) :: idle(:, :)          !! DOFs that have no effect, being fixed [angle, nodes]
+    type(scene_type), intent(inout) :: data    !! gets the SUPORT DOFs
+    type(findings), intent(inout) :: found     !! what is wrong is added
     type(named_node), allocatable :: named(:)
-    integer :: i, k, node(deck%card(card)%count)
+    integer :: at, c, i
 
-    allocate (named(size(columns)*size(node)))
-    do k = 1, size(columns)
-      call resolve(deck, card, columns(k), nodes, found, node)
-      do i = 1, size(node)
-        named((k - 1)*size(node) + i) = named_node([card, i, columns(k)], node(i), columns(k) + 1)
-      end do
-    end do
-    named = pack(named, named%node > 0)
-  end function nodes_of_fields
-
-  !> SPC1 and RBE2: directions, then a list of nodes. Of a range some may be missing.
-  function nodes_of_lists(deck, card, nodes, found) result(named)
-    type(deck_type), intent(in) :: deck
-    integer, intent(in) :: card   !! which table
-    type(card_index), intent(in) :: nodes
-    type(findings), intent(inout) :: found
-    type(named_node), allocatable :: named(:)
-    integer :: i, item, k, last
-    integer, allocatable :: node(:)
-
-    last = 0
-    allocate (named(64))
-    associate (table => deck%card(card))
-      do i = 1, table%count
-        do item = table%list_start(i), table%list_start(i + 1) - 1
-          node = nodes%within(table%list(item)%from, table%list(item)%to)
-          if (size(node) == 0 .and. nodes%whole) call refuse(i, item)
-          do while (last + size(node) > size(named))   ! room doubles
-            named = [named, named]
-          end do
-          do k = 1, size(node)
-            named(last + k) = named_node([card, i, -item], node(k), table%entry%list_slot - 1)
-          end do
-          last = last + size(node)
+    named = nodes_of_fields(deck, card_suport, [1, 3, 5, 7], nodes, found)
+    do i = 1, size(named)
+      associate (card => named(i)%card, node => named(i)%node, &
+                 digits => deck%card(card_suport)%value(named(i)%digits, named(i)%card(2)))
+        call check_directions(deck, data, node, digits, [card_suport, card(2), named(i)%digits], found)
+        do c = 1, angle
+          at = dof_node(data, c, node)
+          if (at == 0 .or. idle(c, node) .or. .not. names(digits, digit(c))) cycle
+          if (c == angle) data%platen(at)%reference = .true.
+          if (c < angle) data%reference(c, node) = .true.
+          call found%add_origin([of_reference, node, c], card)
         end do
-      end do
-    end associate
-    named = named(:last)
-
-  contains
-
-    !> There is none of these nodes.
-    subroutine refuse(i, item)
-      integer, intent(in) :: i, item
-      character(len=:), allocatable :: ids
-
-      associate (from => deck%card(card)%list(item)%from, to => deck%card(card)%list(item)%to)
-        ids = text_of(from)
-        if (to > from) ids = ids//' to '//text_of(to)
       end associate
-      call found%add_error(card, i, -item, ': there is no GRID '//ids, 'the id of a GRID')
-    end subroutine refuse
-  end function nodes_of_lists
+    end do
+  end subroutine read_references
 end module epcont_build_supports

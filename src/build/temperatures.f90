@@ -2,27 +2,27 @@
 module epcont_build_temperatures
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of
-  use epcont_build_reference, only: card_index, resolve
-  use epcont_deck_card_kinds, only: card_temp, card_tempd
+  use epcont_build_reference, only: card_index, check_choices, resolve
+  use epcont_deck_card_kinds, only: card_grid, card_temp, card_tempd
   use epcont_deck_deck, only: deck_type
+  use epcont_model_arrays, only: scene_type
   use epcont_model_finding, only: and_more, findings, of_node
   use epcont_model_load_cases, only: load_cases
-  use epcont_model_model, only: model_type
   implicit none
   private
-  public :: build_temperatures
+  public :: read_temperatures
 
 contains
 
   !> The temperatures of each set that is chosen, which all nodes must have whose elements expand.
-  subroutine build_temperatures(deck, nodes, model, cases, found)
+  subroutine read_temperatures(deck, nodes, data, cases, found)
     type(deck_type), intent(in) :: deck          !! its cards
     type(card_index), intent(in) :: nodes        !! ids of GRID
-    type(model_type), intent(in) :: model        !! the scene: its mesh
+    type(scene_type), intent(in) :: data         !! elements and sections
     type(load_cases), intent(inout) :: cases     !! sets of temperatures are added
     type(findings), intent(inout) :: found       !! what is wrong with it is added
     integer :: node(deck%card(card_temp)%count, 3)   ! that a TEMP names
-    integer :: named_by(2, model%nodes)   ! TEMP card and field that name a node; 0: none
+    integer :: named_by(2, deck%card(card_grid)%count)   ! TEMP card and field that name a node; 0: none
     integer :: default_by                 ! TEMPD of all others; 0: none
     integer :: k
 
@@ -33,8 +33,15 @@ contains
     do k = 1, size(cases%heat)
       call read_default(cases%heat(k)%set, cases%heat(k)%temperature)
       call read_nodes(cases%heat(k)%set, cases%heat(k)%temperature)
-      call check(cases%heat(k)%set)
+      if (default_by > 0 .or. any(named_by > 0)) &
+        call check_nodes(deck, data, named_by, default_by, cases%heat(k)%set, found)
     end do
+    associate (temp => deck%card(card_temp), tempd => deck%card(card_tempd))
+      if (all(temp%sound) .and. all(tempd%sound)) &
+        call check_choices(deck, deck%subcase%temperature, nint([temp%value(1, :), tempd%value(1::2, :)]), &
+                           'TEMPERATURE', 'the deck has no such set', &
+                           'the set of TEMP or TEMPD cards in the deck', found)
+    end associate
     call note_unused(deck, cases%heat%set, found)
 
   contains
@@ -59,7 +66,7 @@ contains
       integer :: i, k
 
       default_by = 0
-      allocate (temperature(model%nodes), source=0.0_wp)
+      allocate (temperature(deck%card(card_grid)%count), source=0.0_wp)
       associate (tempd => deck%card(card_tempd))
         do i = 1, tempd%count
           do k = 1, size(tempd%value, 1), 2
@@ -102,31 +109,18 @@ contains
         temperature = said
       end associate
     end subroutine take
-
-    !> There is such a set, and what it says is sound.
-    subroutine check(set)
-      integer, intent(in) :: set
-      integer :: first
-
-      first = findloc(deck%subcase%temperature%id, set, dim=1)
-      if (default_by > 0 .or. any(named_by > 0)) then
-        call check_nodes(model, named_by, default_by, set, found)
-      else if (deck%whole .and. all(deck%card(card_temp)%sound) .and. all(deck%card(card_tempd)%sound)) then
-        call found%add_error(deck%subcase(first)%temperature%place, 'TEMPERATURE = '//text_of(set)// &
-                             ': the deck has no such set', 'the set of TEMP or TEMPD cards in the deck')
-      end if
-    end subroutine check
-  end subroutine build_temperatures
+  end subroutine read_temperatures
 
   !> Nodes of elements that expand have temperatures, and those alone.
-  subroutine check_nodes(model, named_by, default_by, set, found)
-    type(model_type), intent(in) :: model
+  subroutine check_nodes(deck, data, named_by, default_by, set, found)
+    type(deck_type), intent(in) :: deck
+    type(scene_type), intent(in) :: data
     integer, intent(in) :: named_by(:, :), default_by, set
     type(findings), intent(inout) :: found
-    logical :: expands(model%nodes), unnamed(model%nodes), vain(model%nodes)
+    logical, dimension(size(named_by, 2)) :: expands, unnamed, vain
     integer :: k
 
-    expands = expanding_nodes(model)
+    expands = expanding_nodes(data)
     unnamed = expands .and. named_by(1, :) == 0
     k = findloc(unnamed, .true., dim=1)
     if (k > 0 .and. default_by == 0) call found%add_error(of_node, k, 1, &
@@ -139,26 +133,27 @@ contains
     k = findloc(vain, .true., dim=1)
     if (k > 0) then
       call found%add_warning(card_temp, named_by(1, k), named_by(2, k), ': no material expands at '// &
-                             model%name_of(of_node, k)//and_more(count(vain), ', nor at ', ' more nodes'), &
-                             'A on its MAT1')
+                             deck%card(card_grid)%identity(k)// &
+                             and_more(count(vain), ', nor at ', ' more nodes'), 'A on its MAT1')
     else if (.not. any(expands)) then
       call found%add_warning(card_tempd, default_by, 1, ': no material expands', 'A on MAT1')
     end if
   end subroutine check_nodes
 
   !> Which nodes have elements whose material expands? [nodes]
-  pure function expanding_nodes(model) result(expands)
-    type(model_type), intent(in) :: model
-    logical :: expands(model%nodes)
-    integer :: e
+  pure function expanding_nodes(data) result(expands)
+    type(scene_type), intent(in) :: data
+    logical :: expands(size(data%x, 2))
+    integer :: b, e
 
     expands = .false.
-    do e = 1, model%elements
-      if (model%section(e) == 0) cycle
-      if (model%expansion(model%section(e)) == 0.0_wp) cycle
-      associate (node => model%connectivity(:model%node_count(e), e))
-        expands(pack(node, node > 0)) = .true.
-      end associate
+    do b = 1, size(data%block)
+      do e = 1, size(data%block(b)%section)
+        associate (s => data%block(b)%section(e), node => data%block(b)%node(:, e))
+          if (s == 0) cycle
+          if (data%expansion(s) /= 0.0_wp) expands(pack(node, node > 0)) = .true.
+        end associate
+      end do
     end do
   end function expanding_nodes
 

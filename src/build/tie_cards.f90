@@ -4,21 +4,21 @@ module epcont_build_tie_cards
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: id_index, new_id_index
   use epcont_base_text, only: text_of
-  use epcont_build_reference, only: card_index, check_combinations, chosen_sets, note_unused, resolve
-  use epcont_deck_card_kinds, only: card_celas1, card_celas2, card_moment, card_mpc, card_mpcadd, &
+  use epcont_build_reference, only: card_index, check_combinations, chosen_sets, named_node, &
+      nodes_of_fields, note_unused, resolve
+  use epcont_deck_card_kinds, only: card_celas1, card_celas2, card_grid, card_moment, card_mpc, card_mpcadd, &
       card_pelas, card_rbe2, card_spc, card_spcd, card_suport
   use epcont_deck_deck, only: deck_type
-  use epcont_model_arrays, only: linear_equation, spring_type
-  use epcont_model_finding, only: findings, of_node
+  use epcont_model_arrays, only: angle, linear_equation, scene_type, spring_type
+  use epcont_model_finding, only: findings, of_equation, of_platen, of_spring
   use epcont_model_load_cases, only: set_moment
-  use epcont_model_model, only: model_type
-  use epcont_model_ties, only: check_equation
   implicit none
   private
-  public :: build_equations, build_springs, check_directions, find_platens, find_moments, names
+  public :: check_directions, direction_text, dof_node, find_moments, find_platens, names, &
+    read_equations, read_springs
 
-  !> The digit of a turn about z.
-  integer, parameter, public :: turn = 6
+  !> The digits of both displacements and of the rotation about z.
+  integer, parameter, public :: digit(angle) = [1, 2, 6]
 
   character(len=*), parameter :: in_plane = ': scenes lie in the x-y plane'
 
@@ -32,19 +32,38 @@ contains
     names = any(mod(nint(digits)/10**[0, 1, 2, 3, 4, 5], 10) == c)
   end function names
 
+  !> The node of a DOF; of the rotation, the number of the platen that it leads; 0 if there is no such DOF.
+  pure integer function dof_node(data, c, node)
+    type(scene_type), intent(in) :: data   !! which leaders rotate
+    integer, intent(in) :: c, node         !! direction, or `angle`; and node
+
+    dof_node = node
+    if (c == angle) dof_node = findloc(data%platen%leader, node, dim=1)
+  end function dof_node
+
+  !> A DOF of a node as messages name it: `direction 1 of GRID 17`.
+  pure function direction_text(deck, c, node) result(text)
+    type(deck_type), intent(in) :: deck   !! its cards
+    integer, intent(in) :: c, node        !! direction, or `angle`; and node
+    character(len=:), allocatable :: text
+
+    text = 'direction '//text_of(digit(c))//' of '//deck%card(card_grid)%identity(node)
+  end function direction_text
+
   !> Report a direction that a field names and the node does not have: 3 to 5, and 6 unless it leads an RBE2
   !! that rotates.
-  subroutine check_directions(model, node, digits, card, found)
-    type(model_type), intent(in) :: model     !! the scene: which leaders turn
+  subroutine check_directions(deck, data, node, digits, card, found)
+    type(deck_type), intent(in) :: deck       !! its cards
+    type(scene_type), intent(in) :: data      !! which leaders turn
     integer, intent(in) :: node
     real(wp), intent(in) :: digits            !! of the field
     integer, intent(in) :: card(3)            !! table, card, field of the directions
     type(findings), intent(inout) :: found    !! an error is added
     integer :: c
 
-    do c = 3, turn
-      if (.not. names(digits, c) .or. (c == turn .and. any(model%platen%leader == node))) cycle
-      call found%add_error(card(1), card(2), card(3), ': '//model%name_of(of_node, node)// &
+    do c = 3, digit(angle)
+      if (.not. names(digits, c) .or. (c == digit(angle) .and. any(data%platen%leader == node))) cycle
+      call found%add_error(card(1), card(2), card(3), ': '//deck%card(card_grid)%identity(node)// &
                            ' has no direction '//text_of(c), 'direction 1 or 2; 6 at the GN of an RBE2')
       return
     end do
@@ -52,73 +71,57 @@ contains
 
   !> Leaders of RBE2 that turn: a SUPORT, a displacement or a MOMENT of sets that are used names their turn.
   !! Others are held.
-  subroutine find_platens(deck, nodes, supports, loads, model, found)
+  subroutine find_platens(deck, nodes, supports, loads, data, found)
     type(deck_type), intent(in) :: deck           !! its cards
     type(card_index), intent(in) :: nodes         !! ids of GRID
     integer, intent(in) :: supports(:), loads(:)  !! ids of the sets that are used
-    type(model_type), intent(inout) :: model      !! the scene: its mesh; gets the leaders
-    type(findings), intent(inout) :: found        !! what is wrong is added
+    type(scene_type), intent(inout) :: data       !! gets the leaders
+    type(findings), intent(inout) :: found        !! gets the origins of these
     type(findings) :: unheard   ! is told where the cards are read
-    logical :: named(model%nodes)
+    type(named_node), allocatable :: named(:)
+    logical :: rotates(deck%card(card_grid)%count)
     logical, allocatable :: turns(:)   ! the first RBE2 of each leader that does
     integer :: i, k, leader(deck%card(card_rbe2)%count)
-    integer, parameter :: columns(*) = [1, 3, 5, 7]
+    integer, allocatable :: row(:)     ! these
 
-    named = .false.
-    do k = 1, size(columns)
-      call name_by(card_suport, columns(k), columns(k) + 1, .false.)
+    rotates = .false.
+    named = [nodes_of_fields(deck, card_suport, [1, 3, 5, 7], nodes, unheard), &
+             nodes_of_fields(deck, card_spc, [2, 5], nodes, unheard), &
+             nodes_of_fields(deck, card_spcd, [2, 5], nodes, unheard), &
+             nodes_of_fields(deck, card_moment, [2], nodes, unheard)]
+    do i = 1, size(named)
+      associate (card => named(i)%card(1), digits => named(i)%digits, &
+                 value => deck%card(named(i)%card(1))%value(:, named(i)%card(2)))
+        if (card == card_spc .and. all(supports /= nint(value(1)))) cycle
+        if (any(card == [card_spcd, card_moment]) .and. all(loads /= nint(value(1)))) cycle
+        if (card /= card_moment) then
+          if (.not. names(value(digits), digit(angle))) cycle
+        end if
+        if (any(card == [card_spc, card_spcd])) then
+          if (value(digits + 1) == 0.0_wp) cycle
+        end if
+        rotates(named(i)%node) = .true.
+      end associate
     end do
-    do k = 2, 5, 3
-      call name_by(card_spc, k, k + 1, .true.)
-      call name_by(card_spcd, k, k + 1, .true.)
-    end do
-    call name_by(card_moment, 2, 0, .false.)
     call resolve(deck, card_rbe2, 2, nodes, unheard, leader)
     turns = [(leader(i) > 0 .and. all(leader(:i - 1) /= leader(i)), i=1, size(leader))]
-    where (turns) turns = named(max(1, leader))
-    deallocate (model%platen)
-    allocate (model%platen(count(turns)))
-    model%platen%leader = pack(leader, turns)
-    do k = 1, size(model%platen)
-      allocate (model%platen(k)%follower(0))
+    where (turns) turns = rotates(max(1, leader))
+    row = pack([(i, i=1, size(leader))], turns)
+    deallocate (data%platen)
+    allocate (data%platen(size(row)))
+    data%platen%leader = leader(row)
+    do k = 1, size(row)
+      allocate (data%platen(k)%follower(0))
+      call found%add_origin([of_platen, k, 0], [card_rbe2, row(k), 2])
     end do
-    i = findloc(turns, .true., dim=1)
-    if (i == 0 .or. model%elements == 0) return
-    if (model%has_rings()) call found%add_error(card_rbe2, i, 2, ': '// &
-      model%name_of(of_node, leader(i))//' would turn, and rings do not', &
-      'no MOMENT, SUPORT or SPC that names its direction 6')
-
-  contains
-
-    !> Nodes that a field of some cards names, with directions in another one; behind these there may be a
-    !! displacement.
-    subroutine name_by(card, column, digits, displaced)
-      integer, intent(in) :: card, column, digits
-      logical, intent(in) :: displaced
-      integer :: i, node(deck%card(card)%count)
-
-      call resolve(deck, card, column, nodes, unheard, node)
-      associate (value => deck%card(card)%value)
-        do i = 1, size(node)
-          if (node(i) == 0) cycle
-          if (card == card_spc .and. all(supports /= nint(value(1, i)))) cycle
-          if (any(card == [card_spcd, card_moment]) .and. all(loads /= nint(value(1, i)))) cycle
-          if (digits > 0) then
-            if (.not. names(value(digits, i), turn)) cycle
-            if (displaced .and. value(digits + 1, i) == 0.0_wp) cycle
-          end if
-          named(node(i)) = .true.
-        end do
-      end associate
-    end subroutine name_by
   end subroutine find_platens
 
   !> MOMENT, about z.
-  subroutine find_moments(deck, nodes, loads, model, moment, found)
+  subroutine find_moments(deck, nodes, loads, data, moment, found)
     type(deck_type), intent(in) :: deck        !! its cards
     type(card_index), intent(in) :: nodes      !! ids of GRID
     integer, intent(in) :: loads(:)            !! ids of the sets that are used
-    type(model_type), intent(in) :: model      !! the scene: which leaders turn
+    type(scene_type), intent(in) :: data       !! which leaders turn
     type(set_moment), allocatable, intent(out) :: moment(:)
     type(findings), intent(inout) :: found     !! what is wrong is added
     integer :: i, node(deck%card(card_moment)%count), platen
@@ -128,7 +131,7 @@ contains
     associate (cards => deck%card(card_moment))
       do i = 1, cards%count
         if (node(i) == 0 .or. all(loads /= nint(cards%value(1, i)))) cycle
-        platen = findloc(model%platen%leader, node(i), dim=1)
+        platen = findloc(data%platen%leader, node(i), dim=1)
         if (any([cards%number('N1', i), cards%number('N2', i)] /= 0.0_wp)) then
           call found%add_error(card_moment, i, cards%column('N1'), ': the moment is not about z', &
                                'N1 and N2 0.0'//in_plane)
@@ -136,7 +139,7 @@ contains
           call found%add_error(card_moment, i, cards%column('N3'), ': field 8 (N3) is 0.0: no direction', &
                                '1.0, or -1.0 for clockwise')
         else if (platen == 0) then
-          call found%add_error(card_moment, i, 2, ': '//model%name_of(of_node, node(i))// &
+          call found%add_error(card_moment, i, 2, ': '//deck%card(card_grid)%identity(node(i))// &
                                ' leads no RBE2, and elements have no rotations', &
                                'the GN of an RBE2 that spreads the moment')
         else
@@ -148,10 +151,10 @@ contains
   end subroutine find_moments
 
   !> MPC of the set that is chosen, which MPCADD may make of others.
-  subroutine build_equations(deck, nodes, model, found)
+  subroutine read_equations(deck, nodes, data, found)
     type(deck_type), intent(in) :: deck        !! its cards
     type(card_index), intent(in) :: nodes      !! ids of GRID
-    type(model_type), intent(inout) :: model   !! the scene, with its supports and RBE2
+    type(scene_type), intent(inout) :: data    !! gets the equations
     type(findings), intent(inout) :: found     !! what is wrong is added
     integer :: i, k, set(size(deck%subcase))
     integer, allocatable :: card(:), sets(:)
@@ -173,14 +176,18 @@ contains
     call note_unused(deck, [card_mpcadd], set, found)
     card = pack([(i, i=1, deck%card(card_mpc)%count)], &
                 [(any(sets == nint(deck%card(card_mpc)%value(1, i))), i=1, deck%card(card_mpc)%count)])
-    deallocate (model%equation)
-    allocate (model%equation(size(card)))
+    deallocate (data%equation)
+    allocate (data%equation(size(card)))
     k = 0
     do i = 1, size(card)
-      call read_equation(card(i), model%equation(k + 1), sound)
-      if (sound) k = k + 1
+      call read_equation(card(i), data%equation(k + 1), sound)
+      if (.not. sound) cycle
+      k = k + 1
+      call found%add_origin([of_equation, k, 0], [card_mpc, card(i), 0])
+      call found%add_origin([of_equation, k, -1], &
+                            [card_mpc, card(i), -deck%card(card_mpc)%list_start(card(i))])
     end do
-    model%equation = model%equation(:k)
+    data%equation = data%equation(:k)
 
   contains
 
@@ -194,7 +201,6 @@ contains
       integer :: k
       logical, allocatable :: counts(:)
 
-      equation%card = card
       associate (table => deck%card(card_mpc), before => deck%card(card_mpc)%list_start(card) - 1)
         associate (item => table%list(before + 1:table%list_start(card + 1) - 1))
           node = nodes%find(nint(item%number(1)))
@@ -204,7 +210,7 @@ contains
             if (node(k) == 0 .and. nodes%whole) call found%add_error(card_mpc, card, -before - k, &
               ': there is no GRID '//text_of(nint(item(k)%number(1))), 'the id of a GRID')
             if (node(k) > 0 .and. c(k) > 2) call found%add_error(card_mpc, card, -before - k, ': '// &
-              model%name_of(of_node, node(k))//' has no direction '//text_of(c(k)), &
+              deck%card(card_grid)%identity(node(k))//' has no direction '//text_of(c(k)), &
               'direction 1 or 2'//in_plane)
           end do
         end associate
@@ -214,16 +220,15 @@ contains
         equation%node = pack(node, counts)
         equation%component = pack(c, counts)
         equation%coefficient = pack(a, counts)
-        call check_equation(model, equation, [card_mpc, card, -before - 1], found)
       end associate
     end subroutine read_equation
-  end subroutine build_equations
+  end subroutine read_equations
 
   !> CELAS1 with PELAS, CELAS2.
-  subroutine build_springs(deck, nodes, model, found)
+  subroutine read_springs(deck, nodes, data, found)
     type(deck_type), intent(in) :: deck        !! its cards
     type(card_index), intent(in) :: nodes      !! ids of GRID
-    type(model_type), intent(inout) :: model   !! the scene
+    type(scene_type), intent(inout) :: data    !! gets the springs
     type(findings), intent(inout) :: found     !! what is wrong is added
     type(id_index) :: properties
     real(wp), allocatable :: stiffness(:)      ! of the properties
@@ -234,8 +239,8 @@ contains
       stiffness = [pelas%value(2, :), pelas%value(6, :)]
       call check_properties(pelas%count)
     end associate
-    call read_springs(card_celas1, 3)
-    call read_springs(card_celas2, 3)
+    call read_table(card_celas1)
+    call read_table(card_celas2)
 
   contains
 
@@ -256,20 +261,21 @@ contains
       end do
     end subroutine check_properties
 
-    !> The cards of one kind: nodes and directions begin at a column.
-    subroutine read_springs(card, first)
-      integer, intent(in) :: card, first
+    !> The cards of one kind. A spring is left out if a node was not found.
+    subroutine read_table(card)
+      integer, intent(in) :: card
+      integer, parameter :: first = 3   ! column of nodes and directions
       integer, dimension(deck%card(card)%count) :: a, b
       type(spring_type) :: spring
-      integer :: property
+      integer :: end, property
 
       call resolve(deck, card, first, nodes, found, a)
       call resolve(deck, card, first + 2, nodes, found, b)
       associate (table => deck%card(card))
         do i = 1, table%count
           if (.not. table%sound(i)) cycle
-          spring = spring_type([nint(table%value(first + 1, i)), nint(table%value(first + 3, i))], &
-                               [a(i), b(i)], table%value(2, i), int(table%value(1, i)))
+          spring = spring_type(nint(table%value([first + 1, first + 3], i)), [a(i), b(i)], &
+                               table%value(2, i), int(table%value(1, i)))
           if (card == card_celas1) then
             property = properties%find(nint(table%value(2, i)))
             if (property == 0) call found%add_error(card, i, 2, ': there is no PELAS '// &
@@ -277,34 +283,13 @@ contains
             if (property == 0) cycle
             spring%stiffness = stiffness(property)
           end if
-          call check_ends(spring, nint(table%value([first, first + 2], i)), [card, i, first])
+          if (any(spring%node == 0 .and. nint(table%value([first, first + 2], i)) > 0)) cycle
+          data%spring = [data%spring, spring]
+          do end = 0, 2
+            call found%add_origin([of_spring, size(data%spring), end], [card, i, first + max(0, 2*end - 1)])
+          end do
         end do
       end associate
-    end subroutine read_springs
-
-    !> A spring has one end at least at a freedom, and the other elsewhere.
-    subroutine check_ends(spring, id, card)
-      type(spring_type), intent(in) :: spring
-      integer, intent(in) :: id(2)             !! of its nodes, 0: the ground
-      integer, intent(in) :: card(3)           !! table, card, field of the first node
-      integer :: bare, grounded   ! end without a direction; with the direction of the ground; 0: none
-
-      grounded = findloc(id == 0 .and. spring%component > 0, .true., dim=1)
-      bare = findloc(id > 0 .and. spring%component == 0, .true., dim=1)
-      if (all(id == 0)) then
-        call found%add_error(card(1), card(2), card(3), ': has no node', &
-                             'a node and its direction at one end; 0 or blank: the ground')
-      else if (grounded > 0) then
-        call found%add_error(card(1), card(2), card(3) + 2*grounded - 1, ': has a direction at the ground', &
-                             '0 or blank, or a node before it')
-      else if (bare > 0) then
-        call found%add_error(card(1), card(2), card(3) + 2*bare - 1, ': has no direction there', &
-                             'direction 1 or 2')
-      else if (id(1) == id(2) .and. spring%component(1) == spring%component(2)) then
-        call found%add_error(card(1), card(2), card(3), ': has both ends at one freedom', 'two of them')
-      else if (all((spring%node > 0) .eqv. (id > 0))) then
-        model%spring = [model%spring, spring]
-      end if
-    end subroutine check_ends
-  end subroutine build_springs
+    end subroutine read_table
+  end subroutine read_springs
 end module epcont_build_tie_cards

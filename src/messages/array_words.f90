@@ -1,11 +1,18 @@
 !> Messages for programs that make their scenes from arrays: what is said of cards, in the words of arrays.
 module epcont_messages_array_words
+  use epcont_base_diagnostic, only: diagnostic
+  use epcont_base_text, only: text_of
+  use epcont_model_finding, only: of_body_load, of_equation, of_node, of_paper_ratio, of_platen, &
+      of_pressure, of_reference, of_spring, of_section, of_theory, of_tie
+  use epcont_model_model, only: model_type
   implicit none
   private
-  public :: in_array_words
+  public :: in_array_words, name_item
 
   !> Words of a deck, and what they are in a scene from arrays. Phrases come before their words.
-  character(len=48), parameter :: word(*) = [character(len=48) :: &
+  character(len=56), parameter :: word(*) = [character(len=56) :: &
+    'no MOMENT, SUPORT or SPC that names its direction 6', 'tie: it does not turn', &
+    'GA and GB are not the ends', 'its corners are not the ends', &
     'field 9 (CID) is blank', 'its normal is zero', &
     'the id of a CORD2R whose x-axis is the normal', 'a normal', &
     'the x-axis of CID turned round', 'the normal turned round', &
@@ -15,13 +22,45 @@ module epcont_messages_array_words
     'GRID', 'node', 'CGAPs', 'pairs', 'CGAP', 'pair', &
     'BLSEG lines', 'lines', 'BLSEG', 'line', 'BCONP', 'couple', 'SLAVE', 'slave', 'MASTER', 'master', &
     'PSHELL', 'section', 'PSOLID', 'section', 'the MAT1', 'young', &
-    'PARAM MUP', 'controls%paper_ratio', ' (MUP PAPER)', '', &
+    'field 5 (N1)', 'acceleration(1)', 'field 3 (G)', 'centre(1)', 'field 12 (RACC)', 'spin_up', &
+    'a node on it, or blank', 'a centre on it', 'field 6 (RHO)', 'density', &
+    'GRAV and RFORCE act', 'body_load acts', &
+    'the deck has no elements', 'there are no elements', 'CTRIA3 cards', 'add_elements', &
+    ' (MUP PAPER)', '', &
     'MUP EXACT (ORIGINAL takes PAPER)', '.false.', 'MUP EXACT', '.false.', &
-    'PARAM THEORY', 'controls%flow_theory', 'THEORY TOTAL', '.false.', 'MUP PAPER', 'paper_ratio', &
+    'THEORY TOTAL', '.false.', 'MUP PAPER', 'paper_ratio', &
     'PARAM MAXIT', 'controls%most_iterations', 'METHOD', 'controls%method', '--memory', 'memory', &
     'what follows is', 'the answer is', '`force not unique` in CONTACT', 'answer%contact%indeterminate']
 
+  !> Items that are known by their position in a list, and these lists.
+  integer, parameter :: listed(*) = [of_tie, of_platen, of_equation, of_spring, of_pressure, of_body_load]
+  character(len=*), parameter :: list(*) = ['tie      ', 'platen   ', 'equation ', 'spring   ', 'pressure ', &
+                                            'body_load']
+
 contains
+
+  !> Put the name of its array before a finding, all in the words of arrays.
+  subroutine name_item(model, one)
+    type(model_type), intent(in) :: model    !! from arrays
+    type(diagnostic), intent(inout) :: one   !! what was found of it
+    character(len=:), allocatable :: name
+    integer :: k
+
+    name = ''
+    k = findloc(listed, one%of, dim=1)
+    if (k > 0) then
+      name = trim(list(k))//'('//text_of(one%which)//')'
+    else if (one%of == of_paper_ratio) then
+      name = 'controls%paper_ratio'
+    else if (one%of == of_theory) then
+      name = 'controls%flow_theory'
+    else if (one%of /= of_section) then   ! sentences about sections name the array
+      name = model%name_of(merge(of_node, one%of, one%of == of_reference), one%which)
+    end if
+    if (name == '' .and. index(one%what, ': ') == 1) one%what = one%what(3:)
+    one%what = in_array_words(name//one%what)
+    one%remedy = in_array_words(one%remedy)
+  end subroutine name_item
 
   !> A message, with each word of the deck replaced.
   pure function in_array_words(text) result(told)

@@ -7,8 +7,8 @@ module epcont_model_arrays
   implicit none
   private
   public :: scene_type, new_scene, set_sections, add_elements, set_pairs, count_from_one
-  public :: body_load, element_block, line_couple, linear_equation, named_line, side_pressure, spring_type
-  public :: turning_platen
+  public :: body_load, element_block, line_couple, named_line, side_pressure
+  public :: dof_tie, linear_equation, spring_type, turning_platen
 
   !> The component of what turns: behind those of displacements.
   integer, parameter, public :: angle = directions + 1
@@ -68,11 +68,18 @@ module epcont_model_arrays
     real(wp) :: moment = 0.0_wp               !! at the leader, counter-clockwise [force*length]
   end type turning_platen
 
+  !> A DOF that has the displacement of another one in the same direction (RBE2 whose master node does not
+  !! rotate).
+  type :: dof_tie
+    integer :: component = 0                  !! 1: x, 2: y
+    integer :: node = 0                       !! dependent node
+    integer :: leader = 0                     !! master node
+  end type dof_tie
+
   !> Sum of coefficients times displacements = 0 (MPC); the first freedom follows the others.
   type :: linear_equation
     integer, allocatable :: component(:), node(:)
     real(wp), allocatable :: coefficient(:)
-    integer :: card = 0                       !! that it is of, by its position
   end type linear_equation
 
   !> A spring between two freedoms, or one and the ground (CELAS1, CELAS2).
@@ -96,8 +103,7 @@ module epcont_model_arrays
     real(wp), allocatable :: reference_temperature(:)   !! at which there is none [temperature] [sections]
     logical, allocatable :: held(:, :)          !! the freedom has a prescribed displacement [2, nodes]
     real(wp), allocatable :: prescribed(:, :)   !! that displacement [length] [2, nodes]
-    !> Node whose displacement the freedom shares: itself if not tied [2, nodes]
-    integer, allocatable :: leader(:, :)
+    type(dof_tie), allocatable :: tie(:)        !! [any]
     logical, allocatable :: reference(:, :)     !! SUPORT freedoms [2, nodes]
     real(wp), allocatable :: load(:, :)         !! nodal forces [force] [2, nodes]
     type(side_pressure), allocatable :: pressure(:)   !! in addition to these [any]
@@ -110,6 +116,8 @@ module epcont_model_arrays
     integer, allocatable :: pair_node(:, :)     !! nodes A and B that name the pair [2, pairs]
     real(wp), allocatable :: normal(:, :)       !! unit, along which B is pushed [2, pairs]
     real(wp), allocatable :: initial_gap(:)     !! [length] [pairs]
+    !> The distance from A to B along the normal is added to these gaps (PARAM GAPGEOM YES).
+    logical :: gap_by_geometry = .false.
     type(named_line), allocatable :: line(:)    !! lines of nodes [any]
     type(line_couple), allocatable :: couple(:) !! which of these may touch [any]
     logical :: contact_is_off = .false.         !! bodies may pass through each other, which is warned of
@@ -122,15 +130,14 @@ contains
   function new_scene(x) result(scene)
     real(wp), intent(in) :: x(:, :)            !! their coordinates [length] [2, nodes]
     type(scene_type) :: scene
-    integer :: i, nodes
+    integer :: nodes
 
     nodes = size(x, 2)
     scene%x = x
-    scene%leader = spread([(i, i=1, nodes)], 1, directions)
     allocate (scene%held(directions, nodes), scene%reference(directions, nodes), source=.false.)
     allocate (scene%prescribed(directions, nodes), scene%load(directions, nodes), source=0.0_wp)
     allocate (scene%block(0), scene%pressure(0), scene%body_load(0), scene%line(0), scene%couple(0))
-    allocate (scene%platen(0), scene%equation(0), scene%spring(0))
+    allocate (scene%tie(0), scene%platen(0), scene%equation(0), scene%spring(0))
     call set_sections(scene, [real(wp) ::], [real(wp) ::], [integer ::])
     call set_pairs(scene, reshape([integer ::], [2, 0]), reshape([real(wp) ::], [2, 0]), [real(wp) ::])
   end function new_scene
@@ -202,7 +209,6 @@ contains
     scene = new_scene(given%x)   ! of arrays counted from 1, which stay so where the shape is the same
     scene%held = given%held
     scene%prescribed = given%prescribed
-    scene%leader = given%leader
     scene%reference = given%reference
     scene%load = given%load
     call set_sections(scene, given%young, given%poisson, given%kinematics)
@@ -217,11 +223,13 @@ contains
     end if
     if (allocated(given%body_load)) scene%body_load = given%body_load(:)
     if (allocated(given%spring)) scene%spring = given%spring(:)
+    if (allocated(given%tie)) scene%tie = given%tie(:)
     scene%couple = given%couple(:)
     deallocate (scene%block, scene%line)
     allocate (scene%block(size(given%block)), scene%line(size(given%line)))
     scene%controls = given%controls
     scene%contact_is_off = given%contact_is_off
+    scene%gap_by_geometry = given%gap_by_geometry
     call copy_lists(given%block, given%curve, given%line)
     if (allocated(given%platen)) call copy_platens(given%platen)
     if (allocated(given%equation)) call copy_equations(given%equation)

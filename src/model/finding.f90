@@ -8,13 +8,17 @@ module epcont_model_finding
   private
   public :: findings, and_more
 
-  !> What a finding is of, by its position in the model. PARAM MUP and THEORY are of their own; a body, by one
-  !! of its nodes, is named in what is said of it. Of its data the fields of its card are known by their
-  !! columns: 0 all, 1 the id; -k: the k-th of its list, of an element the node k of the model. What is wrong
-  !! goes on behind its name: `: lies on the axis`.
+  !> Items of the model data that a finding can be about; a finding has the position of the item, too. A body
+  !! is known by one of its nodes, and named in the sentence. The text of a finding continues after the name
+  !! of the item: `: lies on the axis`.
   integer, parameter, public :: of_scene = 0, of_node = -1, of_element = -2, of_section = -3, of_pair = -4, &
     of_line = -5, of_couple = -6, of_paper_ratio = -7, of_body = -8, of_body_load = -9, of_equation = -10, &
-    of_theory = -11
+    of_theory = -11, of_tie = -12, of_reference = -13, of_spring = -14, of_platen = -15, of_pressure = -16
+
+  !> Parts of an item. By default a number is a column of its card (0: all, 1: the id), and -k is the k-th
+  !! entry of its list (of an element: node k of the model). Parts of sections and body loads are named here;
+  !! that of a SUPORT DOF is its component, that of a spring the end whose component is meant.
+  integer, parameter, public :: item_density = 1, item_acceleration = 1, item_centre = 2, item_spin_up = 3
 
 contains
 

@@ -9,11 +9,11 @@ module epcont_model_freedoms
   use epcont_base_tolerances, only: cancelled, same_place
   use epcont_element_kinematics, only: directions
   use epcont_model_arrays, only: angle
-  use epcont_model_finding, only: findings, of_node
+  use epcont_model_finding, only: findings, of_node, of_reference, of_tie
   use epcont_model_model, only: model_type
   implicit none
   private
-  public :: freedom, tie, why_not_tied, follow_to_the_end, set_reference, join_nodes, find_travels
+  public :: freedom, tie_freedom, why_not_tied, follow_to_the_end, check_reference, join_nodes, find_travels
 
   !> A motion is taken off where all supports of a body follow it but for this part of the largest prescribed
   !! displacement.
@@ -21,22 +21,22 @@ module epcont_model_freedoms
 
 contains
 
-  !> Have a freedom follow that of another node, if that can be.
-  pure subroutine tie(model, c, node, leader, card, found)
+  !> Apply the k-th tie of the model data, if it is possible.
+  pure subroutine tie_freedom(model, k, found)
     type(model_type), intent(inout) :: model   !! the scene
-    integer, intent(in) :: c, node             !! direction and node of the freedom
-    integer, intent(in) :: leader              !! the node that it follows
-    integer, intent(in) :: card(3)             !! whom to blame, as findings are told it: of, which, item
-    type(findings), intent(inout) :: found   !! what is wrong with it is added
+    integer, intent(in) :: k                   !! which tie
+    type(findings), intent(inout) :: found     !! what is wrong with it is added
     character(len=:), allocatable :: remedy, why
 
-    call why_not_tied(model, c, node, leader, why, remedy)
-    if (len(why) == 0) then
-      model%leader(c, node) = leader
-    else
-      call found%add_error(card(1), card(2), card(3), ': '//freedom(model, c, node)//why, remedy)
-    end if
-  end subroutine tie
+    associate (c => model%tie(k)%component, node => model%tie(k)%node, leader => model%tie(k)%leader)
+      call why_not_tied(model, c, node, leader, why, remedy)
+      if (len(why) == 0) then
+        model%leader(c, node) = leader
+      else
+        call found%add_error(of_tie, k, 0, ': '//freedom(model, c, node)//why, remedy)
+      end if
+    end associate
+  end subroutine tie_freedom
 
   !> Why a freedom cannot follow that of another node, and what would be right; empty: it can.
   pure subroutine why_not_tied(model, c, node, leader, why, remedy)
@@ -78,29 +78,22 @@ contains
     end do
   end subroutine follow_to_the_end
 
-  !> Make a freedom one of reference: it must be free to move.
-  pure subroutine set_reference(model, c, node, card, found)
-    type(model_type), intent(inout) :: model   !! the scene
+  !> Check that a SUPORT DOF is free to move.
+  pure subroutine check_reference(model, c, node, found)
+    type(model_type), intent(in) :: model      !! the scene
     integer, intent(in) :: c, node             !! direction and node of the freedom
-    integer, intent(in) :: card(3)             !! whom to blame, as findings are told it: of, which, item
-    type(findings), intent(inout) :: found   !! what is wrong with it is added
-
+    type(findings), intent(inout) :: found     !! what is wrong with it is added
     logical :: is_free
-    integer :: platen
 
-    platen = 0
     if (c == angle) then
-      platen = findloc(model%platen%leader, node, dim=1)
-      is_free = .not. model%platen(platen)%held
+      is_free = .not. model%platen(findloc(model%platen%leader, node, dim=1))%held
     else
       is_free = .not. model%is_held(c, node) .and. model%leader(c, node) == node .and. &
                 model%sum_of(c, node) == 0
     end if
-    if (.not. is_free) call found%add_error(card(1), card(2), card(3), ': '//freedom(model, c, node)// &
+    if (.not. is_free) call found%add_error(of_reference, node, c, ': '//freedom(model, c, node)// &
       ' is held by a support or follows an RBE2', 'a freedom that is free to move')
-    if (platen > 0) model%platen(platen)%reference = .true.
-    if (platen == 0) model%reference(c, node) = .true.
-  end subroutine set_reference
+  end subroutine check_reference
 
   !> A freedom as messages name it: `direction 1 of GRID 17`.
   pure function freedom(model, c, node) result(text)

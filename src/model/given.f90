@@ -1,4 +1,4 @@
-!> What a scene is given by, where it comes from arrays and not from a deck: nobody has looked at it before.
+!> Model data: taken from the arrays of a caller, and checked for values that no model can have.
 module epcont_model_given
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: short_real, text_of
@@ -9,38 +9,46 @@ module epcont_model_given
   use epcont_element_kinematics, only: axisymmetric, directions
   use epcont_model_arrays, only: count_from_one, element_block, scene_type
   use epcont_model_controls, only: method_name, rule_name, solver_name
-  use epcont_model_finding, only: findings, of_scene
+  use epcont_model_finding, only: findings, of_scene, of_section, of_spring
+  use epcont_model_load_cases, only: load_cases, single_case
   use epcont_model_model, only: model_type
   use epcont_model_yield_curve, only: curve_fault, straighten
   implicit none
   private
-  public :: check_given, number_parts
+  public :: check_values, number_parts, take_arrays
 
   integer, parameter :: any_shape(0) = [integer ::]   !! for `fit`
 
 contains
 
-  !> Arrays that are there and go together, numbers in their ranges; of each array the first fault. What a
-  !! deck's reader has looked at by itself is not looked at again.
-  subroutine check_given(given, scene, found)
+  !> Take the arrays of a caller, if they are there and go together.
+  subroutine take_arrays(given, scene, cases, found)
     type(scene_type), intent(in) :: given      !! arrays, however they are counted
     type(scene_type), intent(out) :: scene     !! they, counted from 1
+    type(load_cases), intent(out) :: cases     !! their loads
     type(findings), intent(inout) :: found     !! what is wrong with it is added
-    type(element_kind), allocatable :: kinds(:)
-    integer :: elements, i, nodes
 
     call check_shapes(found, given)
     if (found%errors > 0) return
     call count_from_one(given, scene)
+    cases = single_case(scene)
+  end subroutine take_arrays
+
+  !> Check numbers for their ranges; the first fault of each array is reported.
+  subroutine check_values(scene, found)
+    type(scene_type), intent(inout) :: scene   !! gets straight curves
+    type(findings), intent(inout) :: found     !! what is wrong with it is added
+    type(element_kind), allocatable :: kinds(:)
+    integer :: elements, i, nodes
+
     nodes = size(scene%x, 2)
     call need(found, scene%young >= least_divisor .and. scene%young <= farthest, 'young(#) is no stiffness', &
-              above_zero())
+              above_zero(), of_section)
     call need(found, scene%poisson >= 0.0_wp .and. scene%poisson < 0.5_wp, 'poisson(#) is out of range', &
-              '0.0 or more, and less than 0.5')
+              '0.0 or more, and less than 0.5', of_section)
     call need(found, scene%thickness >= least_divisor .and. scene%thickness <= farthest, &
-              'thickness(#) is no thickness', above_zero())
-    call need(found, scene%density >= 0.0_wp .and. has_size(scene%density), 'density(#) is no density', &
-              any_size())
+              'thickness(#) is no thickness', above_zero(), of_section)
+    call need(found, has_size(scene%density), 'density(#) is no density', any_size(), of_section)
     call need(found, within(scene%kinematics, axisymmetric), 'kinematics(#) is unknown', &
               'plane_strain, plane_stress or axisymmetric')
     do i = 1, size(scene%curve)
@@ -52,14 +60,13 @@ contains
       if (found%errors == 0) call check_block(found, scene, kinds, nodes, 'block('//text_of(i)//')%', &
                                               scene%block(i), elements)
     end do
-    if (found%errors == 0) call need(found, [elements > 0], 'there are no elements', 'add_elements')
+    if (found%errors == 0) call need(found, [elements > 0], 'the deck has no elements', 'CTRIA3 cards')
     call need(found, all(abs(scene%x) <= farthest, dim=1), 'x(:, #) is no place', any_size())
     call need(found, all(has_size(scene%load), dim=1), 'load(:, #) is no force', any_size())
     call need(found, all(has_size(scene%prescribed), dim=1), 'prescribed(:, #) is no displacement', &
               any_size())
     call need(found, all(scene%held .or. scene%prescribed == 0.0_wp, dim=1), &
               'prescribed(:, #) is not 0.0 where held is false', '0.0, or held')
-    call need(found, all(within(scene%leader, nodes), dim=1), 'leader(:, #) is no node', up_to(nodes))
     call need(found, all(within(scene%pair_node, nodes), dim=1), 'pair_node(:, #) is no node', up_to(nodes))
     call need(found, abs(norm2(scene%normal, dim=1) - 1.0_wp) <= no_effect .or. &
               all(scene%normal == 0.0_wp, dim=1), &
@@ -94,21 +101,24 @@ contains
               within(scene%couple%line(2), size(scene%line)), 'couple(#)%line is no line', &
               up_to(size(scene%line)))
     call check_choices(found, scene)
-  end subroutine check_given
+  end subroutine check_values
 
   !> It is an error where something does not hold: of many the first, by its number in place of `#`.
-  subroutine need(found, holds, what, remedy)
+  subroutine need(found, holds, what, remedy, of)
     type(findings), intent(inout) :: found
     logical, intent(in) :: holds(:)
     character(len=*), intent(in) :: what, remedy
+    integer, intent(in), optional :: of   !! item of this number that a deck has a card for
     character(len=:), allocatable :: text
-    integer :: at
+    integer :: at, which
 
     if (all(holds)) return
+    which = findloc(holds, .false., dim=1)
     at = index(what, '#')
     text = what
-    if (at > 0) text = what(:at - 1)//text_of(findloc(holds, .false., dim=1))//what(at + 1:)
-    call found%add_error(of_scene, 0, 0, text, remedy)
+    if (at > 0) text = what(:at - 1)//text_of(which)//what(at + 1:)
+    if (present(of)) call found%add_error(of, which, 0, ': '//text, remedy)
+    if (.not. present(of)) call found%add_error(of_scene, 0, 0, text, remedy)
   end subroutine need
 
   !> An array is there, and of the shape that is wanted.
@@ -147,7 +157,6 @@ contains
     call fit(found, 'held(2, nodes)', nodes, given%held)
     call fit(found, 'prescribed(2, nodes)', nodes, given%prescribed)
     call fit(found, 'reference(2, nodes)', nodes, given%reference)
-    call fit(found, 'leader(2, nodes)', nodes, given%leader)
     call fit(found, 'load(2, nodes)', nodes, given%load)
     call fit(found, 'poisson(sections)', sections, given%poisson)
     call fit(found, 'kinematics(sections)', sections, given%kinematics)
@@ -170,6 +179,9 @@ contains
     character(len=:), allocatable :: name
 
     nodes = size(scene%x, 2)
+    call need(found, within(scene%tie%node, nodes) .and. within(scene%tie%leader, nodes) .and. &
+              within(scene%tie%component, directions), 'tie(#) does not name two nodes and a component', &
+              up_to(nodes)//'; component 1 or 2')
     do i = 1, size(scene%platen)
       name = 'platen('//text_of(i)//')%'
       call fit(found, name//'follower', any_shape, scene%platen(i)%follower)
@@ -178,21 +190,14 @@ contains
       call need(found, within(scene%platen(i)%follower, nodes), name//'follower(#) is no node', up_to(nodes))
       call need(found, [has_size(scene%platen(i)%prescribed) .and. has_size(scene%platen(i)%moment)], &
                 name//'prescribed or moment is out of range', any_size())
-      call need(found, [all(scene%kinematics /= axisymmetric)], name//'leader would turn, and rings do not', &
-                'leader: it does not turn')
     end do
     call check_equations(found, scene)
-    do i = 1, size(scene%spring)
-      associate (spring => scene%spring(i))
-        call need(found, [any(spring%node > 0), within(spring%node + 1, nodes + 1), &
-                   spring%node == 0 .or. within(spring%component, directions), &
-                   spring%node(1) /= spring%node(2) .or. spring%component(1) /= spring%component(2)], &
-                  'spring('//text_of(i)//') is not between two freedoms, or one and the ground', &
-                  'node 0: the ground; component 1 or 2')
-        call need(found, [spring%stiffness >= least_divisor .and. spring%stiffness <= farthest], &
-                  'spring('//text_of(i)//')%stiffness is none', above_zero())
-      end associate
-    end do
+    call need(found, [(all([within(scene%spring(i)%node + 1, nodes + 1), &
+                            within(scene%spring(i)%component + 1, directions + 1)]), &
+                       i=1, size(scene%spring))], &
+              'names no node or component', '0, or '//up_to(nodes)//'; component 0, 1 or 2', of_spring)
+    call need(found, scene%spring%stiffness >= least_divisor .and. scene%spring%stiffness <= farthest, &
+              'its stiffness is none', above_zero(), of_spring)
   end subroutine check_ties
 
   !> Equations have terms, and these name nodes and components that are there.
@@ -238,7 +243,7 @@ contains
       call need(found, abs(curve%stress) <= farthest, name//'%stress(#) is no stress', any_size())
       if (found%errors > 0) return
       call straighten(curve, scene%young(i), fault)
-      if (fault%point > 0) call need(found, [.false.], name//': '//fault%what, fault%remedy)
+      if (fault%point > 0) call found%add_error(of_section, i, 0, ': '//name//': '//fault%what, fault%remedy)
     end associate
   end subroutine check_curve
 
@@ -348,12 +353,12 @@ contains
     kind_of = findloc(card /= '' .and. (kinds%plane_card == card .or. kinds%ring_card == card), .true., dim=1)
   end function kind_of
 
-  !> All elements in one list, and numbers for all parts of the scene.
+  !> All elements in one list, and ids for all parts of the scene if it has none.
   pure subroutine number_parts(model)
     type(model_type), intent(inout) :: model   !! with what is given; its blocks become the list
     integer :: b, first, i, last
 
-    if (.not. allocated(model%kinds)) model%kinds = element_kinds()
+    model%kinds = element_kinds()
     model%nodes = size(model%x, 2)
     model%pairs = size(model%initial_gap)
     model%elements = sum([(size(model%block(b)%section), b=1, size(model%block))])
@@ -369,6 +374,7 @@ contains
       model%connectivity(:size(model%block(b)%node, 1), first:last) = model%block(b)%node
     end do
     deallocate (model%block)
+    if (allocated(model%node_id)) return
     model%node_id = [(i, i=1, model%nodes)]
     model%element_id = [(i, i=1, model%elements)]
     model%property_id = [(i, i=1, size(model%young))]

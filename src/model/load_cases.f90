@@ -4,7 +4,7 @@ module epcont_model_load_cases
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of
   use epcont_element_kinematics, only: directions
-  use epcont_model_arrays, only: angle, body_load, side_pressure
+  use epcont_model_arrays, only: angle, body_load, scene_type, side_pressure
   use epcont_model_body_forces, only: put_body_forces
   use epcont_model_expansion, only: find_free_strains
   use epcont_model_freedoms, only: find_travels
@@ -13,7 +13,7 @@ module epcont_model_load_cases
   use epcont_model_ties, only: add_moment
   implicit none
   private
-  public :: load_case, load_cases, put_case
+  public :: load_case, load_cases, put_case, single_case
 
   !> The contacts of a case, beside the id of its one BCONP.
   integer, parameter, public :: contact_all = 0, contact_none = -1
@@ -89,6 +89,31 @@ module epcont_model_load_cases
   end type load_cases
 
 contains
+
+  !> The only load case of model data that come from arrays: set 1 of each kind.
+  pure function single_case(data) result(cases)
+    type(scene_type), intent(in) :: data   !! checked
+    type(load_cases) :: cases
+    integer :: c, i
+
+    allocate (cases%case(1))
+    cases%case(1)%set = [1]
+    cases%case(1)%factor = [1.0_wp]
+    cases%case(1)%supports = 1
+    cases%case(1)%load_steps = data%controls%load_steps
+    cases%force = [(nodal_force(1, i, data%load(:, i)), i=1, size(data%load, 2))]
+    cases%pressure = [(set_pressure(1, data%pressure(i)), i=1, size(data%pressure))]
+    cases%body = [(set_body_load(1, data%body_load(i)), i=1, size(data%body_load))]
+    cases%moment = [(set_moment(1, i, data%platen(i)%moment), i=1, size(data%platen))]
+    cases%held_at = [((set_displacement(1, c, i, data%prescribed(c, i)), c=1, directions), &
+                      i=1, size(data%prescribed, 2)), &
+                     (set_displacement(1, angle, i, data%platen(i)%prescribed), i=1, size(data%platen))]
+    allocate (cases%moved(0), cases%heat(merge(1, 0, allocated(data%temperature))))
+    if (.not. allocated(data%temperature)) return
+    cases%case(1)%temperatures = 1
+    cases%heat(1)%set = 1
+    cases%heat(1)%temperature = data%temperature
+  end function single_case
 
   !> The cases of a pattern, in their order.
   pure function of_pattern(self, pattern) result(cases)

@@ -11,8 +11,7 @@ module epcont_model_model
   use epcont_geometry_boundary_line, only: boundary_line
   use epcont_geometry_outline_shape, only: outline_type
   use epcont_model_arrays, only: angle, scene_type
-  use epcont_model_finding, only: of_body_load, of_couple, of_element, of_line, of_node, of_pair, &
-      of_paper_ratio, of_section, of_theory
+  use epcont_model_finding, only: of_couple, of_element, of_line, of_node, of_pair, of_section
   implicit none
   private
   public :: freedom_sums, line_contact, model_type
@@ -72,6 +71,8 @@ module epcont_model_model
     !> The rigid motion of its body that supports prescribe as a whole, and what they prescribe beyond it
     !! [length] [2, nodes].
     real(wp), allocatable :: travel(:, :), beyond_travel(:, :)
+    !> Node whose displacement the DOF shares: itself if it is not tied [2, nodes]
+    integer, allocatable :: leader(:, :)
     integer, allocatable :: sum_of(:, :)        !! row of each freedom that is a sum; 0: it is none [2, nodes]
     type(freedom_sums) :: sum
     integer, allocatable :: pair_id(:)          !! [pairs]
@@ -199,7 +200,8 @@ contains
   pure logical function has_rings(self)
     class(model_type), intent(in) :: self
 
-    has_rings = self%is_ring(1)
+    has_rings = .false.
+    if (self%elements > 0) has_rings = self%is_ring(1)
   end function has_rings
 
   !> Does RBE2 or MPC say where one of these nodes goes?
@@ -365,13 +367,8 @@ contains
       name = 'BLSEG '//text_of(self%line(which)%id)
     case (of_couple)
       name = 'BCONP '//text_of(self%couple(which)%id)
-    case (of_paper_ratio)
-      name = 'PARAM MUP'
-    case (of_theory)
-      name = 'PARAM THEORY'
     case default
       name = ''
-      if (kind == of_body_load) name = 'body_load('//text_of(which)//')'
     end select
   end function name_of
 end module epcont_model_model

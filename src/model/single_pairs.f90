@@ -10,13 +10,15 @@ module epcont_model_single_pairs
   private
   public :: complete_pairs
 
+  !> The length of a unit vector may differ from 1 by this rounding.
+  real(wp), parameter :: few_ulps = 8.0_wp*epsilon(1.0_wp)
+
 contains
 
   !> From nodes, normals and gaps of each pair. Node 0 is one that could not be found; a normal of zero is one
   !! from A to B.
-  subroutine complete_pairs(model, by_geometry, found)
+  subroutine complete_pairs(model, found)
     type(model_type), intent(inout) :: model   !! the scene
-    logical, intent(in) :: by_geometry       !! how far the nodes are apart along the normal counts in the gap
     type(findings), intent(inout) :: found   !! what is wrong with it is added
     real(wp), allocatable :: shortest(:)     ! edge at each node, found when a pair first needs it
     character(len=:), allocatable :: others
@@ -42,8 +44,10 @@ contains
                                  ': GA and GB are at one place and field 9 (CID) is blank: no direction', &
                                  'the id of a CORD2R whose x-axis is the normal')
           end if
+        else if (abs(norm2(normal) - 1.0_wp) > few_ulps) then
+          normal = normal/norm2(normal)
         end if
-        if (by_geometry) model%initial_gap(i) = model%initial_gap(i) + dot_product(normal, between)
+        if (model%gap_by_geometry) model%initial_gap(i) = model%initial_gap(i) + dot_product(normal, between)
       end associate
     end do
     model%row_start = [(2*i - 1, i=1, model%pairs + 1)]

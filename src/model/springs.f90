@@ -1,12 +1,39 @@
 !> Springs between two freedoms, or one and the ground.
 module epcont_model_springs
   use epcont_base_kinds, only: wp
+  use epcont_model_finding, only: findings, of_spring
   use epcont_model_model, only: model_type
   implicit none
   private
-  public :: spring_forces, spring_stretch
+  public :: check_spring_ends, spring_forces, spring_stretch
 
 contains
+
+  !> A spring has one end at least at a freedom, and the other elsewhere.
+  subroutine check_spring_ends(model, found)
+    type(model_type), intent(in) :: model    !! the scene
+    type(findings), intent(inout) :: found   !! what is wrong with it is added
+    integer :: bare, grounded   ! end without a direction; with the direction of the ground; 0: none
+    integer :: k
+
+    do k = 1, size(model%spring)
+      associate (node => model%spring(k)%node, component => model%spring(k)%component)
+        grounded = findloc(node == 0 .and. component > 0, .true., dim=1)
+        bare = findloc(node > 0 .and. component == 0, .true., dim=1)
+        if (all(node == 0)) then
+          call found%add_error(of_spring, k, 0, ': has no node', &
+                               'a node and its direction at one end; 0 or blank: the ground')
+        else if (grounded > 0) then
+          call found%add_error(of_spring, k, grounded, ': has a direction at the ground', &
+                               '0 or blank, or a node before it')
+        else if (bare > 0) then
+          call found%add_error(of_spring, k, bare, ': has no direction there', 'direction 1 or 2')
+        else if (node(1) == node(2) .and. component(1) == component(2)) then
+          call found%add_error(of_spring, k, 0, ': has both ends at one freedom', 'two of them')
+        end if
+      end associate
+    end do
+  end subroutine check_spring_ends
 
   !> By how much the second end of a spring moves beyond the first [length].
   pure real(wp) function spring_stretch(model, k, displacement) result(stretch)

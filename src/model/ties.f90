@@ -3,47 +3,51 @@
 module epcont_model_ties
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: directions
-  use epcont_model_arrays, only: angle, linear_equation
-  use epcont_model_finding, only: findings, of_equation, of_node
+  use epcont_model_arrays, only: angle
+  use epcont_model_finding, only: findings, of_equation, of_node, of_platen
   use epcont_model_freedoms, only: freedom, why_not_tied
   use epcont_model_model, only: model_type
   implicit none
   private
-  public :: add_moment, check_equation, complete_ties, platen_angle, turn_with
+  public :: add_moment, check_equation, complete_ties, platen_angle, turn_followers
 
 contains
 
-  !> Have a node follow a leader that turns, if that can be.
-  subroutine turn_with(model, platen, node, card, found)
-    type(model_type), intent(inout) :: model   !! the scene
+  !> Have the nodes of a platen follow its leader, if that can be.
+  subroutine turn_followers(model, platen, found)
+    type(model_type), intent(inout) :: model   !! the scene; those that cannot follow are taken off the platen
     integer, intent(in) :: platen              !! which of those that turn
-    integer, intent(in) :: node                !! that follows
-    integer, intent(in) :: card(3)             !! whom to blame, as findings are told it: of, which, item
     type(findings), intent(inout) :: found     !! what is wrong with it is added
     character(len=:), allocatable :: remedy, why
-    integer :: c
+    logical, allocatable :: follows(:)
+    integer :: c, i
 
-    do c = 1, directions
-      call why_not_tied(model, c, node, model%platen(platen)%leader, why, remedy)
-      if (len(why) == 0) cycle
-      call found%add_error(card(1), card(2), card(3), ': '//freedom(model, c, node)//why, remedy)
-      return
-    end do
-    model%platen(platen)%follower = [model%platen(platen)%follower, node]
-    model%sum_of(:, node) = 1   ! a number until there are rows
-  end subroutine turn_with
+    associate (node => model%platen(platen)%follower)
+      allocate (follows(size(node)), source=.true.)
+      do i = 1, size(node)
+        do c = 1, directions
+          call why_not_tied(model, c, node(i), model%platen(platen)%leader, why, remedy)
+          if (len(why) == 0) cycle
+          call found%add_error(of_platen, platen, -i, ': '//freedom(model, c, node(i))//why, remedy)
+          follows(i) = .false.
+          exit
+        end do
+        if (follows(i)) model%sum_of(:, node(i)) = 1   ! a number until there are rows
+      end do
+    end associate
+    model%platen(platen)%follower = pack(model%platen(platen)%follower, follows)
+  end subroutine turn_followers
 
   !> The first freedom of an equation follows the others: it must be free to do so.
-  subroutine check_equation(model, equation, card, found)
+  subroutine check_equation(model, k, found)
     type(model_type), intent(inout) :: model   !! the scene; the freedom is marked
-    type(linear_equation), intent(in) :: equation
-    integer, intent(in) :: card(3)             !! whom to blame, as findings are told it: of, which, item
+    integer, intent(in) :: k                   !! which equation
     type(findings), intent(inout) :: found     !! what is wrong with it is added
     character(len=:), allocatable :: why
 
-    associate (c => equation%component(1), node => equation%node(1))
+    associate (c => model%equation(k)%component(1), node => model%equation(k)%node(1))
       why = ''
-      if (equation%coefficient(1) == 0.0_wp) then
+      if (model%equation(k)%coefficient(1) == 0.0_wp) then
         why = ' has the coefficient 0.0'
       else if (model%sum_of(c, node) > 0 .or. model%leader(c, node) /= node) then
         why = ' follows an RBE2 or another MPC already'
@@ -52,7 +56,7 @@ contains
       else if (model%reference(c, node)) then
         why = ' is a SUPORT freedom'
       end if
-      if (len(why) > 0) call found%add_error(card(1), card(2), card(3), ': '//freedom(model, c, node)//why// &
+      if (len(why) > 0) call found%add_error(of_equation, k, -1, ': '//freedom(model, c, node)//why// &
         ', and cannot follow the others', 'first a freedom that nothing else holds or moves')
       model%sum_of(c, node) = 1
     end associate
@@ -148,7 +152,7 @@ contains
         j = model%sum_of(component(i), node(i))
         if (j == 0) cycle
         if (state(j) == begun) then
-          call found%add_error(of_equation, model%equation(equation(row))%card, 0, ': '// &
+          call found%add_error(of_equation, equation(row), 0, ': '// &
                                freedom(model, component(i), node(i))//' would follow itself', &
                                'equations that do not go round in a circle')
           model%sum_of(component(i), node(i)) = 0

@@ -70,12 +70,12 @@ contains
     call read_lines(cards//'ENDDATA|', deck, faults)
     call build_model(deck, scene%model, faults, cases)
     if (faults%errors == 0) call scene%find_motions(faults)
-    call tell(deck, scene%model%kinds, faults, 1)
+    call tell(deck, faults, 1)
     do p = 2, cases%patterns
       of_pattern = diagnostics()
       call build_model(deck, scene%model, of_pattern, of_pattern=p)
       if (of_pattern%errors == 0) call scene%find_motions(of_pattern)
-      call tell(deck, scene%model%kinds, of_pattern, findloc(cases%case%pattern, p, dim=1))
+      call tell(deck, of_pattern, findloc(cases%case%pattern, p, dim=1))
       do i = 1, of_pattern%count
         if (.not. faults%has(of_pattern%list(i))) call faults%add(of_pattern%list(i))
       end do

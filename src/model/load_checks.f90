@@ -1,0 +1,150 @@
+!> Checks of loads: pressures act on sides of elements, body loads on mass.
+module epcont_model_load_checks
+  use epcont_base_kinds, only: wp
+  use epcont_base_text, only: short_real
+  use epcont_base_tolerances, only: same_place
+  use epcont_deck_entry, only: farthest, least_cause
+  use epcont_geometry_plane, only: extent_of
+  use epcont_model_arrays, only: body_load
+  use epcont_model_body_forces, only: are_massless, body_forces, weigh_nodes
+  use epcont_model_finding, only: and_more, findings, item_acceleration, item_centre, item_density, &
+      item_spin_up, of_body_load, of_element, of_node, of_pressure, of_section
+  use epcont_model_load_cases, only: load_cases, set_pressure
+  use epcont_model_model, only: model_type
+  use epcont_model_pressure, only: find_side
+  implicit none
+  private
+  public :: check_body_forces, check_loads
+
+contains
+
+  !> Check the loads of all load cases, as far as that needs no supports.
+  subroutine check_loads(model, cases, found)
+    type(model_type), intent(in) :: model     !! the scene: its mesh and sections
+    type(load_cases), intent(in) :: cases     !! of the scene
+    type(findings), intent(inout) :: found    !! what is wrong with it is added
+
+    call check_pressures(model, cases%pressure, found)
+    if (all(cases%body%given%factor == 0.0_wp)) return
+    call check_masses(model, found)
+    if (model%has_rings()) call check_ring_loads(cases%body%given, found)
+  end subroutine check_loads
+
+  !> Check that pressures act on sides of their elements. All those inside a body give one warning.
+  subroutine check_pressures(model, pressure, found)
+    type(model_type), intent(in) :: model
+    type(set_pressure), intent(in) :: pressure(:)
+    type(findings), intent(inout) :: found
+    integer :: behind(size(pressure)), ends(3), k
+
+    behind = 0
+    do k = 1, size(pressure)
+      associate (e => pressure(k)%given%element)
+        if (any(model%connectivity(:model%node_count(e), e) == 0)) cycle
+        call find_side(model, pressure(k)%given, ends, behind(k))
+        if (ends(1) == 0) call found%add_error(of_pressure, k, 0, &
+          ': GA and GB are not the ends of a side of '//model%name_of(of_element, e), &
+          'two neighbouring corners of the element')
+      end associate
+    end do
+    k = findloc(behind > 0, .true., dim=1)
+    if (k > 0) call found%add_warning(of_pressure, k, 0, ': presses inside a body, between '// &
+      model%name_of(of_element, pressure(k)%given%element)//' and '//model%name_of(of_element, behind(k))// &
+      and_more(count(behind > 0), '; so do ', ' more'), 'a side that one element alone has')
+  end subroutine check_pressures
+
+  !> Check that sections have mass. Those of one material are reported once.
+  subroutine check_masses(model, found)
+    type(model_type), intent(in) :: model
+    type(findings), intent(inout) :: found
+    logical :: massless(size(model%density))
+    integer :: s
+
+    massless = are_massless(model)
+    do s = 1, size(massless)
+      if (.not. massless(s)) cycle
+      if (any(massless(:s - 1) .and. model%material_id(:s - 1) == model%material_id(s))) cycle
+      call found%add_error(of_section, s, item_density, ': field 6 (RHO) leaves '// &
+                           model%name_of(of_section, s)//' without mass, on which GRAV and RFORCE act', &
+                           'a density above 0.0')
+    end do
+  end subroutine check_masses
+
+  !> Check that body loads are the same all around the axis.
+  subroutine check_ring_loads(load, found)
+    type(body_load), intent(in) :: load(:)   !! in the order of their cards
+    type(findings), intent(inout) :: found
+    character(len=*), parameter :: of_rings = '0.0: rings bear nothing across their axis, which is y'
+    integer :: k
+
+    do k = 1, size(load)
+      if (load(k)%factor == 0.0_wp) cycle
+      if (load(k)%acceleration(1) /= 0.0_wp) &
+        call found%add_error(of_body_load, k, item_acceleration, &
+                             ': field 5 (N1) points across the axis', of_rings)
+      if (load(k)%centre(1) /= 0.0_wp) call found%add_error(of_body_load, k, item_centre, &
+        ': field 3 (G) lies off the axis of the rings, x = 0.0', 'a node on it, or blank')
+      if (load(k)%spin_up /= 0.0_wp) &
+        call found%add_error(of_body_load, k, item_spin_up, &
+                             ': field 12 (RACC) points round the axis', of_rings)
+    end do
+  end subroutine check_ring_loads
+
+  !> Check the forces of all body loads whose factor is not 0, and whether they go with lines of symmetry;
+  !! find the masses of nodes.
+  subroutine check_body_forces(model, load, found)
+    type(model_type), intent(inout) :: model   !! the scene, whole and with its supports
+    type(body_load), intent(in) :: load(:)     !! in the order of their cards
+    type(findings), intent(inout) :: found     !! what is wrong with it is added
+    real(wp) :: largest
+    integer :: k
+
+    if (any(load%factor /= 0.0_wp) .and. .not. allocated(model%mass)) call weigh_nodes(model)
+    do k = 1, size(load)
+      if (load(k)%factor == 0.0_wp) cycle
+      largest = maxval(abs(body_forces(model, load(k))))
+      if (largest /= 0.0_wp .and. .not. (largest >= least_cause .and. largest <= farthest)) &
+        call found%add_error(of_body_load, k, 0, ': its forces, up to '//short_real(largest)// &
+                             ', are too far from 1.0', 'other units: forces from '// &
+                             short_real(least_cause)//' to '//short_real(farthest))
+      if (load(k)%spin /= 0.0_wp .and. .not. model%has_rings()) call look_at_mirrors(k)
+    end do
+
+  contains
+
+    !> Warn of a spin about a point beside a line of symmetry: sides along an axis whose nodes are held across
+    !! it, and free along it.
+    subroutine look_at_mirrors(k)
+      integer, intent(in) :: k
+      integer :: c, e, edge(3), side
+      real(wp) :: extent
+
+      extent = maxval(extent_of(model%x(:, model%around%members())))
+      do e = 1, model%elements
+        do side = 1, model%corners(e)
+          edge = model%edge(e, side)
+          associate (a => edge(1), b => edge(2), centre => load(k)%centre)
+            do c = 1, 2
+              if (.not. (holds_across(c, a) .and. holds_across(c, b))) cycle
+              if (abs(model%x(c, a) - model%x(c, b)) > same_place*extent .or. &
+                  abs(model%x(c, a) - centre(c)) <= same_place*max(extent, abs(centre(c)))) cycle
+              call found%add_warning(of_body_load, k, 0, ': its axis lies beside the line from '// &
+                model%name_of(of_node, a)//' to '//model%name_of(of_node, b)//', which is held across'// &
+                ' and free along itself: what is symmetric spins about a point of its line of symmetry', &
+                'a centre on that line; no harm where that is no line of symmetry')
+              return
+            end do
+          end associate
+        end do
+      end do
+    end subroutine look_at_mirrors
+
+    !> Is a node held at its place across a line along an axis, and free along it?
+    pure logical function holds_across(c, node)
+      integer, intent(in) :: c, node   !! the direction across
+
+      holds_across = model%is_held(c, node) .and. .not. model%is_held(3 - c, node)
+      if (holds_across) holds_across = model%prescribed(c, model%leader(c, node)) == 0.0_wp
+    end function holds_across
+  end subroutine check_body_forces
+end module epcont_model_load_checks
