@@ -2,6 +2,7 @@
 !> Lobatto, not of Gauss), each with the force there.
 module epcont_certificate_mass_force
   use epcont_base_kinds, only: wp
+  use epcont_certificate_unit_strains, only: slopes_at
   use epcont_element_element_kind, only: element_kind, most_nodes
   use epcont_element_kinematics, only: axisymmetric, directions
   use epcont_model_model, only: model_type
@@ -48,7 +49,7 @@ contains
     type(element_kind), intent(in) :: kind
     type(place_table), intent(out) :: table
     real(wp), dimension(2*kind%degree + 2) :: line, part
-    real(wp) :: at(directions)
+    real(wp) :: at(directions), unused(directions, most_nodes)
     integer :: i, j
 
     if (kind%degree == 1) then
@@ -69,30 +70,12 @@ contains
             table%part(p) = table%part(p)*0.25_wp*(1.0_wp - at(2))
             at(1) = at(1)*(1.0_wp - at(2))
           end if
-          call set_shares(kind, at, table%share(:, p), table%slope(:, :, p))
+          call kind%shape(at, table%share(:, p), unused)
+          table%slope(:, :, p) = transpose(slopes_at(kind, at))
         end associate
       end do
     end do
   end subroutine set_places
-
-  !> What nodes have in a value at a place, and in its derivatives.
-  pure subroutine set_shares(kind, at, share, slope)
-    type(element_kind), intent(in) :: kind
-    real(wp), intent(in) :: at(directions)
-    real(wp), intent(out) :: share(most_nodes), slope(most_nodes, directions)
-    real(wp) :: after(most_nodes), before(most_nodes), half(directions)
-    real(wp) :: theirs(directions, most_nodes)   ! their derivatives, not looked at
-    integer :: c
-
-    call kind%shape(at, share, theirs)
-    do c = 1, directions
-      half = 0.0_wp
-      half(c) = 0.5_wp
-      call kind%shape(at + half, after, theirs)
-      call kind%shape(at - half, before, theirs)
-      slope(:, c) = after - before   ! exact for quadratics
-    end do
-  end subroutine set_shares
 
   !> The forces on one element.
   pure subroutine add_element(model, e, table, force)

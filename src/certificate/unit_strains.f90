@@ -8,31 +8,40 @@ module epcont_certificate_unit_strains
   use epcont_model_model, only: model_type
   implicit none
   private
-  public :: find_slopes, largest_face, largest_of, strain_by, unit_strains
+  public :: find_slopes, largest_face, largest_of, slopes_at, strain_by, unit_strains
 
   !> Half the step of the differences, which is one: exact for quadratics whatever its size.
   real(wp), parameter :: half_step = 0.5_wp
 
 contains
 
-  !> Derivatives of the nodes' shares in what is at each integration point of a kind, by the two local
-  !! coordinates.
+  !> Derivatives of the shape functions at each integration point of an element type.
   pure subroutine find_slopes(kind, slope)
     type(element_kind), intent(in) :: kind                       !! of elements
     real(wp), intent(out) :: slope(directions, most_nodes, most_points)   !! [local directions, nodes, points]
-    real(wp) :: after(most_nodes), before(most_nodes), step(directions), theirs(directions, most_nodes)
-    integer :: c, p
+    integer :: p
 
     do p = 1, kind%points
-      do c = 1, directions
-        step = 0.0_wp
-        step(c) = half_step
-        call kind%shape(kind%point(:, p) + step, after, theirs)   ! their derivatives are not looked at
-        call kind%shape(kind%point(:, p) - step, before, theirs)
-        slope(c, :, p) = after - before
-      end do
+      slope(:, :, p) = slopes_at(kind, kind%point(:, p))
     end do
   end subroutine find_slopes
+
+  !> Derivatives of the shape functions at a point, by differences.
+  pure function slopes_at(kind, point) result(slope)
+    type(element_kind), intent(in) :: kind        !! of elements
+    real(wp), intent(in) :: point(directions)     !! local coordinates
+    real(wp) :: slope(directions, most_nodes)     !! [local directions, nodes]
+    real(wp) :: after(most_nodes), before(most_nodes), step(directions), unused(directions, most_nodes)
+    integer :: c
+
+    do c = 1, directions
+      step = 0.0_wp
+      step(c) = half_step
+      call kind%shape(point + step, after, unused)
+      call kind%shape(point - step, before, unused)
+      slope(c, :) = after - before
+    end do
+  end function slopes_at
 
   !> Strains xx, yy, zz, xy (engineering) that a unit displacement of each freedom gives at the integration
   !! places of an element, and the volumes that belong to them.

@@ -1,4 +1,4 @@
-!> The pairs as a line along the boundary: their areas and neighbours.
+!> The pairs as a line along the boundary: areas and neighbours.
 module epcont_result_contact_line
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
@@ -46,16 +46,22 @@ module epcont_result_contact_line
     procedure :: in_contact
   end type contact_line
 
+  !> A contact line under construction.
+  type :: survey_type
+    type(model_type), pointer :: model => null()
+    type(contact_line) :: line
+    type(incidence) :: at                !! pairs at each node
+    integer :: within(2) = 0             !! first and last pair of the contact; with lines: of the slave line
+    type(partition) :: places            !! of pairs at one place
+  end type survey_type
+
 contains
 
-  !> Edges of the boundary at the pairs.
+  !> Find areas and neighbours of the pairs.
   function find_contact_line(model) result(line)
-    type(model_type), intent(in) :: model   !! the scene
+    type(model_type), target, intent(in) :: model   !! the model
     type(contact_line) :: line
-    type(incidence) :: at         !! each node: the pairs there
-    integer :: within(2)          !! first and last pair of the contact, of the slave where there are lines
-    type(partition) :: places
-    type(line_contact) :: contact
+    type(survey_type) :: work
     integer, allocatable :: place(:)
     integer :: c, many
 
@@ -65,59 +71,61 @@ contains
       allocate (line%tributary(n), line%part(2, n), source=0.0_wp)
       allocate (line%neighbour(2, n), source=0)
       allocate (line%middle(n), line%mirrored(n), source=.false.)
-      places = new_partition(n)
+      work%places = new_partition(n)
     end associate
-    at = new_incidence(reshape(line%node, [1, model%pairs]), model%nodes)
-    ! A node may have a pair in each of several contacts: neighbours are of one.
-    call find_edges(model, at, within, line, 1, model%single_pairs())
+    work%model => model
+    work%at = new_incidence(reshape(line%node, [1, model%pairs]), model%nodes)
+    work%line = line
+    ! A node may have a pair in each of several contacts. Neighbours belong to the same contact.
+    call find_edges(work, 1, model%single_pairs())
     do c = 1, size(model%line_contact)
-      contact = model%line_contact(c)
-      call find_edges(model, at, within, line, contact%first, contact%first_of_master - 1)
-      if (contact%last >= contact%first_of_master) call insert_masters(model, contact, at, within, line, &
-          places)
+      associate (contact => model%line_contact(c))
+        call find_edges(work, contact%first, contact%first_of_master - 1)
+        if (contact%last >= contact%first_of_master) call insert_masters(work, contact)
+      end associate
     end do
-    call places%numbers(place, many)
+    line = work%line
+    call work%places%numbers(place, many)
     line%at_place = new_incidence(reshape(place, [1, model%pairs]), many)
   end function find_contact_line
 
-  !> Edges at a range of pairs, and the neighbours among them.
-  subroutine find_edges(model, at, within, line, first, last)
-    type(model_type), intent(in) :: model        !! the model
-    type(incidence), intent(in) :: at            !! each node: the pairs there
-    integer, intent(inout) :: within(2)         !! first and last pair
-    type(contact_line), intent(inout) :: line
+  !> Find the edges at a range of pairs, and the neighbours among these.
+  subroutine find_edges(work, first, last)
+    type(survey_type), intent(inout) :: work
     integer, intent(in) :: first, last
     integer, allocatable :: sides(:, :)
     real(wp) :: longest, share(3)
     integer :: beside, end, i, k, pair, own
 
-    within = [first, last]
-    do pair = first, last
-      longest = 0.0_wp
-      sides = outer_sides(model, line%node(pair))
-      do i = 1, size(sides, 2)
-        associate (side => sides(:3, i), n => model%normal(:, pair))
-          longest = max(longest, norm2(model%x(:, side(2)) - model%x(:, side(1))))
-          if (.not. is_along(model, side, n)) cycle
-          own = findloc(side, line%node(pair), dim=1)
-          share = shares_of_nodes(model, sides(4, i), side, n)
-          if (abs(share(own)) <= no_area*sum(share)) share(own) = 0.0_wp
-          line%tributary(pair) = line%tributary(pair) + share(own)
-          line%middle(pair) = own == 3
-          if (own == 3) then
-            line%neighbour(:, pair) = [(pair_of_side(model, at, within, side, side(end)), end=1, 2)]
-          else
-            beside = merge(side(3), side(3 - own), side(3) > 0)
-            k = findloc(line%neighbour(:, pair), 0, dim=1)
-            if (k == 0) cycle
-            line%neighbour(k, pair) = pair_of_side(model, at, within, side, beside)
-            if (line%neighbour(k, pair) > 0) line%part(k, pair) = share(own)
-          end if
-        end associate
+    work%within = [first, last]
+    associate (model => work%model, line => work%line)
+      do pair = first, last
+        longest = 0.0_wp
+        sides = outer_sides(model, line%node(pair))
+        do i = 1, size(sides, 2)
+          associate (side => sides(:3, i), n => model%normal(:, pair))
+            longest = max(longest, norm2(model%x(:, side(2)) - model%x(:, side(1))))
+            if (.not. is_along(model, side, n)) cycle
+            own = findloc(side, line%node(pair), dim=1)
+            share = shares_of_nodes(model, sides(4, i), side, n)
+            if (abs(share(own)) <= no_area*sum(share)) share(own) = 0.0_wp
+            line%tributary(pair) = line%tributary(pair) + share(own)
+            line%middle(pair) = own == 3
+            if (own == 3) then
+              line%neighbour(:, pair) = [(pair_of_side(work, side, side(end)), end=1, 2)]
+            else
+              beside = merge(side(3), side(3 - own), side(3) > 0)
+              k = findloc(line%neighbour(:, pair), 0, dim=1)
+              if (k == 0) cycle
+              line%neighbour(k, pair) = pair_of_side(work, side, beside)
+              if (line%neighbour(k, pair) > 0) line%part(k, pair) = share(own)
+            end if
+          end associate
+        end do
+        if (any(line%neighbour(:, pair) == 0)) &
+          line%mirrored(pair) = is_on_symmetry(model, pair, line%node(pair), longest)
       end do
-      if (any(line%neighbour(:, pair) == 0)) &
-        line%mirrored(pair) = is_on_symmetry(model, pair, line%node(pair), longest)
-    end do
+    end associate
   end subroutine find_edges
 
   !> Is a pair, at which its line ends, on a line of symmetry? Its node is held along the boundary there,
@@ -170,32 +178,27 @@ contains
     end associate
   end function is_along
 
-  !> The pair that a side has at one of its nodes: of several there the one that presses on it the most
-  !! squarely; 0: none.
-  pure integer function pair_of_side(model, at, within, side, node) result(pair)
-    type(model_type), intent(in) :: model        !! the model
-    type(incidence), intent(in) :: at            !! each node: the pairs there
-    integer, intent(in) :: within(2)         !! first and last pair
-    integer, intent(in) :: side(3), node   !! 0: none
+  !> The pair of an edge at one of its nodes; of several the one whose normal is closest to that of the edge.
+  !! 0 if there is none.
+  pure integer function pair_of_side(work, side, node) result(pair)
+    type(survey_type), intent(in) :: work
+    integer, intent(in) :: side(3), node   !! 0 if there is no such node
     integer, allocatable :: there(:)
 
     pair = 0
     if (node == 0) return
-    there = at%of(node)
-    there = pack(there, there >= within(1) .and. there <= within(2))
-    if (size(there) > 0) pair = there(minloc(abs(matmul(model%x(:, side(2)) - model%x(:, side(1)), &
-        model%normal(:, there))), dim=1))
+    there = work%at%of(node)
+    there = pack(there, there >= work%within(1) .and. there <= work%within(2))
+    associate (edge => work%model%x(:, side(2)) - work%model%x(:, side(1)))
+      if (size(there) > 0) &
+        pair = there(minloc(abs(matmul(edge, work%model%normal(:, there))), dim=1))
+    end associate
   end function pair_of_side
 
-  !> Pairs of the master's nodes stand between those of the slave's on their side, and share its area with
-  !! them.
-  subroutine insert_masters(model, contact, at, within, line, places)
-    type(model_type), intent(in) :: model        !! the model
+  !> Insert pairs of master nodes between those of the slave edge that they stand on. They share its area.
+  subroutine insert_masters(work, contact)
+    type(survey_type), intent(inout) :: work
     type(line_contact), intent(in) :: contact
-    type(incidence), intent(in) :: at            !! each node: the pairs there
-    integer, intent(inout) :: within(2)         !! first and last pair
-    type(contact_line), intent(inout) :: line
-    type(partition), intent(inout) :: places     !! of pairs at one place
     type(incidence) :: on_side
     integer, allocatable :: masters(:)
     integer :: side
@@ -204,44 +207,41 @@ contains
                             size(contact%slave%element))
     do side = 1, size(contact%slave%element)
       masters = contact%first_of_master - 1 + on_side%of(side)
-      if (size(masters) > 0) call link(model, contact, line, places, side, run_on(model, contact, at, &
-          within, line, side, masters))
+      if (size(masters) > 0) call link(work, contact, side, run_on(work, contact, side, masters))
     end do
   end subroutine insert_masters
 
-  !> Where a pair stands on the slave [length].
-  pure function foot_of(model, contact, line, pair) result(x)
-    type(model_type), intent(in) :: model        !! the model
+  !> Point of a pair on the slave line [length].
+  pure function foot_of(work, contact, pair) result(x)
+    type(survey_type), intent(in) :: work
     type(line_contact), intent(in) :: contact
-    type(contact_line), intent(in) :: line
     integer, intent(in) :: pair
     real(wp) :: x(directions)
 
-    x = model%x(:, line%node(pair))
-    if (pair < contact%first_of_master) return
-    ! behind the node itself
-    associate (first => model%row_start(pair) + 1, last => model%row_start(pair + 1) - 1)
-      x = -matmul(model%x(:, model%row_node(first:last)), model%row_weight(first:last))
+    associate (model => work%model)
+      x = model%x(:, work%line%node(pair))
+      if (pair < contact%first_of_master) return
+      ! The entries after that of the node itself.
+      associate (first => model%row_start(pair) + 1, last => model%row_start(pair + 1) - 1)
+        x = -matmul(model%x(:, model%row_node(first:last)), model%row_weight(first:last))
+      end associate
     end associate
   end function foot_of
 
-  !> The pairs along a side of the slave, of its nodes and of the master's, from its start on.
-  pure function run_on(model, contact, at, within, line, side, masters) result(run)
-    type(model_type), intent(in) :: model        !! the model
+  !> The pairs along a slave edge, of slave and master nodes, in their order.
+  pure function run_on(work, contact, side, masters) result(run)
+    type(survey_type), intent(in) :: work
     type(line_contact), intent(in) :: contact
-    type(incidence), intent(in) :: at            !! each node: the pairs there
-    integer, intent(in) :: within(2)         !! first and last pair
-    type(contact_line), intent(in) :: line
     integer, intent(in) :: side
-    integer, intent(in) :: masters(:)    !! the master's pairs that stand there
+    integer, intent(in) :: masters(:)    !! pairs of master nodes on the edge
     integer, allocatable :: pairs(:), run(:)
     real(wp), allocatable :: away(:)     !! from the start
     integer :: i, before
 
     associate (node => contact%slave%segment(:, side))
-      pairs = [(pair_of_side(model, at, within, node, node(i)), i=1, 3), masters]
+      pairs = [(pair_of_side(work, node, node(i)), i=1, 3), masters]
       pairs = pack(pairs, pairs > 0)
-      away = [(norm2(foot_of(model, contact, line, pairs(i)) - model%x(:, node(1))), i=1, size(pairs))]
+      away = [(norm2(foot_of(work, contact, pairs(i)) - work%model%x(:, node(1))), i=1, size(pairs))]
     end associate
     allocate (run(0))
     do i = 1, size(pairs)
@@ -250,37 +250,36 @@ contains
     end do
   end function run_on
 
-  !> Neighbours and areas of the pairs along a side: half of each piece between two of them, as seen along
-  !! their own normals. If a node of the side has no pair, the pieces at its end belong to none.
-  subroutine link(model, contact, line, places, segment, run)
-    type(model_type), intent(in) :: model        !! the model
+  !> Set neighbours and areas of the pairs along an edge: half of each piece between two of them, projected
+  !! along their own normals. If a node of the edge has no pair, the pieces at this end belong to no pair.
+  subroutine link(work, contact, segment, run)
+    type(survey_type), intent(inout) :: work
     type(line_contact), intent(in) :: contact
-    type(contact_line), intent(inout) :: line
-    type(partition), intent(inout) :: places     !! of pairs at one place
-    integer, intent(in) :: segment   !! the side
+    integer, intent(in) :: segment   !! the edge
     integer, intent(in) :: run(:)
     real(wp) :: apart, share(3), width(size(run))
     integer :: i, k, pair
 
     associate (element => contact%slave%element(segment), side => contact%slave%segment(:, segment), &
-               chord => contact%slave%chord_length(segment))
+               chord => contact%slave%chord_length(segment), line => work%line, &
+               normal => work%model%normal)
       do i = 1, size(run)
         pair = run(i)
-        share = shares_of_nodes(model, element, side, model%normal(:, pair))
+        share = shares_of_nodes(work%model, element, side, normal(:, pair))
         width(i) = sum(share)/chord
         if (pair >= contact%first_of_master) cycle
-        if (is_along(model, side, model%normal(:, pair))) &
+        if (is_along(work%model, side, normal(:, pair))) &
           line%tributary(pair) = line%tributary(pair) - sum(share, mask=side == line%node(pair))
         do k = 1, 2
           if (.not. (line%middle(pair) .or. any(run == line%neighbour(k, pair)))) cycle
           line%neighbour(k, pair) = 0
           line%part(k, pair) = 0.0_wp
         end do
-        line%middle(pair) = .false.   ! no node between two others any more
+        line%middle(pair) = .false.   ! it is no longer between two other nodes
       end do
       do i = 1, size(run) - 1
-        apart = norm2(foot_of(model, contact, line, run(i + 1)) - foot_of(model, contact, line, run(i)))
-        if (apart < close*(chord/merge(2, 1, side(3) > 0))) call places%join(run(i), run(i + 1))
+        apart = norm2(foot_of(work, contact, run(i + 1)) - foot_of(work, contact, run(i)))
+        if (apart < close*(chord/merge(2, 1, side(3) > 0))) call work%places%join(run(i), run(i + 1))
         call add_piece(line, run(i:i + 1), 0.5_wp*width(i:i + 1)*apart)
       end do
     end associate
