@@ -13,13 +13,12 @@ module epcont_messages_outcome
   use epcont_messages_scene_text, only: scene_sentence, scene_warnings, side_changed, unsound
   use epcont_messages_sentences, only: axis_name, body_name, sentence_of
   use epcont_model_finding, only: findings, of_node, of_scene
-  use epcont_result_answer, only: answer_type
   use epcont_result_locking, only: high_poisson
   use epcont_solution, only: solution_type
   implicit none
   private
   public :: outcome_type, judge, limit_of_pressure, reason_of
-  public :: remark_lines, poisson_text
+  public :: remark_lines
 
   character(len=*), parameter, public :: unbounded = 'unbounded'
   character(len=*), parameter :: not_resolved = 'not resolved', no_contact = 'no contact'
@@ -132,19 +131,33 @@ contains
   subroutine warn_of_material(run, found)
     class(solution_type), intent(in) :: run
     type(findings), intent(inout) :: found
+
     if (run%answer%locking%elements > 0) &
       call warn(found, plural(run%answer%locking%elements, 'three-node element')// &
-                ' of nearly constant volume ('//poisson_text(run%answer)// &
-              '): too stiff; six-node elements or CQUAD4 would be right')
+                ' of nearly constant volume (Poisson''s ratio '//short_real(high_poisson)//' or more'// &
+                when(any(run%answer%plastic), ', as yielding has made it')// &
+                '): too stiff, the mean stress scatters by '//percent(run%answer%locking%scatter, 1.0_wp)// &
+                ' of the equivalent stress; six-node elements or CQUAD4 would be right')
     if (any(run%answer%beyond)) &
-      call warn(found, plural(count(run%answer%beyond), 'element')// &
-                ' strained beyond the last point of the table, whose last slope goes on')
+      call warn(found, 'strained beyond the last point of the table, whose last slope goes on: '// &
+                elements_text(count(run%answer%beyond), findloc(run%answer%beyond, .true., dim=1)))
     if (run%answer%shortfall > 0.0_wp) &
       call warn(found, 'formula (2-4) (MUP PAPER) is an approximation: stresses beyond yield are up to '// &
                 percent(run%answer%shortfall, 1.0_wp)//' below the curve; the certificate does not see it')
     if (run%answer%unloaded > 0) &
-      call warn(found, plural(run%answer%unloaded, 'element')//' unloaded after yielding: '// &
-                'the theory takes them back along the curve, not along the elastic line')
+      call warn(found, 'unloaded after yielding along the curve, not along the elastic line: '// &
+                elements_text(run%answer%unloaded, run%answer%first_unloaded))
+
+  contains
+
+    !> Name the first of some elements, and count the others.
+    pure function elements_text(count, first) result(text)
+      integer, intent(in) :: count, first
+      character(len=:), allocatable :: text
+
+      text = 'element '//text_of(run%model%element_id(first))// &
+             when(count > 1, ' and '//text_of(count - 1)//' more')
+    end function elements_text
   end subroutine warn_of_material
 
   !> What the largest pressure of a zone is, or of all zones; empty where that is not known. Where no pair
@@ -192,13 +205,4 @@ contains
       end if
     end do
   end function remark_lines
-
-  !> From which Poisson's ratio on three-node elements lock, and why they have it.
-  pure function poisson_text(answer) result(text)
-    type(answer_type), intent(in) :: answer   !! the answer
-    character(len=:), allocatable :: text
-
-    text = 'Poisson''s ratio '//short_real(high_poisson)//' or more'// &
-           when(any(answer%plastic), ', as yielding has made it')
-  end function poisson_text
 end module epcont_messages_outcome

@@ -7,11 +7,10 @@ module epcont_report_listing
   use epcont_certificate_scene, only: little, overlap_place
   use epcont_deck_render, only: printable
   use epcont_report_case_table, only: accuracy_text, row_of_case
-  use epcont_report_columns, only: estimate_number, listed_number, number, part, right, &
-      rounding_number, table_type
+  use epcont_report_columns, only: estimate_number, right, rounding_number, table_type
   use epcont_report_echo, only: list_cards
   use epcont_messages_names, only: centre_name, joined, percent, point_name, when
-  use epcont_messages_outcome, only: poisson_text, remark_lines
+  use epcont_messages_outcome, only: remark_lines
   use epcont_messages_sentences, only: most_pairs
   use epcont_report_run, only: run_results
   use epcont_messages_scene_text, only: deeper
@@ -103,7 +102,6 @@ contains
     call listing%heading('ACCURACY')
     call list_rounding()
     call list_mesh(listing, run, figures)
-    call list_doubtful_elements(listing, run)
     if (run%model%controls%accuracy > 0.0_wp) call list_wanted(listing, run)
 
   contains
@@ -172,21 +170,6 @@ contains
       'the last step is one by the tangent: its change is what the others have left')
     call listing%say(plural(count(run%answer%plastic), 'element')//' of '// &
              text_of(run%model%elements)//' beyond the yield point')
-    call list_elements('beyond the last point of its table, whose last slope goes on', &
-                       count(run%answer%beyond), findloc(run%answer%beyond, .true., dim=1))
-    call list_elements('the strain fell as the load grew, and went back along the curve (elastic '// &
-                       'unloading is not modelled)', run%answer%unloaded, run%answer%first_unloaded)
-
-  contains
-
-    !> A number of elements, and one of them.
-    subroutine list_elements(what, count, first)
-      character(len=*), intent(in) :: what
-      integer, intent(in) :: count, first
-
-      if (count > 0) call listing%say(what//': element '//text_of(run%model%element_id(first))// &
-                              when(count > 1, ' and '//text_of(count - 1)//' more'))
-    end subroutine list_elements
   end subroutine list_iterations
 
   !> The pairs, how the set of contacts was found, and what contact makes of zones, lines and bodies.
@@ -274,28 +257,6 @@ contains
                                 joined(pack(run%model%pair_id, chosen), ' ', most_pairs))
     end subroutine list_pairs
   end subroutine list_mesh
-
-  !> Elements that are too stiff for what their material does, and displacements that are not small.
-  subroutine list_doubtful_elements(listing, run)
-    type(table_type), intent(inout) :: listing
-    type(run_results), intent(in) :: run
-
-    if (run%answer%locking%elements > 0) then
-      call list_figure(listing, 'three-node elements of constant volume', &
-                       text_of(run%answer%locking%elements), '')
-      call list_figure(listing, 'scatter of their mean stress / equivalent', &
-                       listed_number(number, run%answer%locking%scatter, 1.0_wp), '')
-      call listing%say('  ('//poisson_text(run%answer)// &
-               ': they are too stiff there; six-node elements and CQUAD4 are not)')
-    end if
-    if (run%answer%gradient%part > 0.0_wp) then
-      call list_figure(listing, 'not small: turned, stretched by over 0.1', &
-                       listed_number(part, run%answer%gradient%part, 0.0_wp), '   of the volume')
-      call listing%say('  (most at '//centre_name(run%model, run%answer%gradient%worst)//', '// &
-               estimate_number(run%answer%gradient%largest)//'; equilibrium and contact are those of '// &
-               'the undeformed shape: loads, moduli, units?)')
-    end if
-  end subroutine list_doubtful_elements
 
   !> Say whether the mesh gives the accuracy of PARAM ACCURACY.
   subroutine list_wanted(listing, run)
