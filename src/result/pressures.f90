@@ -3,7 +3,8 @@
 !> On edges with two nodes the pressure is force over area. On edges with a mid-side node this ratio
 !> oscillates by one or two per cent, low at corners and high at mid-side nodes, but the force on each edge
 !> does not. There the force is summed along the line up to each corner. The pressure is the derivative of
-!> this sum by the area, of the polynomial through the nearest corners, as finite volumes recover point values.
+!> this sum by the area, of the polynomial through the nearest corners (finite volumes recover point values
+!> from means in the same way).
 module epcont_result_pressures
   use epcont_base_kinds, only: wp
   use epcont_model_model, only: model_type
