@@ -5,7 +5,7 @@ module epcont_app_driver
   use epcont_app_process, only: print_error, print_text
   use epcont_app_progress_display, only: progress_type, timing_text
   use epcont_base_diagnostic, only: diagnostics
-  use epcont_base_error, only: error_type, status_deck, status_valid
+  use epcont_base_error, only: error_type, status_deck
   use epcont_base_text, only: newline, shown
   use epcont_build_build, only: build_model, tell
   use epcont_deck_deck, only: deck_type, read_deck
@@ -23,116 +23,100 @@ module epcont_app_driver
 
 contains
 
-  !> From file to results, alone at work on them; what is there afterwards is of this run.
+  !> Read, solve and write one deck. A lock keeps other runs from the results; older ones are removed.
   subroutine run_deck(path, arguments, status)
     character(len=*), intent(in) :: path   !! of the deck
     type(arguments_type), intent(in) :: arguments   !! of the command line
-    integer, intent(out) :: status   !! its exit status
-    character(len=:), allocatable :: name, stem   ! of the deck, shown; of the results, with folder
+    integer, intent(out) :: status   !! exit status of the deck
+    character(len=:), allocatable :: stem   ! of the results, with folder
+    type(deck_run) :: of_deck
     type(progress_type) :: watch
     type(deck_type), target :: deck
     type(load_cases), target :: cases
     type(run_results) :: run
-    type(results_type) :: results
     type(error_type), allocatable :: error
     type(file_lock) :: lock
-    logical :: writes, written   ! results are wanted; they are written, as far as that could be done
+    logical :: writes
 
-    status = status_valid
     run%deck => deck
     run%cases => cases
     stem = stem_of(path)
-    name = shown(stem)
+    of_deck = deck_run(path, shown(stem), arguments%memory, arguments%asks('--quiet'))
     if (len(arguments%directory) > 0) stem = arguments%directory//'/'//stem
-    call watch%begin(name, arguments%asks('--progress'), arguments%asks('--quiet'))
+    call watch%begin(of_deck%name, arguments%asks('--progress'), of_deck%quiet)
     writes = .not. (arguments%asks('--check') .or. arguments%asks('--plan'))
-    written = .false.
     if (writes) call lock_files(stem, lock, error)
     if (.not. allocated(error)) then
       call solve_deck()
-      if (writes .and. .not. written) call remove_results(stem)
+      if (writes .and. .not. of_deck%solved) call remove_results(stem)
       if (writes) call unlock_files(lock)
     end if
+    status = of_deck%status
     if (allocated(error)) then
       call print_error(shown(error%message)//newline)
       status = error%status
     end if
-    if (arguments%asks('--timing')) call print_error(timing_text(name, watch, peak_memory()))
+    if (arguments%asks('--timing')) call print_error(timing_text(of_deck%name, watch, peak_memory()))
 
   contains
 
-    !> From file to results, and what there is to say of it.
+    !> Read and check the deck; plan or solve it.
     subroutine solve_deck()
       call prepare(path, watch, run, error)
       if (allocated(error)) return
-      if (run%faults%errors > 0) then
-        call print_error(render(run%faults, run%deck%source))
-        status = status_deck
-        call say(arguments, name//'  rejected', status)
-        return
-      end if
-      if (arguments%asks('--check')) then
-        call say(arguments, name//'  checked', status)
-      else
-        run%plan_cases = size(run%cases%of_pattern(1))
-        call run%make_plan(watch)
-        if (arguments%asks('--plan')) call say_plans()
-      end if
       call print_error(render(run%faults, run%deck%source))
-      if (.not. writes) return
-      run%deck_notes = render_notes(run%faults, run%deck%source)
-      if (run%cases%patterns == 1) call run%deck%forget_text()
-      call solve_patterns()
+      if (run%faults%errors > 0) then
+        of_deck%status = status_deck
+        if (.not. of_deck%quiet) call print_text(of_deck%name//'  rejected', of_deck%status)
+      else if (.not. arguments%asks('--check')) then
+        call solve_patterns()
+      else if (.not. of_deck%quiet) then
+        call print_text(of_deck%name//'  checked', of_deck%status)
+      end if
     end subroutine solve_deck
 
-    !> The plans of all load cases.
-    subroutine say_plans()
-      integer :: p
-
-      call results%begin(run)
-      do p = 1, run%cases%patterns
-        if (p > 1) call take_pattern(p)
-        call results%add_plan(run, run%cases%of_pattern(p))
-      end do
-      call print_text(name//results%plan, status)
-    end subroutine say_plans
-
-    !> All load cases: those with the same freedoms held one after the other, since they share factors.
+    !> Plan all load cases, and solve them if results are wanted. Those of a pattern have the same supports
+    !! and contacts, and share factors.
     subroutine solve_patterns()
-      type(deck_run) :: of_deck
+      type(results_type) :: results
       integer :: p
 
-      of_deck = deck_run(path, name, arguments%memory, arguments%asks('--quiet'))
+      run%deck_notes = render_notes(run%faults, run%deck%source)
+      if (run%cases%patterns == 1) call run%deck%forget_text()
       results%stem = stem
       results%all_tables = arguments%asks('--tables')
       results%brief = arguments%asks('--brief')
       results%vtk = arguments%asks('--vtk')
       call results%begin(run)
       do p = 1, run%cases%patterns
-        if (p > 1) call take_pattern(p)
-        call solve_pattern(run, run%cases%of_pattern(p), of_deck, results, watch, error)
-        written = of_deck%solved
-        status = max(status, of_deck%status)
+        call plan_pattern(p)
+        if (writes) call solve_pattern(run, run%cases%of_pattern(p), of_deck, results, watch, error)
         if (allocated(error)) return
         call results%add_plan(run, run%cases%of_pattern(p))
       end do
-      call results%finish(run, error)
+      if (writes) then
+        call results%finish(run, error)
+      else
+        call print_text(of_deck%name//results%plan, of_deck%status)
+      end if
       call watch%lap(stage_writing)
     end subroutine solve_patterns
 
-    !> The scene with other freedoms held.
-    subroutine take_pattern(p)
+    !> Plan a pattern of load cases. The model has the supports of the first one.
+    subroutine plan_pattern(p)
       integer, intent(in) :: p
-      type(diagnostics) :: told   ! all of it is known
+      type(diagnostics) :: known   ! all of these faults are reported already
 
-      call build_model(run%deck, run%model, told, of_pattern=p)
-      call run%find_motions(told)
+      if (p > 1) then
+        call build_model(run%deck, run%model, known, of_pattern=p)
+        call run%find_motions(known)
+      end if
       run%plan_cases = size(run%cases%of_pattern(p))
       call run%make_plan(watch)
-    end subroutine take_pattern
+    end subroutine plan_pattern
   end subroutine run_deck
 
-  !> Read and check.
+  !> Read the deck, make the model and check it for all load cases.
   subroutine prepare(path, watch, run, error)
     character(len=*), intent(in) :: path
     type(progress_type), intent(inout) :: watch
@@ -152,7 +136,7 @@ contains
 
   contains
 
-    !> What is wrong with the scene where load cases hold other freedoms than the first, and not there too.
+    !> Add the faults of the other patterns of load cases, except those that the first one has too.
     subroutine check_patterns()
       type(planned_model) :: other
       type(diagnostics) :: faults
@@ -169,13 +153,4 @@ contains
       end do
     end subroutine check_patterns
   end subroutine prepare
-
-  !> A line on standard output.
-  subroutine say(arguments, text, status)
-    type(arguments_type), intent(in) :: arguments
-    character(len=*), intent(in) :: text
-    integer, intent(inout) :: status
-
-    if (.not. arguments%asks('--quiet')) call print_text(text, status)
-  end subroutine say
 end module epcont_app_driver

@@ -2,14 +2,14 @@
 module epcont_report_case_table
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: short_real, text_of
-  use epcont_report_columns, only: column, columns_text, estimate, estimate_number, known, length, number, &
+  use epcont_report_columns, only: column, estimate, estimate_number, known, length, number, &
       part, rounding, stress, table_type, unknown, whole, word
   use epcont_messages_names, only: when
   use epcont_messages_outcome, only: limit_of_pressure, unbounded
   use epcont_report_run, only: run_results
   implicit none
   private
-  public :: accuracy_text, case_row, case_columns_text, put_cases, put_worst_case, row_of_case
+  public :: accuracy_text, case_row, put_cases, put_worst_case, row_of_case
 
   !> What came of a case. Numbers are those of its summary; negative where they are not known.
   type :: case_row
@@ -25,7 +25,7 @@ module epcont_report_case_table
     real(wp) :: energy_norm = unknown          !! error of the mesh, relative
   end type case_row
 
-  type(column), parameter :: case_columns(*) = [ &
+  type(column), parameter, public :: case_columns(*) = [ &
     column(whole, 'subcase', '', 'its number', 'SUBCASE', 10), &
     column(word, 'status', '', 'what came of it, in a word', width=20), &
     column(whole, 'pairs_in_contact', '', 'pairs that touch', 'touching', 10), &
@@ -39,13 +39,6 @@ module epcont_report_case_table
     column(part, 'mesh_error_energy_norm', '', 'relative', 'mesh error', 12)]
 
 contains
-
-  !> The columns in a sentence.
-  pure function case_columns_text() result(text)
-    character(len=:), allocatable :: text
-
-    text = 'Columns: '//columns_text(case_columns)//'.'
-  end function case_columns_text
 
   !> What came of the load case at hand.
   pure type(case_row) function row_of_case(run) result(row)

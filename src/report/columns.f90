@@ -6,7 +6,7 @@ module epcont_report_columns
   use epcont_base_text, only: formatted, short_real, text_of
   use epcont_base_tolerances, only: least_difference, rounded_off
   use epcont_report_file, only: text_file
-  use epcont_messages_names, only: percent
+  use epcont_messages_names, only: percent, when
   implicit none
   private
   public :: column, table_type, columns_text
@@ -30,6 +30,9 @@ module epcont_report_columns
 
   !> A number, of any of these kinds, that is not known.
   real(wp), parameter, public :: unknown = -huge(1.0_wp)
+
+  !> Characters of the longest word, which is a key of the summary.
+  integer, parameter :: longest_cell = 40
 
   !> Units.
   character(len=*), parameter, public :: length = 'length', force = 'force', stress = 'force/length2'
@@ -57,8 +60,6 @@ module epcont_report_columns
   contains
     procedure :: begin
     procedure :: row
-    procedure :: head
-    procedure :: csv
     procedure, private :: write_cells
   end type table_type
 
@@ -99,45 +100,9 @@ contains
     self%scale = spread(0.0_wp, 1, size(columns))
     if (present(scale)) self%scale = scale
     if (self%listed .and. title /= '') call self%heading(title)
-    if (self%listed) then
-      call self%write_cells(merge(columns%head, columns%name, columns%head /= ''))
-    else
-      call self%head(names_of(columns))
-    end if
-
-  contains
-
-    !> Their names in a file.
-    pure function names_of(columns) result(text)
-      type(column), intent(in) :: columns(:)
-      character(len=:), allocatable :: text
-      integer :: k
-
-      text = ''
-      do k = 1, size(columns)
-        if (columns(k)%name /= '') text = text//','//trim(columns(k)%name)
-      end do
-      text = text(2:)
-    end function names_of
+    if (self%listed) call self%write_cells(merge(columns%head, columns%name, columns%head /= ''), .true.)
+    if (.not. self%listed) call self%write_cells(columns%name, .true.)
   end subroutine begin
-
-  !> The names of the columns of a file, before the rows of its first load case.
-  subroutine head(self, names)
-    class(table_type), intent(inout) :: self
-    character(len=*), intent(in) :: names   !! commas between them
-
-    if (self%subcase == 0) call self%line(names)
-    if (self%subcase > 0) call self%line('subcase,'//names)
-  end subroutine head
-
-  !> A row of a file.
-  subroutine csv(self, cells)
-    class(table_type), intent(inout) :: self
-    character(len=*), intent(in) :: cells   !! commas between them
-
-    if (self%subcase == 0) call self%line(cells)
-    if (self%subcase > 0) call self%line(text_of(self%subcase)//','//cells)
-  end subroutine csv
 
   !> Write a row.
   subroutine row(self, wholes, numbers, words)
@@ -145,7 +110,7 @@ contains
     integer, intent(in) :: wholes(:)           !! ids and counts, in the order of the columns
     real(wp), intent(in) :: numbers(:)         !! in that order
     character(len=*), intent(in), optional :: words(:)   !! in that order; not given: no column has any
-    character(len=25) :: cell(size(self%column))
+    character(len=longest_cell) :: cell(size(self%column))
     integer :: i
 
     do i = 1, size(cell)
@@ -163,13 +128,14 @@ contains
         end if
       end associate
     end do
-    call self%write_cells(cell)
+    call self%write_cells(cell, .false.)
   end subroutine row
 
-  !> Write what stands in each column, of those that the listing or the file has.
-  subroutine write_cells(self, cell)
+  !> Write the cells of a row, or the heads, of the columns that the listing or the file has.
+  subroutine write_cells(self, cell, are_heads)
     class(table_type), intent(inout) :: self
     character(len=*), intent(in) :: cell(:)
+    logical, intent(in) :: are_heads
     character(len=size(cell)*(len(cell) + maxval(self%column%width) + 2)) :: text
     integer :: i, last, n, width
 
@@ -191,8 +157,13 @@ contains
       end associate
       last = last + width
     end do
-    if (self%listed) call self%line(text(:last))
-    if (.not. self%listed) call self%csv(text(2:last))
+    if (self%listed) then
+      call self%line(text(:last))
+    else if (self%subcase == 0) then
+      call self%line(text(2:last))
+    else
+      call self%line(when(are_heads, 'subcase', text_of(self%subcase))//text(:last))
+    end if
   end subroutine write_cells
 
   !> Text at the right of `width` columns; wider text is kept whole.

@@ -231,13 +231,11 @@ contains
   subroutine add(self, other, without_head)
     class(text_file), intent(inout) :: self
     class(text_file), intent(in) :: other
-    logical, intent(in), optional :: without_head   !! but for its first line
+    logical, intent(in) :: without_head   !! leave out its first line
     integer :: first
 
     first = 1
-    if (present(without_head)) then
-      if (without_head) first = index(other%text(:other%used), newline) + 1
-    end if
+    if (without_head) first = index(other%text(:other%used), newline) + 1
     call put(self, other%text(first:other%used))
   end subroutine add
 

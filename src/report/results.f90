@@ -2,9 +2,10 @@
 !> the tables. Several load cases are added one by one, and written after the last.
 module epcont_report_results
   use epcont_base_error, only: error_type
+  use epcont_base_kinds, only: wp
   use epcont_report_case_table, only: case_row, put_cases, put_worst_case, row_of_case
   use epcont_base_text, only: text_of
-  use epcont_report_columns, only: table_type
+  use epcont_report_columns, only: column, table_type, word
   use epcont_report_file, only: new_text_file, remove_file
   use epcont_report_listing, only: list_case, list_scene
   use epcont_messages_names, only: joined
@@ -62,6 +63,9 @@ module epcont_report_results
     procedure :: add_case
     procedure :: finish
   end type results_type
+
+  type(column), parameter :: summary_columns(*) = [ &
+    column(word, 'key'), column(word, 'value'), column(word, 'unit')]
 
   !> Load cases that a plan is of are named, up to so many.
   integer, parameter :: most_named = 12
@@ -207,9 +211,10 @@ contains
     type(table_type), intent(inout) :: table
     integer :: k
 
-    call table%head('key,value,unit')
+    call table%begin('', summary_columns)
     do k = 1, size(figures)
-      call table%csv(trim(figures(k)%key)//','//trim(figures(k)%value)//','//trim(figures(k)%unit))
+      call table%row([integer ::], [real(wp) ::], [character(len=len(figures%key)) :: &
+                                                  figures(k)%key, figures(k)%value, figures(k)%unit])
     end do
   end subroutine put_summary
 

@@ -5,7 +5,7 @@ module epcont_report_tables
   use epcont_base_text, only: text_of
   use epcont_contact_problem, only: pivot_record
   use epcont_element_kinematics, only: directions
-  use epcont_report_case_table, only: case_columns_text
+  use epcont_report_case_table, only: case_columns
   use epcont_report_columns, only: column, columns_text, estimate, force, known, length, no_number, number, &
       off_curve, rounding, state, stress, table_type, whole, word
   use epcont_messages_outcome, only: limit_of_pressure
@@ -117,8 +117,8 @@ contains
     if (suffix == '.pivots.csv') columns = pivot_columns
     if (suffix == '.nodes.csv') columns = node_columns
     if (suffix == '.elements.csv') columns = element_columns
+    if (suffix == '.cases.csv') columns = case_columns
     text = ''
-    if (suffix == '.cases.csv') text = case_columns_text()
     if (allocated(columns)) text = 'Columns: '//columns_text(columns)//'.'
   end function columns_in
 
