@@ -4,11 +4,11 @@ module epcont_assembly_bodies
   use epcont_assembly_strain_operator, only: new_strain_operator, strain_operator
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: directions
-  use epcont_linalg_assembled, only: sparse_rows
   use epcont_material_linear_law, only: linear_law
   use epcont_model_arrays, only: angle
   use epcont_model_springs, only: spring_forces
   use epcont_model_ties, only: platen_angle
+  use epcont_plan_numbering, only: numbering_type
   use epcont_plan_planned_model, only: planned_model
   use epcont_system_threads, only: threads_over, use_one_thread_each
   implicit none
@@ -183,94 +183,67 @@ contains
     u = self%finish(scene, half, load_factor, .false.)
   end function displacements
 
-  !> Put forces on the bodies: the half of the solve that can be done before all of them are known.
+  !> Add forces to the bodies, with forward substitution.
   subroutine add_forces(self, scene, force, load_factor, half)
     class(factored_bodies), intent(in) :: self
-    type(planned_model), intent(in) :: scene     !! with the numbers of its equations
+    type(planned_model), intent(in) :: scene     !! with equation numbers
     real(wp), intent(in) :: force(:, :)          !! [directions, nodes]
     real(wp), intent(in) :: load_factor          !! of the prescribed displacements, with their forces
-    !> What has been put on before; not allocated: nothing [bodies]
+    !> Forces added before; not allocated if there are none [bodies]
     type(half_solved_body), allocatable, intent(inout) :: half(:)
-    integer :: b
+    real(wp), allocatable :: border(:, :), inner(:, :)
+    integer :: b, i
 
     if (.not. allocated(half)) allocate (half(size(self%body)))
     do b = 1, size(half)
-      call add_to_body(b, half(b))
-    end do
-
-  contains
-
-    !> Put forces on one body.
-    subroutine add_to_body(b, half)
-      integer, intent(in) :: b
-      type(half_solved_body), intent(inout) :: half
-      real(wp), allocatable :: border(:, :), inner(:, :)
-      real(wp) :: own(directions)
-      integer :: c, i
-
-      associate (body => scene%numbering%body(b), axes => scene%numbering%axes)
+      associate (body => scene%numbering%body(b), settlement => self%settlement)
         allocate (inner(body%equations, 1), border(body%border, 1), source=0.0_wp)
-        ! Equations are of one freedom each; those of the border are of many.
-        !$omp parallel do private(c, own) &
-        !$omp num_threads(merge(1, threads_over(size(body%node)), size(body%tied%start) > 1))
+        ! Each equation belongs to one DOF; those in sums belong to many.
+        !$omp parallel do num_threads(merge(1, threads_over(size(body%node)), size(body%tied%start) > 1))
         do i = 1, size(body%node)
-          associate (node => body%node(i))
-            own = force(:, node) + load_factor*self%settlement(:, node)
-            if (axes%turn(node) > 0) own = axes%along(node, own)
-            do c = 1, directions
-              associate (number => scene%numbering%equation(c, node))
-                if (number > 0) inner(number, 1) = inner(number, 1) + own(c)
-                if (number < 0) call add_tied(body%tied, -number, own(c:c), inner, border)
-              end associate
-            end do
+          associate (at => body%node(i))
+            call put_forces(scene%numbering, b, at, &
+                            force(:, at:at) + load_factor*settlement(:, at:at), inner, border)
           end associate
         end do
         !$omp end parallel do
       end associate
       if (any(inner /= 0.0_wp) .or. any(border /= 0.0_wp)) then
         call self%body(b)%solve_lower(inner, border)
-        half%loaded = .true.
+        half(b)%loaded = .true.
       end if
-      if (allocated(half%inner)) then
-        inner = inner + half%inner
-        border = border + half%border
+      if (allocated(half(b)%inner)) then
+        inner = inner + half(b)%inner
+        border = border + half(b)%border
       end if
-      call move_alloc(inner, half%inner)
-      call move_alloc(border, half%border)
-    end subroutine add_to_body
+      call move_alloc(inner, half(b)%inner)
+      call move_alloc(border, half(b)%border)
+    end do
   end subroutine add_forces
 
-  !> The other half: displacements under all that has been put on, SUPORT freedoms at zero
-  !! [directions, nodes].
+  !> Compute displacements under all forces that have been added, SUPORT DOFs at zero [directions, nodes].
   function finish(self, scene, half, load_factor, at_contact) result(u)
     class(factored_bodies), intent(in) :: self
-    type(planned_model), intent(in) :: scene       !! with the numbers of its equations
-    type(half_solved_body), intent(in) :: half(:)  !! all that has been put on [bodies]
+    type(planned_model), intent(in) :: scene       !! with equation numbers
+    type(half_solved_body), intent(in) :: half(:)  !! forces that have been added [bodies]
     real(wp), intent(in) :: load_factor  !! of the prescribed displacements
-    logical, intent(in) :: at_contact    !! only what gaps depend on is wanted
+    logical, intent(in) :: at_contact    !! only displacements that gaps depend on are needed
     real(wp), allocatable :: u(:, :)
     real(wp), allocatable :: border(:, :), inner(:, :)
-    integer :: b, c, first, i
+    integer :: b, first, i
 
     allocate (u(directions, scene%model%nodes), source=0.0_wp)
     call prescribe(scene, load_factor, u)
     do b = 1, size(half)
-      associate (body => scene%numbering%body(b), axes => scene%numbering%axes)
+      associate (body => scene%numbering%body(b))
         inner = half(b)%inner
         border = half(b)%border
         first = merge(body%first_contact, 1, at_contact)
         if (half(b)%loaded) call self%body(b)%solve_upper(inner, border, first)
-        !$omp parallel do num_threads(threads_over(size(body%node))) private(c)
+        !$omp parallel do num_threads(threads_over(size(body%node)))
         do i = 1, size(body%node)
           associate (node => body%node(i))
-            do c = 1, directions
-              associate (number => scene%numbering%equation(c, node))
-                if (number > 0) u(c, node) = merge(inner(number, 1), 0.0_wp, number >= first)
-                if (number < 0) &
-                  u(c, node) = u(c, node) + sum(tied_value(body%tied, -number, inner(:, 1:1), border(:, 1:1)))
-              end associate
-            end do
-            if (axes%turn(node) > 0) u(:, node) = axes%back(node, u(:, node))
+            call add_displacements(scene%numbering, b, node, first, inner, border, u(:, node:node))
           end associate
         end do
         !$omp end parallel do
@@ -278,50 +251,18 @@ contains
     end do
   end function finish
 
-  !> Put forces on what a tied freedom is a sum of: of the border, or of joined bodies, which have none.
-  pure subroutine add_tied(tied, row, force, inner, border)
-    type(sparse_rows), intent(in) :: tied       !! of a body
-    integer, intent(in) :: row                  !! of the freedom
-    real(wp), intent(in) :: force(:)            !! [fields]
-    real(wp), intent(inout) :: inner(:, :), border(:, :)   !! [equations, fields], [border, fields]
-    integer :: e
-
-    do e = tied%start(row), tied%start(row + 1) - 1
-      associate (at => tied%equation(e))
-        if (size(border, 1) == 0) inner(at, :) = inner(at, :) + tied%weight(e)*force
-        if (size(border, 1) > 0) border(at, :) = border(at, :) + tied%weight(e)*force
-      end associate
-    end do
-  end subroutine add_tied
-
-  !> Displacements of a tied freedom [fields].
-  pure function tied_value(tied, row, inner, border) result(u)
-    type(sparse_rows), intent(in) :: tied       !! of a body
-    integer, intent(in) :: row                  !! of the freedom
-    real(wp), intent(in) :: inner(:, :), border(:, :)      !! [equations, fields], [border, fields]
-    real(wp) :: u(size(border, 2))
-    integer :: e
-
-    u = 0.0_wp
-    do e = tied%start(row), tied%start(row + 1) - 1
-      if (size(border, 1) == 0) u = u + tied%weight(e)*inner(tied%equation(e), :)
-      if (size(border, 1) > 0) u = u + tied%weight(e)*border(tied%equation(e), :)
-    end do
-  end function tied_value
-
-  !> Displacements of nodes of one body under several fields of forces on some of its nodes, supports at zero.
-  !! All fields are solved for at once: so the factor is read only twice.
+  !> Compute displacements of nodes of one body under several fields of forces on some of its nodes, supports
+  !! at zero. All fields are solved for at once, so the factor is read only twice.
   subroutine body_displacements(self, scene, b, loads, node, u, at_contact)
     class(factored_bodies), intent(inout) :: self
-    type(planned_model), intent(in) :: scene       !! with the numbers of its equations
+    type(planned_model), intent(in) :: scene       !! with equation numbers
     integer, intent(in) :: b                       !! the body
     type(force_fields), intent(in) :: loads        !! forces on it
-    integer, intent(in) :: node(:)                 !! those that are asked for
-    real(wp), intent(out) :: u(:, :, :)            !! [length] [directions, fields, nodes asked for]
-    logical, intent(in), optional :: at_contact    !! only what gaps depend on is wanted, the rest is zero
+    integer, intent(in) :: node(:)                 !! nodes whose displacements are needed
+    real(wp), intent(out) :: u(:, :, :)            !! [length] [directions, fields, nodes]
+    logical, intent(in), optional :: at_contact    !! only displacements that gaps depend on are needed
     real(wp), allocatable :: border(:, :), inner(:, :)
-    real(wp) :: own(directions, size(u, 2))
-    integer :: c, first, i
+    integer :: first, i
 
     first = 1
     associate (body => scene%numbering%body(b))
@@ -329,45 +270,69 @@ contains
       allocate (inner(body%equations, size(u, 2)), border(body%border, size(u, 2)), source=0.0_wp)
     end associate
     do i = 1, size(loads%node)
-      own = loads%force(:, :, i)
-      call turn(loads%node(i), .true.)
-      do c = 1, directions
-        associate (number => scene%numbering%equation(c, loads%node(i)))
-          if (number > 0) inner(number, :) = inner(number, :) + own(c, :)
-          if (number < 0) call add_tied(scene%numbering%body(b)%tied, -number, own(c, :), inner, border)
-        end associate
-      end do
+      call put_forces(scene%numbering, b, loads%node(i), loads%force(:, :, i), inner, border)
     end do
     call self%body(b)%solve_lower(inner, border)
     call self%body(b)%solve_upper(inner, border, first)
     inner(:first - 1, :) = 0.0_wp
+    u = 0.0_wp
     do i = 1, size(node)
-      own = 0.0_wp
-      do c = 1, directions
-        associate (number => scene%numbering%equation(c, node(i)))
-          if (number > 0) own(c, :) = inner(number, :)
-          if (number < 0) own(c, :) = tied_value(scene%numbering%body(b)%tied, -number, inner, border)
-        end associate
-      end do
-      call turn(node(i), .false.)
-      u(:, :, i) = own
+      call add_displacements(scene%numbering, b, node(i), first, inner, border, u(:, :, i))
     end do
-
-  contains
-
-    !> Of all fields at a node to the axes of its freedoms, or back.
-    subroutine turn(node, there)
-      integer, intent(in) :: node
-      logical, intent(in) :: there
-      integer :: f
-
-      associate (axes => scene%numbering%axes)
-        if (axes%turn(node) == 0) return
-        do f = 1, size(own, 2)
-          if (there) own(:, f) = axes%along(node, own(:, f))
-          if (.not. there) own(:, f) = axes%back(node, own(:, f))
-        end do
-      end associate
-    end subroutine turn
   end subroutine body_displacements
+
+  !> Add fields of forces at a node to the right-hand sides of its body. Sums are of border unknowns, or of
+  !! equations if bodies are joined, which have no border.
+  pure subroutine put_forces(numbering, b, node, force, inner, border)
+    type(numbering_type), intent(in) :: numbering
+    integer, intent(in) :: b, node
+    real(wp), intent(in) :: force(:, :)                    !! [directions, fields]
+    real(wp), intent(inout) :: inner(:, :), border(:, :)   !! [equations, fields], [border, fields]
+    real(wp) :: own(directions)
+    integer :: c, e, f
+
+    associate (tied => numbering%body(b)%tied, number => numbering%equation(:, node))
+      do f = 1, size(force, 2)
+        own = force(:, f)
+        if (numbering%axes%turn(node) > 0) own = numbering%axes%along(node, own)
+        do c = 1, directions
+          if (number(c) > 0) inner(number(c), f) = inner(number(c), f) + own(c)
+          if (number(c) >= 0) cycle
+          do e = tied%start(-number(c)), tied%start(1 - number(c)) - 1
+            associate (at => tied%equation(e), part => tied%weight(e)*own(c))
+              if (size(border, 1) == 0) inner(at, f) = inner(at, f) + part
+              if (size(border, 1) > 0) border(at, f) = border(at, f) + part
+            end associate
+          end do
+        end do
+      end do
+    end associate
+  end subroutine put_forces
+
+  !> Put the displacements of a node in their place, those of sums in addition to prescribed parts.
+  pure subroutine add_displacements(numbering, b, node, first, inner, border, u)
+    type(numbering_type), intent(in) :: numbering
+    integer, intent(in) :: b, node
+    integer, intent(in) :: first                        !! equations before this one are not needed
+    real(wp), intent(in) :: inner(:, :), border(:, :)   !! [equations, fields], [border, fields]
+    real(wp), intent(inout) :: u(:, :)                  !! [directions, fields]
+    real(wp) :: total
+    integer :: c, e, f
+
+    associate (tied => numbering%body(b)%tied, number => numbering%equation(:, node))
+      do f = 1, size(u, 2)
+        do c = 1, directions
+          if (number(c) > 0) u(c, f) = merge(inner(number(c), f), 0.0_wp, number(c) >= first)
+          if (number(c) >= 0) cycle
+          total = 0.0_wp
+          do e = tied%start(-number(c)), tied%start(1 - number(c)) - 1
+            if (size(border, 1) == 0) total = total + tied%weight(e)*inner(tied%equation(e), f)
+            if (size(border, 1) > 0) total = total + tied%weight(e)*border(tied%equation(e), f)
+          end do
+          u(c, f) = u(c, f) + total
+        end do
+        if (numbering%axes%turn(node) > 0) u(:, f) = numbering%axes%back(node, u(:, f))
+      end do
+    end associate
+  end subroutine add_displacements
 end module epcont_assembly_bodies

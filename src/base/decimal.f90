@@ -1,60 +1,46 @@
-!> Reals as decimals, in the digits that formats give and a tenth of their time: tables have a million.
+!> Reals as decimals, with the digits of a format and in a tenth of its time: tables have a million numbers.
 !>
-!> A real is m 2**e, and 10**p of it m 5**p 2**(e + p): a whole number of 128 bits for all of usual size,
-!> whose last digit is rounded exactly, ties to even. Others are written by a format.
+!> A real is m 2**e; times 10**p it is m 5**p 2**(e + p). For usual sizes this is an integer of 128 bits,
+!> whose last digit is rounded exactly, ties to even. Other reals are written with a format.
 module epcont_base_decimal
   use epcont_base_kinds, only: i8, i16, wp
   implicit none
   private
-  public :: full_decimal, short_decimal
+  public :: decimal_text
 
-  !> With 5 to a higher power m may be beyond the largest whole number.
+  !> With a higher power of 5 the product may exceed the largest integer.
   integer, parameter :: most = 27
   integer, parameter :: digits_of_real = digits(1.0_wp)
 
 contains
 
-  !> 17 digits, as the format es25.16e3 has them, blanks behind them.
-  pure function full_decimal(value) result(text)
-    real(wp), intent(in) :: value   !! any
-    character(len=25) :: text
+  !> Write a real as the format es has it with these digits, with trailing blanks.
+  pure function decimal_text(value, digits, places) result(text)
+    real(wp), intent(in) :: value    !! any; its exponent needs no more places
+    integer, intent(in) :: digits, places   !! significant digits, and digits of the exponent
+    character(len=digits + places + 5) :: text
+    character(len=20) :: form
     integer(i8) :: number
     integer :: exponent
     logical :: exact
 
-    call find_digits(value, 17, number, exponent, exact)
+    call find_digits(value, digits, number, exponent, exact)
     if (exact) then
-      call put_together(value < 0.0_wp, number, 17, exponent, 3, text)
+      call put_together(value < 0.0_wp, number, digits, exponent, places, text)
     else
-      write (text, '(es25.16e3)') value
+      write (form, '("(es", i0, ".", i0, "e", i0, ")")') len(text), digits - 1, places
+      write (text, form) value
       text = adjustl(text)
     end if
-  end function full_decimal
+  end function decimal_text
 
-  !> Six digits, as the format es13.5e2 has them, blanks behind them.
-  pure function short_decimal(value) result(text)
-    real(wp), intent(in) :: value   !! its exponent has two digits
-    character(len=13) :: text
-    integer(i8) :: number
-    integer :: exponent
-    logical :: exact
-
-    call find_digits(value, 6, number, exponent, exact)
-    if (exact) then
-      call put_together(value < 0.0_wp, number, 6, exponent, 2, text)
-    else
-      write (text, '(es13.5e2)') value
-      text = adjustl(text)
-    end if
-  end function short_decimal
-
-  !> The first digits of the size of a number, as a whole number, and the power of ten of the first of them.
+  !> Find the first digits of a magnitude, as an integer, and the power of ten of the first digit.
   pure subroutine find_digits(value, digits, number, power, exact)
     real(wp), intent(in) :: value
-    integer, intent(in) :: digits          !! how many
+    integer, intent(in) :: digits          !! number of digits
     integer(i8), intent(out) :: number
     integer, intent(out) :: power
-    logical, intent(out) :: exact          !! else nothing is found
+    logical, intent(out) :: exact          !! otherwise nothing is found
     integer(i16) :: product, rest
     integer :: behind, p   ! bits behind the point; tens that are multiplied with
 
@@ -73,7 +59,7 @@ contains
         number = int(shiftl(product, -behind), i8)
       else
         number = int(shiftr(product, behind), i8)
-        rest = 2*(product - shiftl(int(number, i16), behind)) - shiftl(1_i16, behind)   ! less a half, twice
+        rest = 2*(product - shiftl(int(number, i16), behind)) - shiftl(1_i16, behind)   ! 2 (rest - 1/2)
         if (rest > 0 .or. rest == 0 .and. btest(number, 0)) number = number + 1
       end if
       if (number < 10_i8**digits) return
@@ -81,7 +67,7 @@ contains
     end do
   end subroutine find_digits
 
-  !> Write digits with a point after the first one, and the power of ten of the first one.
+  !> Write digits with a point after the first one, and its power of ten.
   pure subroutine put_together(negative, number, digits, power, places, text)
     logical, intent(in) :: negative
     integer(i8), intent(in) :: number       !! the digits

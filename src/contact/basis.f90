@@ -14,8 +14,7 @@ module epcont_contact_basis
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: lost_digits
   use epcont_contact_scaling, only: scaled_problem
-  use epcont_linalg_dense, only: pivoted_cholesky
-  use epcont_linalg_saddle, only: factor_saddle, solve_saddle
+  use epcont_linalg_dense, only: factor_saddle, pivoted_cholesky, solve_saddle
   implicit none
   private
   public :: contact_basis, new_basis, renew_basis, move_basis, are_independent, respond

@@ -1,33 +1,42 @@
-!> What bodies ask of their stiffness matrices, however these are stored: filled element by element, factored,
-!> solved with, and seen by the pairs. How one begins, by its panels or by its fronts, is the affair of each
-!> kind.
+!> Symmetric positive definite matrices in blocks of columns, panels or fronts: filled element by element,
+!> factored, and used for solutions and compliances.
 !>
-!> A matrix is filled part by part. A band is one; of fronts each is: it is opened when all below it are
-!> closed, is given its elements (`front_layout`), and factored when it is closed, while it is at hand. That
-!> does most of the work, `factor` the rest.
+!> A matrix is filled part by part. A band has one part. Each front is a part: it is opened when its children
+!> are closed, filled with its elements (`front_layout`), and factored when it is closed, while it is in the
+!> cache. `factor` does the rest.
 module epcont_linalg_assembled
-  use epcont_base_kinds, only: wp
+  use epcont_base_kinds, only: i8, wp
   use epcont_base_sorting, only: sorted_order
   use epcont_linalg_dense, only: cholesky_inverse
+  use epcont_linalg_lapack, only: dgemm, dgemv
   use epcont_linalg_staircase, only: multiply_staircase, solve_staircase
   implicit none
   private
-  public :: assembled_matrix, sparse_rows, find_compliance, order_rows, probes
+  public :: assembled_matrix, sparse_rows
+  public :: backward, begin_blocks, diagonal, find_compliance, forward, order_rows, probes
 
   !> Rows of a sparse matrix N: entries start(k) to start(k+1)-1 of row k are equations and weights. Equations
-  !! that are not positive count for nothing.
+  !! that are not positive are ignored.
   type :: sparse_rows
     integer, allocatable :: start(:)       !! [rows + 1]
     integer, allocatable :: equation(:)    !! [entries]
     real(wp), allocatable :: weight(:)     !! [entries]
   end type sparse_rows
 
+  !> Block p has the columns first(p) to first(p+1)-1, stored full from entries(start(p)) on: the rows of
+  !! these
+  !> equations, and below them the rows of the equations coupled with them.
   type, abstract :: assembled_matrix
     integer :: order = 0
-    integer :: trailing = 0   !! last equations, the only ones that `find_compliance` is asked for; 0: any
-    real(wp) :: norm = 0.0_wp           !! 1-norm of the matrix when it was factored, or a bound of it
-    logical :: lacks_memory = .false.   !! there was not enough to begin it
+    integer :: trailing = 0   !! number of last equations that `find_compliance` may use; 0 if all
+    real(wp) :: norm = 0.0_wp           !! 1-norm of the matrix before factorization, or a bound of it
+    logical :: lacks_memory = .false.   !! the memory was too small
     real(wp), allocatable :: pivot_ratio(:)   !! pivot**2 over the diagonal entry [order]
+    integer, allocatable :: first(:)       !! column of each block [blocks + 1]
+    integer, allocatable :: columns(:)     !! of each block [blocks]
+    integer, allocatable :: height(:)      !! rows of each block [blocks]
+    integer(i8), allocatable :: start(:)   !! of each block in `entries` [blocks + 1]
+    real(wp), allocatable :: entries(:)
   contains
     procedure(clear_entries), deferred :: clear
     procedure :: open
@@ -37,22 +46,21 @@ module epcont_linalg_assembled
     procedure :: factor
     procedure(first_half), deferred :: solve_lower
     procedure(second_half), deferred :: solve_upper
-    procedure(last_of_factor), deferred :: get_trailing_factor
     procedure :: solve
     procedure :: find_compliance
   end type assembled_matrix
 
   abstract interface
-    !> Make ready to be filled anew where only the columns of these equations have changed: stale columns
-    !! begin with zeros, the others remain as they are, even factored.
+    !> Prepare to fill the matrix again, if only the columns of these equations have changed. Stale columns
+    !! are set to zero. The other columns stay, even factored.
     pure subroutine clear_entries(self, stale)
       import :: assembled_matrix
       class(assembled_matrix), intent(inout) :: self
-      !> On return with those that have to be filled anew on their account [order]
+      !> On return, with all equations that depend on these [order]
       logical, intent(inout) :: stale(:)
     end subroutine clear_entries
 
-    !> Add the matrix of an element to its part; rows and columns of number 0 and less are left out, and
+    !> Add the matrix of an element to its part, without rows and columns of number 0 and less, and without
     !! columns that are not stale.
     pure subroutine add_element(self, n, number, k)
       import :: assembled_matrix, wp
@@ -66,54 +74,46 @@ module epcont_linalg_assembled
     subroutine eliminate_rest(self, failed)
       import :: assembled_matrix
       class(assembled_matrix), intent(inout) :: self
-      integer, intent(out) :: failed         !! equation that has no pivot; 0: none, the matrix is definite
+      integer, intent(out) :: failed         !! equation without a pivot; 0 if the matrix is definite
     end subroutine eliminate_rest
 
-    !> The first half of a solve, L^-1 x: right-hand sides that have it behind them may still be added to each
-    !! other.
+    !> Forward substitution, L^-1 x. Its results may be added.
     subroutine first_half(self, x)
       import :: assembled_matrix, wp
       class(assembled_matrix), intent(in) :: self
       real(wp), contiguous, intent(inout) :: x(:, :)  !! [order, any]
     end subroutine first_half
 
-    !> The second half, L'^-1 x. Rows before `first` are not wanted, and may be left unfinished.
+    !> Backward substitution, L'^-1 x. Rows before `first` are not needed, and may stay unfinished.
     subroutine second_half(self, x, first)
       import :: assembled_matrix, wp
       class(assembled_matrix), intent(in) :: self
       real(wp), contiguous, intent(inout) :: x(:, :)  !! [order, any]
       integer, intent(in) :: first
     end subroutine second_half
-
-    !> L22, the last rows and columns of the factor. (A function would hand back a copy.)
-    pure subroutine last_of_factor(self, x)
-      import :: assembled_matrix, wp
-      class(assembled_matrix), intent(in) :: self
-      real(wp), allocatable, intent(out) :: x(:, :)   !! lower triangle, zeros above it [trailing, trailing]
-    end subroutine last_of_factor
   end interface
 
 contains
 
-  !> Make a part ready for its elements. A band is.
+  !> Make a part ready for its elements. A band is always ready.
   subroutine open(self, p)
     class(assembled_matrix), intent(inout) :: self
-    integer, intent(in) :: p   !! the part; one behind the last: elements that have no equations
+    integer, intent(in) :: p   !! the part; the last part + 1 has the elements without equations
 
   end subroutine open
 
-  !> A part has all its elements. A band waits for `factor`.
+  !> Accept that a part has all its elements. A band waits for `factor`.
   subroutine close(self, p)
     class(assembled_matrix), intent(inout) :: self
     integer, intent(in) :: p   !! the part
 
   end subroutine close
 
-  !> End with the Cholesky factor of the matrix. Many singular matrices pass for definite, so the ratio of the
-  !! smallest pivot to its diagonal entry is returned as well.
+  !> Complete the Cholesky factor. Many singular matrices seem definite, so the smallest ratio of a pivot to
+  !! its diagonal entry is returned too.
   subroutine factor(self, smallest_ratio, at)
     class(assembled_matrix), intent(inout) :: self
-    real(wp), intent(out) :: smallest_ratio  !! 0 where the matrix is not definite
+    real(wp), intent(out) :: smallest_ratio  !! 0 if the matrix is not definite
     integer, intent(out) :: at               !! its equation
 
     smallest_ratio = 1.0_wp
@@ -135,8 +135,8 @@ contains
     call self%solve_upper(x, 1)
   end subroutine solve
 
-  !> Columns that an estimate of the condition begins with, of 1-norm 1: equal parts, and the alternating
-  !! column that finds what they cancel (Higham's).
+  !> Start columns of an estimate of the condition, with 1-norm 1: a constant column, and Higham's alternating
+  !! column.
   pure function probes(order) result(x)
     integer, intent(in) :: order   !! of the matrix
     real(wp) :: x(order, 2)
@@ -147,12 +147,12 @@ contains
     x(:, 2) = x(:, 2)/sum(abs(x(:, 2)))
   end function probes
 
-  !> N K^-1 N' from the factor, by its trailing block L22, since all that stands before has been eliminated
-  !! from it: the inverse (L22 L22')^-1 in place, where each row of N is a trailing equation in turn; else
-  !! X'X with X = L22^-1 N'.
+  !> Compute N K^-1 N' from the trailing block L22 of the factor, from which all other equations have been
+  !! eliminated. If each row of N is a trailing equation in turn, this is the inverse (L22 L22')^-1, computed
+  !! in place. Otherwise it is X'X with X = L22^-1 N'.
   pure subroutine find_compliance(self, rows, compliance)
     class(assembled_matrix), intent(in) :: self
-    type(sparse_rows), intent(in) :: rows       !! N; equations before the trailing ones count for nothing
+    type(sparse_rows), intent(in) :: rows       !! N; equations before the trailing ones are ignored
     real(wp), allocatable, intent(out) :: compliance(:, :)   !! lower triangle [rows, rows]
     real(wp), allocatable :: factor(:, :), x(:, :)
     integer :: at(size(rows%equation)), begins(size(rows%start) - 1), column(size(rows%equation)), &
@@ -162,7 +162,7 @@ contains
     at = max(0, rows%equation - (self%order - self%trailing))
     if (size(at) == self%trailing .and. size(order) == self%trailing) then
       if (all(at == [(k, k=1, size(at))]) .and. all(rows%start == [(k, k=1, size(rows%start))])) then
-        call self%get_trailing_factor(compliance)
+        call get_trailing_factor(self, compliance)
         call cholesky_inverse(compliance)
         do k = 1, size(order)
           compliance(k:, k) = rows%weight(k)*rows%weight(k:)*compliance(k:, k)
@@ -175,20 +175,20 @@ contains
     do i = 1, size(at)
       if (at(i) > 0) x(at(i), column(i)) = x(at(i), column(i)) + rows%weight(i)
     end do
-    call self%get_trailing_factor(factor)
+    call get_trailing_factor(self, factor)
     call solve_staircase(self%trailing, factor, begins, x)
     deallocate (factor)
     allocate (compliance(size(order), size(order)))
     call multiply_staircase(self%trailing, x, begins, order, compliance)
   end subroutine find_compliance
 
-  !> The rows in the order of their first equations, and which of these has each entry.
+  !> Order rows by their first equations, and find the position of each entry's row in that order.
   pure subroutine order_rows(rows, equations, order, column, begins)
-    type(sparse_rows), intent(in) :: rows   !! equations that are not positive count for nothing
+    type(sparse_rows), intent(in) :: rows   !! equations that are not positive are ignored
     integer, intent(in) :: equations        !! how many there are
     integer, intent(out) :: order(:)        !! [rows]
     integer, intent(out) :: column(:)       !! [entries]
-    !> The first equation of each row in that order; behind the last: none
+    !> First equation of each row in that order; equations + 1 if there is none
     integer, intent(out) :: begins(:)
     integer :: i, k
 
@@ -204,4 +204,116 @@ contains
       column(rows%start(order(k)):rows%start(order(k) + 1) - 1) = k
     end do
   end subroutine order_rows
+
+  !> Begin a matrix of zeros, or set `lacks_memory`. (A function would return a copy of the whole matrix.)
+  subroutine begin_blocks(self, first, height, trailing)
+    class(assembled_matrix), intent(inout) :: self
+    integer, intent(in) :: first(:)         !! [blocks + 1]
+    integer, intent(in) :: height(:)        !! [blocks]
+    integer, intent(in) :: trailing         !! as in the type
+    logical :: stale(first(size(first)) - 1)
+    integer :: p, status
+
+    self%trailing = trailing
+    self%order = size(stale)
+    self%first = first
+    self%height = height
+    self%columns = first(2:) - first(:size(height))
+    allocate (self%start(size(first)), source=1_i8)
+    do p = 1, size(height)
+      self%start(p + 1) = self%start(p) + int(height(p), i8)*self%columns(p)
+    end do
+    allocate (self%pivot_ratio(self%order))
+    allocate (self%entries(self%start(size(first))), stat=status)   ! one more: rows below the last column
+    self%lacks_memory = status /= 0
+    if (self%lacks_memory) return
+    stale = .true.
+    call self%clear(stale)
+  end subroutine begin_blocks
+
+  !> Gather L22, the last rows and columns of the factor. (A function would return a copy.)
+  pure subroutine get_trailing_factor(self, x)
+    class(assembled_matrix), intent(in) :: self
+    real(wp), allocatable, intent(out) :: x(:, :)   !! lower triangle, zeros above it [trailing, trailing]
+    integer :: before, i, j, p
+    integer(i8) :: at
+
+    allocate (x(self%trailing, self%trailing), source=0.0_wp)
+    before = self%order - self%trailing
+    do p = 1, size(self%height)
+      do j = max(self%first(p), before + 1), self%first(p + 1) - 1
+        at = self%start(p) + int(j - self%first(p), i8)*(self%height(p) + 1)
+        do i = j, self%first(p) + self%height(p) - 1
+          x(i - before, j - before) = self%entries(at + i - j)
+        end do
+      end do
+    end do
+  end subroutine get_trailing_factor
+
+  !> Diagonal of full columns.
+  pure function diagonal(height, columns, k)
+    integer, intent(in) :: height, columns
+    real(wp), intent(in) :: k(height, columns)
+    real(wp) :: diagonal(columns)
+    integer :: j
+
+    diagonal = [(k(j, j), j=1, columns)]
+  end function diagonal
+
+  !> Forward substitution with full columns of a factor, and subtraction from the rows below. A few columns at
+  !! a time are solved with loops, which are faster than `trsm` for each column.
+  pure subroutine forward(height, columns, l, sides, leading, y)
+    integer, intent(in) :: height, columns
+    real(wp), intent(in) :: l(height, columns)
+    integer, intent(in) :: sides                      !! right-hand sides
+    integer, intent(in) :: leading                    !! dimension of y
+    real(wp), intent(inout) :: y(leading, sides)      !! [height, sides]
+    integer, parameter :: few = 16
+    integer :: first, i, k, last
+
+    do first = 1, columns, few
+      last = min(first + few - 1, columns)
+      do i = first, last
+        do k = 1, sides   ! interleaved: the steps of one side depend on each other
+          y(i, k) = y(i, k)/l(i, i)
+          y(i + 1:last, k) = y(i + 1:last, k) - l(i + 1:last, i)*y(i, k)
+        end do
+      end do
+      if (last == height) return
+      if (sides == 1) then
+        call dgemv('N', height - last, last - first + 1, -1.0_wp, l(last + 1, first), height, y(first, 1), &
+                  1, 1.0_wp, y(last + 1, 1), 1)
+      else
+        call dgemm('N', 'N', height - last, sides, last - first + 1, -1.0_wp, l(last + 1, first), height, &
+                  y(first, 1), leading, 1.0_wp, y(last + 1, 1), leading)
+      end if
+    end do
+  end subroutine forward
+
+  !> Backward substitution, with the transpose.
+  pure subroutine backward(height, columns, l, sides, leading, y)
+    integer, intent(in) :: height, columns, sides, leading
+    real(wp), intent(in) :: l(height, columns)
+    real(wp), intent(inout) :: y(leading, sides)
+    integer, parameter :: few = 16
+    integer :: first, i, k, last
+
+    do first = 1 + (columns - 1)/few*few, 1, -few
+      last = min(first + few - 1, columns)
+      if (last < height .and. sides == 1) then
+        call dgemv('T', height - last, last - first + 1, -1.0_wp, l(last + 1, first), height, &
+                  y(last + 1, 1), 1, 1.0_wp, y(first, 1), 1)
+      else if (last < height) then
+        call dgemm('T', 'N', last - first + 1, sides, height - last, -1.0_wp, l(last + 1, first), height, &
+                  y(last + 1, 1), leading, 1.0_wp, y(first, 1), leading)
+      end if
+      ! Row by row: the steps of a dot product depend on each other.
+      do i = last, first, -1
+        do k = 1, sides
+          y(i, k) = y(i, k)/l(i, i)
+          y(first:i - 1, k) = y(first:i - 1, k) - l(i, first:i - 1)*y(i, k)
+        end do
+      end do
+    end do
+  end subroutine backward
 end module epcont_linalg_assembled

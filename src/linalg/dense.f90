@@ -1,13 +1,14 @@
-!> Dense matrices: one thin wrapper a LAPACK routine, empty matrices included.
+!> Dense matrices: a thin wrapper for each LAPACK routine, which also accepts empty matrices.
 !>
-!> Factors are lower triangles. `info` and `rank` are handed back as they are: whether a singular matrix
-!> is a fault is for the caller to say, in the words of the problem.
+!> Factors are lower triangles. `info` and `rank` are returned unchanged: the caller says whether a singular
+!> matrix is an error.
 module epcont_linalg_dense
   use epcont_base_kinds, only: wp
-  use epcont_linalg_lapack, only: dgemm, dgesv, dgesvd, dpotrf, dpotri, dpotrs, dpstrf
+  use epcont_linalg_lapack, only: dgemm, dgesv, dgesvd, dpotrf, dpotri, dpotrs, dpstrf, dsyrk, dtrsm
   implicit none
   private
   public :: cholesky_factor, cholesky_inverse, cholesky_solve
+  public :: factor_saddle, solve_saddle
   public :: lu_solve, pivoted_cholesky, add_inner_products, add_product, null_space
 
 contains
@@ -113,4 +114,37 @@ contains
     if (info /= 0) values = 0.0_wp
     basis = transpose(right(pack([(k, k=1, m)], values <= tolerance), :))
   end function null_space
+
+  !> Factor a symmetric matrix whose first n pivots are positive and the next m negative (forces, then modes
+  !! that they restrain): K = L diag(I, -I) L', lower triangles. K11 is definite; K22 - K21 K11^-1 K21' must
+  !! be negative definite.
+  pure subroutine factor_saddle(lda, k, n, info)
+    integer, intent(in) :: lda                 !! rows of K, n + m
+    real(wp), intent(inout) :: k(lda, lda)     !! K, then L
+    integer, intent(in) :: n                   !! rows of K11
+    integer, intent(out) :: info   !! 0, or the order of the first minor with a wrong sign
+    integer :: m
+
+    m = lda - n
+    info = 0
+    if (lda == 0) return
+    if (n > 0) call dpotrf('L', n, k, lda, info)
+    if (info > 0 .or. m == 0) return
+    if (n > 0) call dtrsm('R', 'L', 'T', 'N', m, n, 1.0_wp, k, lda, k(n + 1, 1), lda)
+    call dsyrk('L', 'N', m, n, 1.0_wp, k(n + 1, 1), lda, -1.0_wp, k(n + 1, n + 1), lda)
+    call dpotrf('L', m, k(n + 1, n + 1), lda, info)
+    if (info > 0) info = info + n
+  end subroutine factor_saddle
+
+  !> Solve K x = b with the factor of `factor_saddle`.
+  pure subroutine solve_saddle(l, n, x)
+    real(wp), contiguous, intent(in) :: l(:, :)      !! from `factor_saddle`
+    integer, intent(in) :: n                         !! rows of K11
+    real(wp), contiguous, intent(inout) :: x(:, :)   !! b, then x [n + m, any]
+
+    if (size(x) == 0) return
+    call dtrsm('L', 'L', 'N', 'N', size(l, 1), size(x, 2), 1.0_wp, l, size(l, 1), x, size(x, 1))
+    x(n + 1:, :) = -x(n + 1:, :)
+    call dtrsm('L', 'L', 'T', 'N', size(l, 1), size(x, 2), 1.0_wp, l, size(l, 1), x, size(x, 1))
+  end subroutine solve_saddle
 end module epcont_linalg_dense

@@ -8,7 +8,7 @@ module epcont_linalg_front_layout
   use epcont_base_sorting, only: sorted_order
   implicit none
   private
-  public :: front_layout, new_front_layout, block_width, triangle_size, update_size
+  public :: front_layout, new_front_layout, block_width, update_size
 
   !> Operations of a unit of work: 0.3 ms, hundreds of times what a task more takes, and little to be done
   !! anew where something in it has changed. (With 1E6 bodies that yield take a tenth more memory.)

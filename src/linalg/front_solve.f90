@@ -2,14 +2,14 @@
 module epcont_linalg_front_solve
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: i8, wp
-  use epcont_linalg_blocked, only: backward, blocked_matrix, forward
+  use epcont_linalg_assembled, only: assembled_matrix, backward, forward
   use epcont_linalg_front_layout, only: front_layout
   use epcont_system_threads, only: use_one_thread_each
   implicit none
   private
   public :: front_factor
 
-  type, abstract, extends(blocked_matrix) :: front_factor
+  type, abstract, extends(assembled_matrix) :: front_factor
     type(front_layout) :: layout
     integer :: threads = 1   !! that it is filled and solved by
   contains

@@ -14,11 +14,10 @@
 !> fronts, few operations are done, and all of them on full matrices.
 module epcont_linalg_fronts
   use epcont_base_kinds, only: i8, wp
-  use epcont_linalg_blocked, only: begin_blocks, diagonal
+  use epcont_linalg_assembled, only: begin_blocks, diagonal
   use epcont_linalg_front_layout, only: columns_along, front_layout
   use epcont_linalg_front_solve, only: front_factor
-  use epcont_linalg_full_columns, only: factor_columns
-  use epcont_linalg_update_matrix, only: lay_out, take_update_off, update_matrix
+  use epcont_linalg_full_columns, only: factor_columns, lay_out, take_update_off, update_matrix
   !$ use omp_lib, only: omp_get_num_threads
   implicit none
   private

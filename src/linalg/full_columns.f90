@@ -1,21 +1,31 @@
-!> Full columns of a Cholesky factor, in products as large as possible: fronts consist of them.
+!> Full columns of fronts: their Cholesky factor, in products as large as possible, and update matrices.
 module epcont_linalg_full_columns
-  use epcont_base_kinds, only: wp
-  use epcont_linalg_front_layout, only: block_width
+  use epcont_base_kinds, only: i8, wp
+  use epcont_linalg_front_layout, only: block_width, update_size
   use epcont_linalg_lapack, only: dgemm, dpotrf, dsyrk, dtrsm
   implicit none
   private
-  public :: factor_columns, take_block_off
+  public :: factor_columns, lay_out, take_update_off, update_matrix
+
+  !> Update matrix of a front: a full matrix of the rows that it reaches, in blocks of columns from the
+  !! diagonal down, then the columns along (`columns_along`) of all its rows.
+  type :: update_matrix
+    real(wp), allocatable :: entries(:)
+    !> Position of row 0 of each column, which is stored from the row of its block's first column on [reached
+    !! rows]
+    integer(i8), allocatable :: row_zero(:)
+    integer(i8) :: along = 0   !! entries before the columns along
+  end type update_matrix
 
 contains
 
-  !> Factor columns that are stored full. Halved again and again, most of the work is products; of solving
-  !! with a triangle the BLAS makes a third of their rate.
+  !> Factor full columns. Recursive halving turns most of the work into products; the BLAS solves with a
+  !! triangle at a third of their rate.
   recursive subroutine factor_columns(rows, columns, leading, a, failed)
     integer, intent(in) :: rows, columns
     integer, intent(in) :: leading                  !! dimension of a
     real(wp), intent(inout) :: a(leading, columns)  !! [rows, columns]
-    integer, intent(out) :: failed                  !! column that has no pivot; 0: none
+    integer, intent(out) :: failed                  !! column without a pivot; 0 if there is none
     integer, parameter :: few = 24, tall = 256
     integer :: half, i
 
@@ -43,8 +53,8 @@ contains
     if (failed > 0) failed = half + failed
   end subroutine factor_columns
 
-  !> Take off columns, from the diagonal down, what others that are factored eliminate, block by block, which
-  !! threads share.
+  !> Subtract from columns, from the diagonal down, their part that factored columns eliminate. Threads share
+  !! the blocks.
   subroutine take_columns_off(rows, columns, factored, leading, l, c)
     integer, intent(in) :: rows, columns, factored
     integer, intent(in) :: leading                        !! dimension of l and c
@@ -62,7 +72,7 @@ contains
     end associate
   end subroutine take_columns_off
 
-  !> One block of them. Narrow ones take along what stands above the diagonal, which is never read.
+  !> Subtract from one block. Narrow blocks include the part above the diagonal, which is never read.
   subroutine take_block_off(rows, columns, factored, leading, l, leading_c, c)
     integer, intent(in) :: rows, columns, factored
     integer, intent(in) :: leading, leading_c             !! dimensions of l and c
@@ -79,4 +89,38 @@ contains
     if (rows > w) call dgemm('N', 'T', rows - w, columns, factored, -1.0_wp, l(w + 1, 1), leading, l, &
                             leading, 1.0_wp, c(w + 1, 1), leading_c)
   end subroutine take_block_off
+
+  !> Allocate an update matrix.
+  pure subroutine lay_out(own, reached, update)
+    integer, intent(in) :: own, reached   !! rows of the front
+    type(update_matrix), intent(out) :: update
+    integer :: first, j
+
+    allocate (update%entries(update_size(own, reached)), update%row_zero(reached))
+    associate (w => block_width(reached))
+      do first = 1, reached, w
+        do j = first, min(first + w - 1, reached)
+          update%row_zero(j) = update%along - (first - 1)
+          update%along = update%along + reached - (first - 1)
+        end do
+      end do
+    end associate
+  end subroutine lay_out
+
+  !> Subtract from an update matrix the part that the front's own columns eliminate. Threads share the blocks.
+  subroutine take_update_off(rows, factored, leading, l, update)
+    integer, intent(in) :: rows, factored, leading        !! dimension of l
+    real(wp), intent(in) :: l(leading, factored)          !! [rows, factored]
+    type(update_matrix), intent(inout) :: update
+    integer :: j
+
+    associate (w => block_width(rows))
+      !$omp taskloop default(shared) grainsize(1) if(rows > w)
+      do j = 1, rows, w
+        call take_block_off(rows - j + 1, min(w, rows - j + 1), factored, leading, l(j, 1), rows - j + 1, &
+                            update%entries(update%row_zero(j) + j))
+      end do
+      !$omp end taskloop
+    end associate
+  end subroutine take_update_off
 end module epcont_linalg_full_columns

@@ -13,15 +13,15 @@
 module epcont_linalg_panels
   use epcont_base_kinds, only: i8, wp
   use epcont_base_sorting, only: sorted_order
-  use epcont_linalg_assembled, only: find_compliance, order_rows, sparse_rows
-  use epcont_linalg_blocked, only: backward, begin_blocks, blocked_matrix, diagonal, forward
+  use epcont_linalg_assembled, only: assembled_matrix, backward, begin_blocks, diagonal, find_compliance, &
+      forward, order_rows, sparse_rows
   use epcont_linalg_lapack, only: dgemm, dpotrf, dsyrk, dtrsm
   use epcont_linalg_panel_layout, only: panel_layout
   implicit none
   private
   public :: panel_matrix
 
-  type, extends(blocked_matrix) :: panel_matrix
+  type, extends(assembled_matrix) :: panel_matrix
     integer :: width = 1     !! columns of a panel; the last may have fewer
     integer :: kept = 0   !! panels at the front whose factor stands: the others are filled and factored anew
     real(wp), allocatable :: row_sum(:)   !! of magnitudes, element by element [order]

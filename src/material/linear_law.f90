@@ -1,4 +1,4 @@
-!> Stress as a linear function of strain at each integration point: what a stiffness matrix can be made of.
+!> Stress as a linear function of strain at each integration point, from which stiffness matrices are made.
 module epcont_material_linear_law
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: components
@@ -12,10 +12,10 @@ module epcont_material_linear_law
   !> stress = matrix strain + initial_stress; components xx, yy, zz, xy (engineering shear strain).
   type :: linear_law
     real(wp), allocatable :: matrix(:, :, :)        !! [stress] [components, components, any]
-    !> Each point: its own where the material yields, else its section's [points]
+    !> Matrix of each point: its own if the material can yield, otherwise that of its section [points]
     integer, allocatable :: matrix_of(:)
     real(wp), allocatable :: initial_stress(:, :)   !! [stress] [components, points]
-    logical, allocatable :: changed(:)              !! its matrix is not that of the last stiffness [points]
+    logical, allocatable :: changed(:)              !! matrix differs from that of the last factor [points]
   contains
     procedure :: stress
     procedure :: increment
@@ -24,7 +24,7 @@ module epcont_material_linear_law
 
 contains
 
-  !> The law of bodies that do not yield.
+  !> Make the elastic law.
   pure function elastic_law(materials) result(law)
     type(model_materials), intent(in) :: materials   !! of the scene
     type(linear_law) :: law
@@ -48,7 +48,7 @@ contains
     end do
   end function elastic_law
 
-  !> The matrix of a point that yields.
+  !> Set the matrix of a point that yields.
   pure subroutine set_matrix(self, point, matrix)
     class(linear_law), intent(inout) :: self
     integer, intent(in) :: point                             !! which
@@ -65,17 +65,11 @@ contains
     class(linear_law), intent(in) :: self
     real(wp), intent(in) :: strain(:, :)   !! [components, points]
     real(wp), allocatable :: stress(:, :)
-    integer :: p
 
-    allocate (stress(components, size(strain, 2)))
-    !$omp parallel do num_threads(threads_over(size(strain, 2)))
-    do p = 1, size(strain, 2)
-      stress(:, p) = of_strain(self%matrix(:, :, self%matrix_of(p)), strain(:, p)) + self%initial_stress(:, p)
-    end do
-    !$omp end parallel do
+    stress = self%increment(strain) + self%initial_stress
   end function stress
 
-  !> What a strain adds to the stress of each point [components, points].
+  !> Change of the stress of each point due to a strain [components, points].
   function increment(self, strain)
     class(linear_law), intent(in) :: self
     real(wp), intent(in) :: strain(:, :)   !! [components, points]
@@ -85,16 +79,11 @@ contains
     allocate (increment(components, size(strain, 2)))
     !$omp parallel do num_threads(threads_over(size(strain, 2)))
     do p = 1, size(strain, 2)
-      increment(:, p) = of_strain(self%matrix(:, :, self%matrix_of(p)), strain(:, p))
+      associate (matrix => self%matrix(:, :, self%matrix_of(p)))
+        increment(:, p) = matrix(:, 1)*strain(1, p) + matrix(:, 2)*strain(2, p) + &
+                          matrix(:, 3)*strain(3, p) + matrix(:, 4)*strain(4, p)
+      end associate
     end do
     !$omp end parallel do
   end function increment
-
-  !> What a strain adds to the stress of a point.
-  pure function of_strain(matrix, strain) result(stress)
-    real(wp), intent(in) :: matrix(components, components), strain(components)
-    real(wp) :: stress(components)
-
-    stress = matrix(:, 1)*strain(1) + matrix(:, 2)*strain(2) + matrix(:, 3)*strain(3) + matrix(:, 4)*strain(4)
-  end function of_strain
 end module epcont_material_linear_law

@@ -1,4 +1,4 @@
-!> Memory and work that a scene will take, from the numbering alone.
+!> Memory and operations of a run, from the numbering.
 module epcont_plan_forecast
   use epcont_base_error, only: error_type, raise, status_usage
   use epcont_base_incidence, only: incidence, new_incidence
@@ -15,45 +15,40 @@ module epcont_plan_forecast
   public :: forecast_type, forecast, check_memory, most_memory
 
   type :: forecast_type
-    integer(i8) :: bytes = 0            !! that the process will hold at its peak, on one thread
+    integer(i8) :: bytes = 0            !! peak of the process on one thread
     real(wp) :: operations = 0.0_wp     !! floating-point operations of factor, flexibility and simplex
-    !> Of joined bodies: about the same should they have to be solved apart, with their F
-    integer(i8) :: apart_bytes = 0
-  contains
-    procedure :: keep_unloaded
   end type forecast_type
 
   real(wp), parameter :: giga = 1.0e9_wp
   integer(i8), parameter :: real_bytes = 8
 
-  !> What a run holds besides its matrices, as measured [bytes]: program and libraries; a node, an integration
-  !! point, each node of its element at a point, and a point that can yield. Within 0.8 to 1.3 in all
-  !! (`tests/plan`).
+  !> Memory besides the matrices, as measured [bytes]: program and libraries; for each node, integration
+  !! point, node of the element at a point, and point that can yield. The forecast is 0.8 to 1.3 times the
+  !! peak (`tests/extremes/test_memory.py`).
   integer(i8), parameter :: of_process = 7700000, of_node = 980, of_point = 250, of_node_of_point = 50, &
       of_yielding_point = 400
-  !> Matrices over all pairs that are there at once while the contact is solved: F, the tableau, factors of
-  !! those that touch, here half of them to all, and F of the bodies that cannot yield where others can.
+  !> Matrices over all pairs at once while the contact is solved: F, the tableau, factors of the pairs in
+  !! contact (half of all to all), and F of the bodies that cannot yield if others can.
   real(wp), parameter :: pair_matrices = 2.6_wp
-  !> And over pairs and free motions, if not over motions twice, for the rigid start.
+  !> Matrices over pairs and rigid-body modes for the rigid start, unless modes squared are more.
   integer(i8), parameter :: motion_matrices = 8
-  !> Unit loads along free motions whose strains are there at once, of one body, when the figures are
-  !! assessed: all that a body feels may take more memory than its factor. And what each takes of a node and
-  !! of an element [bytes].
+  !> Adjoint loads of one body whose strains are computed at once for the error estimates: all of them may
+  !! take more memory than its factor. Memory of each for a node and for an element [bytes].
   integer, parameter, public :: loads_at_once = 15
   integer(i8), parameter :: load_of_node = 64, load_of_element = 32
 
-  !> Of joined bodies, further sets of contacts and the steps with them: factors made again, over the first,
-  !! and what an entry of the factor takes in operations of the same time.
+  !> For joined bodies: operations of further active sets over those of the first factorization, and
+  !! operations for each entry of the factor that take the time of the solves.
   real(wp), parameter :: of_sets = 1.0_wp, of_solves = 150.0_wp
   !> Rigid-body modes for which the error of the approach is estimated, at most: those with the largest
   !! motions.
   integer, parameter, public :: most_assessed = 12
-  !> Sums of forces whose errors are estimated, mostly: of all pairs, and along x and y on two bodies.
+  !> Usual number of sums of forces with error estimates: of all pairs, and along x and y on two bodies.
   integer, parameter :: usual_sums = 4
 
 contains
 
-  !> Refuse a scene that is above the limit, or for which the system has not enough memory.
+  !> Reject a model that needs more memory than the limit, or than the system has.
   subroutine check_memory(bytes, limit, error)
     integer(i8), intent(in) :: bytes      !! as forecast
     real(wp), intent(in) :: limit         !! [GB]
@@ -78,7 +73,7 @@ contains
     end function gigabytes
   end subroutine check_memory
 
-  !> What a run takes of addresses, at most: of what is forecast not all is touched, and the heap has its gaps
+  !> Bound of the addresses of a run: not all of the forecast memory is touched, and the heap has gaps
   !! [bytes].
   pure integer(i8) function most_memory(bytes)
     integer(i8), intent(in) :: bytes   !! as forecast
@@ -86,95 +81,90 @@ contains
     most_memory = 2*bytes + memory_of_libraries
   end function most_memory
 
-  !> If several load cases yield, the factors of the unloaded state are held beside those of the last state.
-  pure subroutine keep_unloaded(self)
-    class(forecast_type), intent(inout) :: self
-
-    self%bytes = 2*self%bytes - of_process
-  end subroutine keep_unloaded
-
-  !> What a scene will take.
-  function forecast(model, motions, numbering, plan) result(expected)
-    type(model_type), intent(in) :: model   !! the scene
-    type(free_motions), intent(in) :: motions   !! free ones
-    type(numbering_type), intent(in) :: numbering   !! of its equations
-    type(iteration_plan), intent(in) :: plan   !! of its iteration
+  !> Memory and operations of a run.
+  function forecast(model, motions, numbering, plan, cases) result(expected)
+    type(model_type), intent(in) :: model
+    type(free_motions), intent(in) :: motions
+    type(numbering_type), intent(in) :: numbering
+    type(iteration_plan), intent(in) :: plan
+    integer, intent(in) :: cases              !! load cases that share the plan
     type(forecast_type) :: expected
-    type(incidence) :: of_bodies              ! pairs that have nodes in each
-    integer(i8), allocatable :: own_pairs(:)
-    integer(i8) :: coupled, done_with, entries, factor, flexibility, last, pairs, passing, unit_loads
+    integer :: p
+
+    if (plan%joined) then
+      call add_joined(model, motions, numbering, expected)
+    else
+      call add_bodies(model, motions, numbering, expected)
+    end if
+    expected%bytes = expected%bytes + of_process + of_node*model%nodes + of_point*model%points
+    do p = 1, model%points
+      expected%bytes = expected%bytes + of_node_of_point*model%node_count(model%point_element(p)) + &
+                       merge(of_yielding_point, 0_i8, model%can_yield(model%point_element(p)))
+    end do
+    ! The factors of the unloaded state are kept beside those of the last state.
+    if (cases > 1 .and. plan%yields) expected%bytes = 2*expected%bytes - of_process
+  end function forecast
+
+  !> Joined bodies have one factor. A part of it is made again with each active set. Solves wait for memory.
+  !! The adjoint fields of modes and of sums of forces exist all at once.
+  pure subroutine add_joined(model, motions, numbering, expected)
+    type(model_type), intent(in) :: model
+    type(free_motions), intent(in) :: motions
+    type(numbering_type), intent(in) :: numbering
+    type(forecast_type), intent(inout) :: expected
+
+    associate (fronts => numbering%body(1)%fronts, entries => numbering%body(1)%fronts%entries(kept=.true.))
+      expected%bytes = real_bytes*entries + &
+                       load_of_node*model%nodes*(min(most_assessed, motions%count) + usual_sums)
+      expected%operations = (1.0_wp + of_sets)*fronts%operations() + of_solves*entries
+    end associate
+  end subroutine add_joined
+
+  !> Bodies one by one have a factor and a part of F each.
+  pure subroutine add_bodies(model, motions, numbering, expected)
+    type(model_type), intent(in) :: model
+    type(free_motions), intent(in) :: motions
+    type(numbering_type), intent(in) :: numbering
+    type(forecast_type), intent(inout) :: expected
+    type(incidence) :: of_bodies       ! pairs that have nodes in each body
+    integer(i8) :: entries, factor, flexibility, last, own, pairs, passing, updates, unit_loads
     integer :: b
 
     pairs = model%pairs
-    coupled = pairs**2
-    if (plan%joined) then
-      call foresee_joined()
-      return
-    end if
     of_bodies = new_incidence(model%bodies_of_pairs(), model%bodies)
-    own_pairs = of_bodies%start(2:) - of_bodies%start(:model%bodies)
     entries = 0       ! of the factors
-    flexibility = 0   ! entries that are wanted for that of one body
-    unit_loads = 0    ! bytes of those that one body feels
-    passing = 0       ! and entries that its fronts leave to each other, free when it has been factored
+    flexibility = 0   ! of the part of F of one body
+    unit_loads = 0    ! bytes of the adjoint fields of one body
+    passing = 0       ! entries of the update matrices of one body, which are freed after its factorization
     do b = 1, size(numbering%body)
+      own = of_bodies%start(b + 1) - of_bodies%start(b)
       associate (body => numbering%body(b))
         if (body%solver == solver_frontal) then
           factor = body%fronts%entries(kept=body%can_yield)
-          done_with = factor - body%fronts%entries_of_factor()
+          updates = merge(0_i8, factor - body%fronts%entries_of_factor(), body%can_yield)
         else
           factor = body%panels%entries()
-          done_with = 0
+          updates = 0
         end if
-        if (body%can_yield) done_with = 0
-        passing = max(passing, done_with)
-        entries = entries + factor - done_with + int(body%equations, i8)*body%border
-        ! Its part, and the window that right-hand sides go through; or those on the trailing block and this,
-        ! then that part; where each pair has one equation of its own, the part alone.
+        passing = max(passing, updates)
+        entries = entries + factor - updates + int(body%equations, i8)*body%border
+        ! Right-hand sides on the trailing block, then the part of F; or the part alone, if each pair has one
+        ! equation; or the window of the right-hand sides and the part.
         last = body%contact_equations
-        associate (own => own_pairs(b))
-          if (.not. body%contact_last) then
-            flexibility = max(flexibility, own*(body%half_bandwidth + 2*own))
-          else if (last == own) then
-            flexibility = max(flexibility, own**2)
-          else
-            flexibility = max(flexibility, last*own + max(last, own)**2)
-          end if
-        end associate
-        unit_loads = max(unit_loads, min(int(min(motions%count, loads_at_once), i8), own_pairs(b))* &
+        if (.not. body%contact_last) then
+          flexibility = max(flexibility, own*(body%half_bandwidth + 2*own))
+        else
+          flexibility = max(flexibility, merge(own**2, last*own + max(last, own)**2, last == own))
+        end if
+        unit_loads = max(unit_loads, min(int(min(motions%count, loads_at_once), i8), own)* &
                          (load_of_node*size(body%node) + load_of_element*size(body%element)))
         expected%operations = expected%operations + 4.0_wp*body%border*factor + body%operations
       end associate
     end do
-    entries = entries + max(int(pair_matrices*coupled, i8), flexibility + coupled, passing) + &
-              max(int(motions%count, i8)**2, &
-                  pairs*motion_matrices*motions%count)
-    expected%bytes = real_bytes*entries + beside_matrices() + unit_loads
+    entries = entries + max(int(pair_matrices*pairs**2, i8), flexibility + pairs**2, passing) + &
+              max(int(motions%count, i8)**2, pairs*motion_matrices*motions%count)
+    expected%bytes = real_bytes*entries + unit_loads
     ! About one pivot a pair, each over the whole tableau.
     expected%operations = expected%operations + 2*real(pairs, wp)**3
-
-  contains
-
-    !> What joined bodies take: one factor, and a part of it again with each set of contacts; solves, which
-    !! wait for memory; and all unit loads at once, of motions and of sums of forces.
-    subroutine foresee_joined()
-      associate (fronts => numbering%body(1)%fronts, loads => min(most_assessed, motions%count) + usual_sums)
-        entries = fronts%entries(kept=.true.)
-        expected%bytes = real_bytes*entries + beside_matrices() + load_of_node*model%nodes*loads
-        expected%apart_bytes = expected%bytes + int(pair_matrices*coupled, i8)*real_bytes
-        expected%operations = (1.0_wp + of_sets)*fronts%operations() + of_solves*entries
-      end associate
-    end subroutine foresee_joined
-
-    !> What a run holds besides its matrices [bytes].
-    pure integer(i8) function beside_matrices() result(bytes)
-      integer :: p
-
-      bytes = of_process + of_node*model%nodes + of_point*model%points
-      do p = 1, model%points
-        bytes = bytes + of_node_of_point*model%node_count(model%point_element(p)) + &
-                merge(of_yielding_point, 0_i8, model%can_yield(model%point_element(p)))
-      end do
-    end function beside_matrices
-  end function forecast
+  end subroutine add_bodies
 end module epcont_plan_forecast

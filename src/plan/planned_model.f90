@@ -1,4 +1,4 @@
-!> What every room behind the plan reads and none changes: the scene, and how it will be solved.
+!> The model and the plan of its solution, which all later folders read and none changes.
 module epcont_plan_planned_model
   use epcont_model_finding, only: findings
   use epcont_model_model, only: model_type
@@ -44,8 +44,7 @@ contains
                                                 (joins(self%model) .neqv. self%other_rule))
     self%numbering = number_equations(self%model, self%iteration%joined)
     call watch%lap(stage_numbering)
-    self%expected = forecast(self%model, self%motions, self%numbering, self%iteration)
-    if (self%plan_cases > 1 .and. self%iteration%yields) call self%expected%keep_unloaded()
+    self%expected = forecast(self%model, self%motions, self%numbering, self%iteration, self%plan_cases)
     call watch%lap(stage_plan)
   end subroutine make_plan
 end module epcont_plan_planned_model

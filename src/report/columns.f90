@@ -2,7 +2,7 @@
 !> of comma separated values and the manual page all come from that. Rows are values of mixed kind.
 module epcont_report_columns
   use epcont_base_kinds, only: wp
-  use epcont_base_decimal, only: full_decimal, short_decimal
+  use epcont_base_decimal, only: decimal_text
   use epcont_base_text, only: formatted, short_real, text_of
   use epcont_base_tolerances, only: least_difference, rounded_off
   use epcont_report_file, only: text_file
@@ -215,7 +215,7 @@ contains
 
     text = ''
     if (kind == no_number .or. value <= unknown) return
-    if (value >= 0.0_wp .or. all(kind /= [known, estimate, factor, part])) text = full_decimal(value)
+    if (value >= 0.0_wp .or. all(kind /= [known, estimate, factor, part])) text = decimal_text(value, 17, 3)
   end function full_number
 
   !> A number of a listing's column, six digits in 13 characters: there are many.
@@ -229,7 +229,7 @@ contains
     else if (abs(value) >= 0.999999e100_wp .or. abs(value) < 1.0e-99_wp) then
       write (text, '(es13.5e3)') value
     else
-      text = right(trim(short_decimal(value)), len(text))
+      text = right(trim(decimal_text(value, 6, 2)), len(text))
     end if
   end function column_number
 
