@@ -1,7 +1,7 @@
-!> Fronts: which equations are eliminated together, and which of the later ones they are then coupled with.
+!> Fronts: equations that are eliminated together, and the later equations with which they are then coupled.
 !>
-!> Front p has the equations first(p) to first(p+1)-1 of its own, and reaches the equations rows%of(p). All
-!> these stand in its parent, the front that the first of them belongs to, or are reached by it.
+!> Front p has the own equations first(p) to first(p+1)-1, and reaches the equations rows%of(p). Its parent,
+!> the front with the first of these, has or reaches all of them.
 module epcont_linalg_front_layout
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: i8, wp
@@ -10,26 +10,27 @@ module epcont_linalg_front_layout
   private
   public :: front_layout, new_front_layout, block_width, update_size
 
-  !> Operations of a unit of work: 0.3 ms, hundreds of times what a task more takes, and little to be done
-  !! anew where something in it has changed. (With 1E6 bodies that yield take a tenth more memory.)
+  !> Least operations of a unit: 0.3 ms, hundreds of times the time of a task, and little to repeat if
+  !! something in it has changed. (With 1E6 operations, bodies that yield take 10 % more memory.)
   real(wp), parameter :: least_work = 4.0e6_wp
-  !> What goes along with a front, one number a row: diagonal of the matrix, sums of magnitudes.
+  !> Columns along: the diagonal of the matrix, and sums of magnitudes, for each row of a front.
   integer, parameter, public :: columns_along = 2
 
   type :: front_layout
     integer, allocatable :: first(:)       !! equation of each front [fronts + 1]
     integer, allocatable :: front_of(:)    !! each equation
-    integer, allocatable :: parent(:)      !! always a later one; 0: it reaches nothing [fronts]
+    integer, allocatable :: parent(:)      !! a later front; 0 if it reaches nothing [fronts]
     type(incidence) :: rows                !! equations that each front reaches, ascending
-    integer, allocatable :: own(:)         !! how many equations are a front's own [fronts]
-    integer, allocatable :: reached(:)     !! and how many it reaches [fronts]
-    !> Right below each front, and those that are below none as if below one more [fronts + 1]
+    integer, allocatable :: own(:)         !! number of own equations [fronts]
+    integer, allocatable :: reached(:)     !! number of reached equations [fronts]
+    !> Children of each front; fronts without a parent are children of one more [fronts + 1]
     type(incidence) :: below
-    !> Units are fronts with some of those below, which are filled and factored together: of each front the
-    !! one that it belongs to, by its highest [fronts]
+    !> A unit is a front with some of its descendants, which are filled and factored together. Its number is
+    !! that of this front. [fronts]
     integer, allocatable :: unit(:)
-    !> The elements in the order of the first fronts that they have equations of, and where those of each
-    !! begin; of none, behind all others [fronts + 2]
+    type(incidence) :: of_unit             !! fronts of each unit [fronts]
+    !> Elements in the order of the first front that has equations of them, those without equations last;
+    !! position of the first element of each front [fronts + 2]
     integer, allocatable :: element(:), first_element(:)
   contains
     procedure :: entries
@@ -131,8 +132,8 @@ contains
     end do
   end subroutine add_new
 
-  !> Which fronts are units of work, with those below them that are not: those on which, with all below,
-  !! enough is done, and those that have none above.
+  !> Find the units: fronts that have enough operations together with their descendants, and fronts without a
+  !! parent.
   pure subroutine find_units(layout)
     type(front_layout), intent(inout) :: layout
     real(wp) :: work(size(layout%own))
@@ -149,13 +150,14 @@ contains
       layout%unit(p) = p
       if (layout%parent(p) > 0 .and. work(p) < least_work) layout%unit(p) = layout%unit(layout%parent(p))
     end do
+    layout%of_unit = new_incidence(reshape(layout%unit, [1, size(work)]), size(work))
   end subroutine find_units
 
-  !> Entries of the factor, and the most that update matrices take beside it: of each front until the one
-  !! above has it.
+  !> Entries of the factor, and the most entries of update matrices at once: each exists until its parent has
+  !! it.
   pure integer(i8) function entries(self, kept)
     class(front_layout), intent(in) :: self
-    logical, intent(in) :: kept          !! those of all units are kept
+    logical, intent(in) :: kept          !! update matrices of units are kept
     integer(i8) :: left, most, own(size(self%own))
     integer :: i, p
 
@@ -181,7 +183,7 @@ contains
     entries_of_factor = sum(int(self%own, i8)*(self%own + self%reached))
   end function entries_of_factor
 
-  !> Entries of the update matrix of a front, and of the columns that go along.
+  !> Entries of the update matrix of a front, and of the columns along.
   elemental integer(i8) function update_size(own, reached)
     integer, intent(in) :: own       !! equations of the front
     integer, intent(in) :: reached   !! later ones
@@ -192,14 +194,14 @@ contains
   !> Entries of the update matrix alone: blocks of columns, each from the row of its first column down.
   elemental integer(i8) function triangle_size(rows)
     integer, intent(in) :: rows
-    integer :: full   ! columns of the blocks that are as wide as they may be
+    integer :: full   ! columns of the blocks with full width
 
     full = rows - modulo(rows, block_width(rows))
     triangle_size = int(full, i8)*(rows + rows - full + block_width(rows))/2 + int(rows - full, i8)**2
   end function triangle_size
 
-  !> Columns of a block of an update matrix: GEMM has kernels for small products, and large ones want to be
-  !! wide.
+  !> Columns of a block of an update matrix: GEMM has kernels for small products, and large products are
+  !! faster if they are wide.
   elemental integer function block_width(rows)
     integer, intent(in) :: rows
     integer, parameter :: small = 160, narrow = 32, wide = 192
@@ -207,14 +209,14 @@ contains
     block_width = merge(narrow, wide, rows <= small)
   end function block_width
 
-  !> Operations that the factorization takes.
+  !> Operations of the factorization.
   pure real(wp) function operations(self)
     class(front_layout), intent(in) :: self
 
     operations = sum(work_of(self%own, self%reached))
   end function operations
 
-  !> And those of one front.
+  !> Operations of one front.
   elemental real(wp) function work_of(own, reached)
     integer, intent(in) :: own, reached
 

@@ -1,6 +1,6 @@
-!> Solves with the Cholesky factor of a matrix in fronts, unit by unit, by the threads that have factored it.
+!> Solutions with the Cholesky factor of a matrix in fronts, unit by unit, with the threads of the
+!> factorization.
 module epcont_linalg_front_solve
-  use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: i8, wp
   use epcont_linalg_assembled, only: assembled_matrix, backward, forward
   use epcont_linalg_front_layout, only: front_layout
@@ -11,32 +11,30 @@ module epcont_linalg_front_solve
 
   type, abstract, extends(assembled_matrix) :: front_factor
     type(front_layout) :: layout
-    integer :: threads = 1   !! that it is filled and solved by
+    integer :: threads = 1   !! of factorization and solutions
   contains
     procedure :: solve_lower
     procedure :: solve_upper
   end type front_factor
 
-  !> What a unit takes off the equations that it reaches [reached equations * right-hand sides].
+  !> Contribution of a unit to the equations that it reaches [reached equations * right-hand sides].
   type :: left_part
     real(wp), allocatable :: entries(:)
   end type left_part
 
 contains
 
-  !> The first half, each unit after those below it. What a unit takes off equations beyond it is kept apart
-  !! until the one above adds it, in the order of the units: so roundings are the same on any number of
-  !! threads. Fronts that nothing acts on are left out.
+  !> Forward substitution, children first. The contribution of a unit to later units is kept until its parent
+  !! adds it, in the order of the units, so rounding does not depend on the number of threads. Fronts with
+  !! zero right-hand sides are left out.
   subroutine solve_lower(self, x)
     class(front_factor), intent(in) :: self
     real(wp), contiguous, intent(inout) :: x(:, :)
-    type(left_part) :: beyond(size(self%height))   ! what a unit leaves to each equation that it reaches
-    type(incidence) :: fronts                          ! of each unit
-    integer, allocatable :: unit(:)   ! nothing but its addresses, of units and of none, counts
+    type(left_part) :: beyond(size(self%height))   ! contribution of each unit
+    integer, allocatable :: unit(:)   ! only addresses of its elements are used: of units, and of no unit
     integer :: above, p
 
     unit = [self%layout%unit, 0]
-    fronts = new_incidence(reshape(self%layout%unit, [1, size(beyond)]), size(beyond))
     !$omp parallel num_threads(solve_threads(self)) private(above)
     call use_one_thread_each()
     !$omp single
@@ -44,7 +42,7 @@ contains
       if (unit(p) /= p) cycle
       above = merge(self%layout%parent(p), size(unit), self%layout%parent(p) > 0)
       !$omp task firstprivate(p) depend(in: unit(above)) depend(inout: unit(p))
-      call take_unit(p, fronts%of(p))
+      call take_unit(p, self%layout%of_unit%of(p))
       !$omp end task
     end do
     !$omp end single
@@ -52,10 +50,10 @@ contains
 
   contains
 
-    !> The fronts of a unit, with what units below leave to each.
+    !> Substitute in the fronts of a unit, with the contributions of units below.
     subroutine take_unit(u, front)
       integer, intent(in) :: u, front(:)
-      real(wp) :: own(maxval(self%height(front))*size(x, 2))   ! of each: threads would wait for the heap
+      real(wp) :: own(maxval(self%height(front))*size(x, 2))   ! threads would wait for the heap
       integer :: i, k
 
       allocate (beyond(u)%entries(self%layout%reached(u)*size(x, 2)), source=0.0_wp)
@@ -74,7 +72,7 @@ contains
       end associate
     end subroutine take_unit
 
-    !> A front, through a matrix of its own rows.
+    !> Substitute in a front, with a matrix of its own rows.
     subroutine take_front(u, p, h, own)
       integer, intent(in) :: u, p, h
       real(wp), intent(inout) :: own(h, size(x, 2))
@@ -88,10 +86,10 @@ contains
       end associate
     end subroutine take_front
 
-    !> Add to the equations that a front reaches; to those beyond its unit apart.
+    !> Add to the equations that a front reaches; those of later units are kept apart.
     subroutine add(u, p, rows, before, part, apart)
       integer, intent(in) :: u, p
-      integer, intent(in) :: rows, before   !! of part, and those of them that are none of these equations
+      integer, intent(in) :: rows, before   !! rows of part, and rows before those of these equations
       real(wp), intent(in) :: part(rows, size(x, 2))
       real(wp), intent(inout) :: apart(self%layout%reached(u), size(x, 2))
       integer :: at, i
@@ -114,17 +112,15 @@ contains
     end subroutine add
   end subroutine solve_lower
 
-  !> The second half, each unit after those above it.
+  !> Backward substitution, parents first.
   subroutine solve_upper(self, x, first)
     class(front_factor), intent(in) :: self
     real(wp), contiguous, intent(inout) :: x(:, :)
     integer, intent(in) :: first
-    type(incidence) :: fronts         ! of each unit
-    integer, allocatable :: unit(:)   ! nothing but its addresses, of units and of none, counts
+    integer, allocatable :: unit(:)   ! only addresses of its elements are used: of units, and of no unit
     integer :: above, p
 
     unit = [self%layout%unit, 0]
-    fronts = new_incidence(reshape(self%layout%unit, [1, size(self%height)]), size(self%height))
     !$omp parallel num_threads(solve_threads(self)) private(above)
     call use_one_thread_each()
     !$omp single
@@ -132,7 +128,7 @@ contains
       if (unit(p) /= p .or. self%first(p + 1) <= first) cycle
       above = merge(self%layout%parent(p), size(unit), self%layout%parent(p) > 0)
       !$omp task firstprivate(p) depend(in: unit(above)) depend(inout: unit(p))
-      call take_unit(fronts%of(p))
+      call take_unit(self%layout%of_unit%of(p))
       !$omp end task
     end do
     !$omp end single
@@ -140,10 +136,10 @@ contains
 
   contains
 
-    !> The fronts of a unit, the highest first.
+    !> Substitute in the fronts of a unit, the highest first.
     subroutine take_unit(front)
       integer, intent(in) :: front(:)
-      real(wp) :: own(maxval(self%height(front))*size(x, 2))   ! of each
+      real(wp) :: own(maxval(self%height(front))*size(x, 2))   ! of each front
       integer :: i
 
       do i = size(front), 1, -1
@@ -151,7 +147,7 @@ contains
       end do
     end subroutine take_unit
 
-    !> A front, through a matrix of its own rows.
+    !> Substitute in a front, with a matrix of its own rows.
     subroutine take_front(p, h, own)
       integer, intent(in) :: p, h
       real(wp), intent(inout) :: own(h, size(x, 2))
@@ -171,7 +167,7 @@ contains
     end subroutine take_front
   end subroutine solve_upper
 
-  !> One where others would begin after most of it is done.
+  !> Threads of a solution: one if others would begin when most of it is done.
   pure integer function solve_threads(self) result(threads)
     class(front_factor), intent(in) :: self
     integer, parameter :: many = 2000000   ! entries: 2 ms

@@ -1,17 +1,16 @@
-!> Symmetric positive definite matrices in fronts, by the multifrontal method: what `panel_matrix` does, for
-!> large systems.
+!> Symmetric positive definite matrices in fronts, factored by the multifrontal method, for large systems.
 !>
-!> The columns of front p are stored with the rows of its own equations and those that it reaches, one below
-!> the other:
+!> The columns of front p have the rows of its own equations, and below them the rows of the equations that it
+!> reaches:
 !>
 !>     x .        own equations: x: stored, .: stored but above the diagonal, never read
 !>     x x
-!>     x x        the later equations that it reaches, close together however far apart they are in the matrix
+!>     x x        later equations that it reaches, stored together
 !>     x x
 !>
-!> When they have been eliminated, what is left to the reached equations is a full matrix, stored from the
-!> diagonal down in blocks of columns, which is passed on to the parent. Where nested dissection has found the
-!> fronts, few operations are done, and all of them on full matrices.
+!> After elimination the update matrix remains, a full matrix of the reached equations, stored from the
+!> diagonal down in blocks of columns. It is added to the parent. With nested dissection there are few
+!> operations, all of them on full matrices.
 module epcont_linalg_fronts
   use epcont_base_kinds, only: i8, wp
   use epcont_linalg_assembled, only: begin_blocks, diagonal
@@ -24,12 +23,12 @@ module epcont_linalg_fronts
   public :: front_matrix
 
   type, extends(front_factor) :: front_matrix
-    logical :: once = .false.                  !! it will be factored once, else filled again in parts
+    logical :: once = .false.                   !! it is factored only once; else it is filled again in parts
     type(update_matrix), allocatable :: update(:)   !! [fronts]
-    logical, allocatable :: stale(:)           !! fronts to be filled and factored anew, by whole units
-    !> Equation that could not be eliminated in each front or below it; 0: none
+    logical, allocatable :: stale(:)           !! fronts to be filled and factored again, whole units [fronts]
+    !> Equation that could not be eliminated in each front or its descendants; 0 if there is none [fronts]
     integer, allocatable :: failed(:)
-    !> Of the sums of magnitudes of its own rows the largest [fronts]
+    !> Largest sum of magnitudes of its own rows [fronts]
     real(wp), allocatable :: largest_sum(:)
   contains
     procedure :: begin => begin_fronts
@@ -46,8 +45,8 @@ contains
   subroutine begin_fronts(self, layout, once, trailing)
     class(front_matrix), intent(inout) :: self
     type(front_layout), intent(in) :: layout   !! its fronts
-    logical, intent(in) :: once          !! it will be factored once, else filled anew in parts
-    !> Equations of the last front, which alone `find_compliance` is asked for; 0: it is not asked.
+    logical, intent(in) :: once          !! as in the type
+    !> Number of equations of the last front, for `find_compliance`; 0 if it is not called
     integer, intent(in) :: trailing
 
     self%layout = layout
@@ -59,7 +58,7 @@ contains
     call begin_blocks(self, layout%first, layout%own + layout%reached, trailing)
   end subroutine begin_fronts
 
-  !> Whatever is above a stale front is stale, too.
+  !> Mark all ancestors of stale fronts as stale.
   pure subroutine clear_fronts(self, stale)
     class(front_matrix), intent(inout) :: self
     logical, intent(inout) :: stale(:)   !! as in `assembled_matrix`
@@ -80,34 +79,10 @@ contains
     end associate
   end subroutine clear_fronts
 
-  !> The places of later equations, ascending, among the rows of a front that has them all.
-  pure function places(self, p, equation) result(place)
-    class(front_matrix), intent(in) :: self
-    integer, intent(in) :: p
-    integer, intent(in) :: equation(:)
-    integer :: place(size(equation))
-    integer :: i, k
-
-    associate (first => self%first(p), next => self%first(p + 1), n => self%columns(p), &
-               from => self%layout%rows%start(p), row => self%layout%rows%group)
-      k = from
-      do i = 1, size(equation)
-        if (equation(i) < next) then
-          place(i) = equation(i) - first + 1
-        else
-          do while (row(k) < equation(i))
-            k = k + 1
-          end do
-          place(i) = n + k - from + 1
-        end if
-      end do
-    end associate
-  end function places
-
-  !> A front of zeros and what those below it leave, for its elements.
+  !> Set a front to zero and add the update matrices of its children; its elements follow.
   subroutine open_front(self, p)
     class(front_matrix), intent(inout) :: self
-    integer, intent(in) :: p   !! whose parts below are closed
+    integer, intent(in) :: p   !! whose children are closed
     integer, allocatable :: below(:)
     integer :: i
 
@@ -127,18 +102,21 @@ contains
     end do
   end subroutine open_front
 
-  !> Add what a front leaves to the one above it: to the columns that are eliminated there, to what that will
-  !! leave, and to what goes along.
+  !> Add the update matrix of a front to its parent: to the columns that are eliminated there, to the parent's
+  !! update matrix, and to the columns along.
   pure subroutine pass_on(self, p, above)
     class(front_matrix), intent(inout) :: self
     integer, intent(in) :: p, above
-    !> Of its rows there, and the last row of those that follow on one another there, too
+    !> Places of its rows in the parent, and last row of each run of rows that are consecutive there
     integer, dimension(self%layout%reached(p)) :: place, last
     integer :: j, m
     integer(i8) :: from, into
 
     m = self%layout%reached(p)
-    place = places(self, above, self%layout%rows%of(p))
+    associate (start => self%layout%rows%start, row => self%layout%rows%group)
+      call find_places(m, row(start(p):start(p + 1) - 1), self%first(above), self%columns(above), &
+                       self%layout%reached(above), row(start(above):start(above + 1) - 1), place)
+    end associate
     do j = m, 1, -1
       last(j) = j
       if (j < m) last(j) = merge(last(min(j + 1, m)), j, place(min(j + 1, m)) == place(j) + 1)
@@ -165,11 +143,11 @@ contains
     end associate
   end subroutine pass_on
 
-  !> Add rows of a column to one of the front above: runs of them follow on one another there, too.
+  !> Add rows of a column to a column of the parent, run by run.
   pure subroutine add_rows(first, rows, place, last, less, column, above)
     integer, intent(in) :: first, rows, place(rows)
-    integer, intent(in) :: last(rows)      !! of the run that a row is in
-    integer, intent(in) :: less            !! rows of the front that its column has not
+    integer, intent(in) :: last(rows)      !! last row of each row's run
+    integer, intent(in) :: less            !! rows of the front that its column does not have
     real(wp), intent(in) :: column(first:rows)
     real(wp), intent(inout) :: above(*)
     integer :: i, k
@@ -186,8 +164,8 @@ contains
     end do
   end subroutine add_rows
 
-  !> The whole element goes to the first front that it has equations of. (An array of its size would be asked
-  !! of the heap each time, which takes as long as adding a small element.)
+  !> Add an element to the first front that has equations of it. (An automatic array would be allocated on the
+  !! heap each time, which takes as long as adding a small element.)
   pure subroutine add_to_fronts(self, n, number, k)
     class(front_matrix), intent(inout) :: self
     integer, intent(in) :: n   !! rows of the element
@@ -210,13 +188,14 @@ contains
     end associate
   end subroutine add_to_fronts
 
-  !> Add an element. To the front's own columns above the diagonal, too, which takes less than leaving it out.
+  !> Add an element. Entries above the diagonal of own columns are added too, which is faster than skipping
+  !! them.
   pure subroutine add_to_front(self, p, n, number, k, at)
     class(front_matrix), intent(inout) :: self
     integer, intent(in) :: p   !! the front
     integer, intent(in) :: n, number(n)
     real(wp), intent(in) :: k(n, n)
-    integer, intent(out) :: at(n)   !! places in the front; 0: none
+    integer, intent(out) :: at(n)   !! places in the front; 0 if the row has none
     integer :: j
     integer(i8) :: into
 
@@ -237,8 +216,8 @@ contains
     end associate
   end subroutine add_to_front
 
-  !> Places in a front of equations in any order, those that follow on the one before soonest; of number 0 and
-  !! less: 0.
+  !> Find the places of equations in a front, in any order; consecutive equations are found fastest. Equations
+  !! of number 0 and less get 0.
   pure subroutine find_places(n, number, first, own, reached, row, at)
     integer, intent(in) :: n, number(n), first, own
     integer, intent(in) :: reached, row(reached)   !! equations, ascending
@@ -255,7 +234,7 @@ contains
     end do
   end subroutine find_places
 
-  !> The place of an equation among some, ascending, that it is one of.
+  !> Find the place of an equation in an ascending list that has it.
   pure integer function place_of(equation, equations, row) result(k)
     integer, intent(in) :: equation, equations, row(equations)
     integer :: half, left
@@ -264,7 +243,7 @@ contains
     left = equations
     do while (left > 1)
       half = left/2
-      k = k + merge(half, 0, row(k + half) <= equation)   ! no branch, which could not be foretold
+      k = k + merge(half, 0, row(k + half) <= equation)   ! without a branch, which could not be predicted
       left = left - half
     end do
   end function place_of
@@ -272,8 +251,8 @@ contains
   !> Add rows of an element's column to one of a front.
   pure subroutine add_column(n, at, from, less, k, column)
     integer, intent(in) :: n, at(n)
-    integer, intent(in) :: from   !! the first row of the front that is wanted
-    integer, intent(in) :: less   !! rows of the front that its column has not
+    integer, intent(in) :: from   !! the first row of the front that is needed
+    integer, intent(in) :: less   !! rows of the front that its column does not have
     real(wp), intent(in) :: k(n)
     real(wp), intent(inout) :: column(*)
     integer :: i
@@ -283,9 +262,8 @@ contains
     end do
   end subroutine add_column
 
-  !> Add what goes along: of each column of an element the part on the diagonal (a row may share its place)
-  !! and the sum of the magnitudes. (The matrix has no larger sums: where elements meet, their entries may
-  !! cancel.)
+  !> Add to the columns along: the diagonal of an element (rows may share a place), and the sums of the
+  !! magnitudes of its columns. They bound the sums of the matrix, in which entries may cancel.
   pure subroutine add_along(n, at, k, h, along)
     integer, intent(in) :: n, at(n), h
     real(wp), intent(in) :: k(n, n)
@@ -304,10 +282,10 @@ contains
     end do
   end subroutine add_along
 
-  !> Factor a front's own columns, take what they eliminate off its update matrix.
+  !> Factor the own columns of a front, and subtract the part that they eliminate from its update matrix.
   subroutine close_front(self, p)
     class(front_matrix), intent(inout) :: self
-    integer, intent(in) :: p   !! that is filled
+    integer, intent(in) :: p   !! which is filled
 
     if (p > size(self%stale)) return
     if (.not. self%stale(p) .or. self%failed(p) > 0) return
@@ -325,7 +303,7 @@ contains
     end associate
   end subroutine close_front
 
-  !> What goes along tells the ratios of the pivots and the largest sum of the own rows.
+  !> Compute pivot ratios and the largest sum of the own rows from the columns along.
   pure subroutine close_along(h, n, own, along, ratio, largest_sum)
     integer, intent(in) :: h, n
     real(wp), intent(in) :: own(h, n), along(h, 2)
@@ -335,10 +313,10 @@ contains
     largest_sum = maxval(along(:n, 2))
   end subroutine close_along
 
-  !> All fronts are factored when they are closed.
+  !> Find the first failed equation, and the norm. All fronts are factored when they are closed.
   subroutine eliminate_fronts(self, failed)
     class(front_matrix), intent(inout) :: self
-    integer, intent(out) :: failed   !! equation that has no pivot; 0: none
+    integer, intent(out) :: failed   !! equation without a pivot; 0 if there is none
 
     failed = 0
     if (any(self%failed > 0)) failed = minval(self%failed, mask=self%failed > 0)

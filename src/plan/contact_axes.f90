@@ -1,12 +1,12 @@
-!> What the gaps ask of the nodes: which of their freedoms, and along which axes these are.
+!> DOFs that gaps depend on, and their directions.
 !>
-!> Mostly a node has one normal: the gaps depend on its displacement along that alone. So its freedoms are
-!> turned there, the first along the normal, the second a quarter turn on: only the first has to be known of
-!> the inverse of the stiffness, which is half as wide then. Where the normal is along x or y nothing is
-!> turned. Nodes with unlike normals (corners, masters of curved contact) and those whose freedoms supports or
-!> RBE2 take as they are keep both.
+!> Most contact nodes have one normal, and gaps depend only on their displacement along it. The DOFs of such a
+!> node are rotated: the first is along the normal, the second perpendicular to it. Then only the first is
+!> needed of the inverse of the stiffness, which halves its order. If the normal is along x or y, nothing is
+!> rotated. Nodes with several normals (corners, masters of curved contact), and nodes with supports or ties,
+!> keep both DOFs.
 !>
-!> The axes are known to factored bodies alone: outside all displacements and forces are in x and y.
+!> Only factored bodies use these axes: elsewhere displacements and forces are along x and y.
 module epcont_plan_contact_axes
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: directions
@@ -14,14 +14,14 @@ module epcont_plan_contact_axes
   use epcont_model_model, only: model_type
   implicit none
   private
-  public :: contact_axes, new_contact_axes
+  public :: contact_axes, followed_nodes, new_contact_axes
 
   type :: contact_axes
-    integer, allocatable :: pair(:)         !! the first pair of each node; 0: none [nodes]
-    logical, allocatable :: wanted(:, :)    !! gaps depend on the freedom [directions, nodes]
-    !> Where the normal of each node is; 0: its freedoms are x and y [nodes]
+    integer, allocatable :: pair(:)         !! the first pair of each node; 0 if there is none [nodes]
+    logical, allocatable :: wanted(:, :)    !! gaps depend on the DOF [directions, nodes]
+    !> Index of the normal of each node; 0 if its DOFs are along x and y [nodes]
     integer, allocatable :: turn(:)
-    !> Unit, along which the first freedom of a turned node is [directions, turned nodes]
+    !> Direction of the first DOF of each rotated node [directions, rotated nodes]
     real(wp), allocatable :: normal(:, :)
   contains
     procedure :: ask_nothing
@@ -30,39 +30,34 @@ module epcont_plan_contact_axes
     procedure :: turn_stiffness
   end type contact_axes
 
-  !> Sine of the angle between directions that differ by rounding alone: of two unit vectors, each component
-  !! rounded a few times. What such a normal has across the axis is left out.
+  !> Sine of the angle between unit vectors that differ only by rounding. Such components across the axis are
+  !! left out.
   real(wp), parameter :: rounding = 8*epsilon(1.0_wp)
 
 contains
 
-  !> The axes of all nodes, and what is wanted of them. Gaps without friction want the displacements along
-  !! their normals; whatever else is wanted of a pair's nodes is to be said here, in `want`.
+  !> Find the axes of all nodes. Frictionless gaps depend on displacements along their normals; further
+  !! directions of the nodes of a pair are to be added in `want`.
   function new_contact_axes(model, fixed) result(axes)
     type(model_type), intent(in) :: model   !! the scene
-    !> The freedom has no equation: a support, or SUPORT [directions, nodes]
+    !> The DOF has no equation: a support, or SUPORT [directions, nodes]
     logical, intent(in) :: fixed(:, :)
     type(contact_axes) :: axes
-    !> Along which each node is wanted first, and whether along another one too
+    !> First direction in which each node is needed, and whether another direction is needed too
     real(wp), allocatable :: first(:, :)
     logical, allocatable :: is_whole(:)
-    logical, allocatable :: leads(:)        ! others follow the node, or it has a spring
-    integer :: c, i, k, node, turned
+    logical, allocatable :: leads(:)        ! the node is a master, or has a spring
+    integer :: i, k, node, turned
 
     allocate (axes%pair(model%nodes), axes%turn(model%nodes), source=0)
-    allocate (axes%wanted(directions, model%nodes), is_whole(model%nodes), leads(model%nodes), source=.false.)
+    allocate (axes%wanted(directions, model%nodes), is_whole(model%nodes), source=.false.)
     allocate (first(directions, model%nodes))
     do k = 1, model%pairs
       do i = model%row_start(k), model%row_start(k + 1) - 1
         call want(model%row_node(i), model%normal(:, k))
       end do
     end do
-    do node = 1, model%nodes
-      do c = 1, directions
-        if (model%leader(c, node) /= node) leads(model%leader(c, node)) = .true.
-      end do
-    end do
-    leads(pack(model%sum%node, model%sum%component /= angle)) = .true.
+    leads = followed_nodes(model)
     do k = 1, size(model%spring)
       leads(pack(model%spring(k)%node, model%spring(k)%node > 0)) = .true.
     end do
@@ -81,7 +76,7 @@ contains
 
   contains
 
-    !> A gap of pair k wants the displacement of a node along a unit vector.
+    !> Record that the gap of pair k depends on the displacement of a node along a unit vector.
     subroutine want(node, direction)
       integer, intent(in) :: node
       real(wp), intent(in) :: direction(directions)
@@ -96,7 +91,23 @@ contains
     end subroutine want
   end function new_contact_axes
 
-  !> No gap asks for anything, and all freedoms are along x and y.
+  !> Is each node the master of an RBE2, or does an MPC depend on it? [nodes]
+  pure function followed_nodes(model) result(leads)
+    type(model_type), intent(in) :: model
+    logical :: leads(model%nodes)
+    integer :: c, i
+
+    leads = .false.
+    do i = 1, model%nodes
+      do c = 1, directions
+        if (model%leader(c, i) /= i) leads(model%leader(c, i)) = .true.
+      end do
+    end do
+    leads(model%platen%leader) = .true.
+    leads(pack(model%sum%node, model%sum%component /= angle)) = .true.
+  end function followed_nodes
+
+  !> Let no gap depend on any DOF, with all DOFs along x and y.
   pure subroutine ask_nothing(self)
     class(contact_axes), intent(inout) :: self
 
@@ -105,8 +116,8 @@ contains
     self%normal = self%normal(:, :0)
   end subroutine ask_nothing
 
-  !> The components of a vector along the freedoms of a node. What rounding leaves across the normal is none:
-  !! so contact forces act on freedoms that are wanted alone.
+  !> Components of a vector along the DOFs of a node. Rounding across the normal is set to zero, so that
+  !! contact forces act only on the needed DOFs.
   pure function along(self, node, vector) result(own)
     class(contact_axes), intent(in) :: self
     integer, intent(in) :: node                     !! where it acts
@@ -121,7 +132,7 @@ contains
     if (abs(own(2)) <= rounding*abs(own(1))) own(2) = 0.0_wp
   end function along
 
-  !> A vector in x and y, from its components along the freedoms of a node.
+  !> A vector in x and y, from its components along the DOFs of a node.
   pure function back(self, node, own) result(vector)
     class(contact_axes), intent(in) :: self
     integer, intent(in) :: node                     !! where it is
@@ -135,7 +146,7 @@ contains
     end associate
   end function back
 
-  !> Turn the stiffness of an element to the freedoms of its nodes.
+  !> Rotate the stiffness of an element to the DOFs of its nodes.
   pure subroutine turn_stiffness(self, node, n, k)
     class(contact_axes), intent(in) :: self
     integer, intent(in) :: node(:)                  !! of the element, n/2 and more

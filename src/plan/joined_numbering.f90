@@ -1,9 +1,9 @@
-!> Numbers of the equations of all bodies as one system, where pairs join them (`linear/joined_rule.f90`).
-!> SUPORT freedoms have equations too, and what gaps depend on stands where the dissection has it.
+!> Equation numbers of all bodies as one system, joined by pairs (`linear/joined_contact.f90`). SUPORT DOFs
+!> have equations too, and contact DOFs have the order of the dissection.
 !>
-!> A spring of this system is one of a pair, of a SUPORT freedom or of the scene: a row of weights, whose
-!> product with itself, times a stiffness, is added to the matrix. Dependent freedoms (MPC, RBE2 that turns)
-!> are sums of equations: elements and springs at them act on these.
+!> A spring of this system belongs to a pair, a SUPORT DOF or the model. It is a row of weights. The outer
+!> product of the row with itself, times a stiffness, is added to the matrix. Dependent DOFs (MPC, rotating
+!> RBE2) are sums of equations: elements and springs at them act on these equations.
 module epcont_plan_joined_numbering
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
@@ -12,6 +12,7 @@ module epcont_plan_joined_numbering
   use epcont_model_arrays, only: angle
   use epcont_model_model, only: model_type
   use epcont_plan_border, only: add_sums
+  use epcont_plan_contact_axes, only: followed_nodes
   use epcont_plan_dissection, only: dissect, dissection
   implicit none
   private
@@ -19,28 +20,29 @@ module epcont_plan_joined_numbering
 
 contains
 
-  !> Number all free freedoms in nested fronts: first those into which nothing is eliminated that pairs and
-  !! SUPORT freedoms act on. Freedoms that others follow, which are coupled with whole lines of nodes, come
-  !! last, with the angles of RBE2 that turn.
+  !> Number all free DOFs in nested fronts: first the fronts into which no DOFs of pairs and SUPORT are
+  !! eliminated. Master DOFs, which are coupled with whole lines of nodes, come last, with the angles of
+  !! rotating RBE2.
   subroutine number_joined(model, equation, angles, tied, node, first, first_contact)
     type(model_type), intent(in) :: model   !! the scene
-    !> Of each freedom; of a tied one that of its leader; 0: held; negative: a row of `tied`
-    !! [directions, nodes]
+    !> Of each DOF; that of its master if it is tied; 0 if fixed; negative: a row of `tied` [directions,
+    !! nodes]
     integer, allocatable, intent(out) :: equation(:, :)
-    integer, intent(out) :: angles(:)                !! equation of each angle; 0: held [platens]
-    type(sparse_rows), intent(out) :: tied           !! freedoms that are sums of equations
+    integer, intent(out) :: angles(:)                !! equation of each angle; 0 if fixed [platens]
+    type(sparse_rows), intent(out) :: tied           !! DOFs that are sums of equations
     integer, allocatable, intent(out) :: node(:)     !! in the order of elimination [nodes]
-    integer, allocatable, intent(out) :: first(:)    !! equation of each front, and one behind [fronts + 1]
-    integer, intent(out) :: first_contact            !! first equation of the others
+    integer, allocatable, intent(out) :: first(:)    !! equation of each front, and one more [fronts + 1]
+    integer, intent(out) :: first_contact            !! first equation of the other fronts
     type(dissection) :: found
-    integer :: springs(0:model%nodes)   ! nodes that they act on so far in the order
-    logical, allocatable :: acted(:)    ! springs act on what is eliminated into the front
+    integer :: springs(0:model%nodes)   ! number of nodes with springs, up to a position in the order
+    logical, allocatable :: acted(:)    ! pairs or SUPORT act on the node, or in the front
     integer, allocatable :: order(:)    ! of the fronts
     integer :: apart, begun, i, last, p
 
     found = dissect(model, 2.0_wp*model%x(1, :) + model%x(2, :), [(i, i=1, model%nodes)], &
                     followed_nodes(model), new_incidence(model%nodes_of_pairs(), model%nodes))
-    acted = acted_on(model)
+    acted = any(model%reference, dim=1)
+    acted(model%row_node) = .true.
     springs(0) = 0
     do i = 1, model%nodes
       springs(i) = springs(i - 1) + merge(1, 0, acted(found%node(i)))
@@ -75,7 +77,7 @@ contains
 
   contains
 
-    !> The free freedoms of a node are next, and the angle that it leads.
+    !> Number the free DOFs of a node, and its angle if it is the master of an RBE2.
     subroutine number_node(own)
       integer, intent(in) :: own
       integer :: c, k
@@ -93,11 +95,11 @@ contains
     end subroutine number_node
   end subroutine number_joined
 
-  !> The equations that the freedoms of an element are sums of: of each term the equation, the freedom among
-  !! those of the element, and its weight.
+  !> Find the equations of which the DOFs of an element are sums: for each term the equation, the DOF of the
+  !! element, and the weight.
   pure subroutine find_terms(tied, number, equation, freedom, weight)
     type(sparse_rows), intent(in) :: tied     !! sums
-    integer, intent(in) :: number(:)          !! of each freedom: an equation, 0, or negative: a sum
+    integer, intent(in) :: number(:)          !! of each DOF: an equation, 0, or minus a sum
     integer, allocatable, intent(out) :: equation(:), freedom(:)   !! [terms]
     real(wp), allocatable, intent(out) :: weight(:)                !! [terms]
     integer :: i
@@ -117,40 +119,15 @@ contains
     end do
   end subroutine find_terms
 
-  !> Do pairs or SUPORT freedoms act on each node? [nodes]
-  pure function acted_on(model) result(acts)
-    type(model_type), intent(in) :: model
-    logical :: acts(model%nodes)
-
-    acts = any(model%reference, dim=1)
-    acts(model%row_node) = .true.
-  end function acted_on
-
-  !> Do others follow each node? [nodes]
-  pure function followed_nodes(model) result(leads)
-    type(model_type), intent(in) :: model
-    logical :: leads(model%nodes)
-    integer :: c, i
-
-    leads = .false.
-    do i = 1, model%nodes
-      do c = 1, directions
-        if (model%leader(c, i) /= i) leads(model%leader(c, i)) = .true.
-      end do
-    end do
-    leads(model%platen%leader) = .true.
-    leads(pack(model%sum%node, model%sum%component /= angle)) = .true.
-  end function followed_nodes
-
-  !> Springs of all pairs, then of all SUPORT freedoms, node by node and angles behind, and of the scene.
+  !> List the springs of all pairs, of all SUPORT DOFs (by nodes, then angles), and of the model.
   type(sparse_rows) function spring_rows(model, equation, angles, tied) result(spring)
     type(model_type), intent(in) :: model    !! the scene
-    integer, intent(in) :: equation(:, :)    !! of each freedom, as `number_joined` has it [directions, nodes]
+    integer, intent(in) :: equation(:, :)    !! from `number_joined` [directions, nodes]
     integer, intent(in) :: angles(:)         !! the same [platens]
     type(sparse_rows), intent(in) :: tied    !! the same
     integer :: i, k, last, longest, row
 
-    longest = maxval([1, tied%start(2:) - tied%start(:size(tied%start) - 1)])   ! entries of a freedom
+    longest = maxval([1, tied%start(2:) - tied%start(:size(tied%start) - 1)])   ! entries of a DOF
     associate (suports => count(model%reference) + count(model%platen%reference))
       allocate (spring%start(model%pairs + suports + size(model%spring) + 1), source=1)
       k = longest*(directions*size(model%row_node) + suports + 2*size(model%spring))
@@ -183,7 +160,7 @@ contains
 
   contains
 
-    !> One more entry of a row, or all of a sum; none if the freedom is held.
+    !> Add an entry to a row, or all entries of a sum; none if the DOF is fixed.
     recursive subroutine put(number, weight)
       integer, intent(in) :: number
       real(wp), intent(in) :: weight
@@ -201,7 +178,7 @@ contains
       spring%weight(last) = weight
     end subroutine put
 
-    !> Entries from now on are of the next row.
+    !> Begin the next row.
     subroutine end_row()
       row = row + 1
       spring%start(row + 1) = last + 1
