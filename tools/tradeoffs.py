@@ -220,7 +220,7 @@ REMOVED = [
      "a second way to the same bits, 300 lines; its exchanges remain as the rescue of the simplex, its interior path in joined bodies. Rows of BLOCK in the "
      "other tables of this page are of the program before"],
     ["flexibility in levels: F and its factor as block tridiagonal matrices, unit loads passed from level to level",
-     "stack of `tools/decks` (30 bodies, 42 000 nodes) 0.43 s and 158 MB, now 0.68 s and 209 MB (JOINED); 1 000 small bodies 0.66, 0.74 s; walls the other way: "
+     "stack of `tools/decks` (30 bodies, 42 000 nodes) 0.43 s and 158 MB, now 0.65 s and 208 MB (JOINED; with CONRY 1.04 s and 173 MB); 1 000 small bodies 0.66, 0.74 s; walls the other way: "
      "16 x 16 bricks 0.57 s and 66 MB, now 0.16 s and 26 MB",
      "900 lines; many bodies are joined, which takes springs, MPC and undetermined modes now"],
     ["PARAM PRECIS: factors in single precision, refined (MIXED) or not (SINGLE)",

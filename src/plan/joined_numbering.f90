@@ -1,4 +1,4 @@
-!> Equation numbers of all bodies as one system, joined by pairs (`linear/joined_contact.f90`). SUPORT DOFs
+!> Equation numbers of all bodies as one system, joined by pairs (`linear/joined_rule.f90`). SUPORT DOFs
 !> have equations too, and contact DOFs have the order of the dissection.
 !>
 !> A spring of this system belongs to a pair, a SUPORT DOF or the model. It is a row of weights. The outer
