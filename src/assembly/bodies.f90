@@ -1,4 +1,4 @@
-!> The bodies with a linear law, factored, and displacements under nodal forces.
+!> Factored bodies with a linear law, and displacements under nodal forces.
 module epcont_assembly_bodies
   use epcont_assembly_stiffness, only: body_stiffness, spring_set
   use epcont_assembly_strain_operator, only: new_strain_operator, strain_operator
@@ -15,20 +15,20 @@ module epcont_assembly_bodies
   private
   public :: factored_bodies, force_fields, half_solved_body, new_bodies, prescribe, weak_pivot
 
-  !> The pivot that has lost most of its digits to rounding.
+  !> The pivot that lost most digits to rounding.
   type :: weak_pivot
     real(wp) :: ratio = 1.0_wp    !! to its diagonal entry
-    integer :: body = 0           !! 0: all bodies are rigid
+    integer :: body = 0           !! 0 if all bodies are rigid
   end type weak_pivot
 
-  !> A body's equations under forces, halfway solved.
+  !> Forces on a body after forward substitution.
   type :: half_solved_body
     logical :: loaded = .false.            !! there are any forces
     real(wp), allocatable :: inner(:, :)   !! [equations, 1]
     real(wp), allocatable :: border(:, :)  !! [border, 1]
   end type half_solved_body
 
-  !> Several fields of forces on some nodes, one of which may stand there twice.
+  !> Several fields of forces on some nodes; a node may occur twice.
   type :: force_fields
     integer, allocatable :: node(:)          !! [loaded nodes]
     real(wp), allocatable :: force(:, :, :)  !! [force] [directions, fields, loaded nodes]
@@ -36,11 +36,11 @@ module epcont_assembly_bodies
 
   type :: factored_bodies
     type(strain_operator) :: operator
-    type(linear_law) :: law                    !! of the next factors, or the last
-    type(spring_set) :: spring                 !! of joined bodies; of the next factor, or the last
-    type(body_stiffness), allocatable :: body(:)   !! as they are numbered
-    integer :: factorizations = 0              !! done so far, of bodies that have equations
-    !> Forces of prescribed displacements on free freedoms [directions, nodes]
+    type(linear_law) :: law                    !! of the next or the last factors
+    type(spring_set) :: spring                 !! of joined bodies, of the next or the last factor
+    type(body_stiffness), allocatable :: body(:)   !! bodies of the numbering
+    integer :: factorizations = 0              !! number so far, of bodies with equations
+    !> Forces of prescribed displacements on free DOFs [directions, nodes]
     real(wp), allocatable :: settlement(:, :)
   contains
     procedure :: factor_system
@@ -55,9 +55,9 @@ module epcont_assembly_bodies
 
 contains
 
-  !> Bodies with room for their factors, without a law.
+  !> Make bodies without factors and law.
   function new_bodies(scene) result(bodies)
-    type(planned_model), intent(in) :: scene   !! with the numbers of its equations
+    type(planned_model), intent(in) :: scene   !! with equation numbers
     type(factored_bodies) :: bodies
 
     bodies%operator = new_strain_operator(scene%model)
@@ -65,11 +65,11 @@ contains
     allocate (bodies%settlement(directions, scene%model%nodes), source=0.0_wp)
   end function new_bodies
 
-  !> Factor bodies that are joined, as far as law or springs have changed.
+  !> Factor joined bodies, as far as law or springs have changed.
   subroutine factor_system(self, scene, threads)
     class(factored_bodies), intent(inout) :: self
-    type(planned_model), intent(in) :: scene   !! that they are of
-    integer, intent(in) :: threads             !! that share the fronts
+    type(planned_model), intent(in) :: scene
+    integer, intent(in) :: threads             !! which share the fronts
 
     !$omp parallel num_threads(threads) if (threads > 1)
     call use_one_thread_each()
@@ -83,10 +83,10 @@ contains
     self%spring%changed = .false.
   end subroutine factor_system
 
-  !> Forces of the prescribed displacements: minus K_fp u_p on the free freedoms.
+  !> Compute the forces of the prescribed displacements: -K_fp u_p on the free DOFs.
   subroutine settle(self, scene)
     class(factored_bodies), intent(inout) :: self
-    type(planned_model), intent(in) :: scene   !! that they are of
+    type(planned_model), intent(in) :: scene
     real(wp), allocatable :: prescribed(:, :)
 
     self%settlement = 0.0_wp
@@ -99,10 +99,9 @@ contains
       self%settlement = self%settlement - spring_forces(scene%model, prescribed)
   end subroutine settle
 
-  !> Put a part of the prescribed displacements in its place. Freedoms that are sums follow; nothing else is
-  !! touched.
+  !> Set a part of the prescribed displacements, and the DOFs that are sums. Other DOFs stay as they are.
   pure subroutine prescribe(scene, load_factor, displacement)
-    type(planned_model), intent(in) :: scene        !! that has them
+    type(planned_model), intent(in) :: scene
     real(wp), intent(in) :: load_factor             !! of the prescribed displacements
     real(wp), intent(inout) :: displacement(:, :)   !! [length] [directions, nodes]
     real(wp) :: turned(size(scene%model%platen))    ! [radian]
@@ -143,11 +142,10 @@ contains
     end function sum_of_terms
   end subroutine prescribe
 
-  !> Estimate of the condition of the stiffness in the 1-norm: the largest of the bodies. What has yielded is
-  !! not as stiff as it was when it was assembled first.
+  !> Estimate the condition of the stiffness in the 1-norm: the largest of all bodies.
   subroutine estimate_condition(self, condition)
     class(factored_bodies), intent(inout) :: self
-    real(wp), intent(out) :: condition         !! 1 where all bodies are rigid
+    real(wp), intent(out) :: condition         !! 1 if all bodies are rigid
     integer :: b
 
     condition = 1.0_wp
@@ -158,8 +156,8 @@ contains
     if (allocated(self%spring%stiffness)) condition = condition*self%spring%norm/self%body(1)%matrix%norm
   end subroutine estimate_condition
 
-  !> The weakest pivot of all bodies. Of joined ones none is: springs make pivots small, and steps follow
-  !! until nothing changes.
+  !> Find the weakest pivot of all bodies. Joined bodies have none: springs make pivots small, and refinement
+  !! follows.
   pure type(weak_pivot) function weakest(self)
     class(factored_bodies), intent(in) :: self
     integer :: b
@@ -169,11 +167,11 @@ contains
     if (self%body(b)%smallest_ratio < weakest%ratio) weakest = weak_pivot(self%body(b)%smallest_ratio, b)
   end function weakest
 
-  !> Displacements under nodal forces and a part of the prescribed displacements, SUPORT freedoms at zero
+  !> Displacements under nodal forces and a part of the prescribed displacements, SUPORT DOFs at zero
   !! [directions, nodes].
   function displacements(self, scene, force, load_factor) result(u)
     class(factored_bodies), intent(in) :: self
-    type(planned_model), intent(in) :: scene   !! with the numbers of its equations
+    type(planned_model), intent(in) :: scene   !! with equation numbers
     real(wp), intent(in) :: force(:, :)  !! [directions, nodes]
     real(wp), intent(in) :: load_factor  !! of the prescribed displacements
     real(wp), allocatable :: u(:, :)

@@ -1,18 +1,17 @@
-!> Panels of a variable-band matrix: where each begins and how high it is, the memory they take and the
-!> operations.
+!> Panels of a variable-band matrix: their columns and heights, memory and operations.
 module epcont_linalg_panel_layout
   use epcont_base_kinds, only: i8, wp
   implicit none
   private
   public :: panel_layout, new_panel_layout
 
-  !> Columns of a panel, as a part of the mean height, and at least and at most.
+  !> Mean height over columns of a panel, and least and largest number of columns.
   integer, parameter :: heights_a_width = 4, least_width = 16, most_width = 64
 
   type :: panel_layout
     integer :: width = least_width       !! columns of a panel; the last may have fewer
     integer, allocatable :: first(:)     !! column of each panel [panels + 1]
-    integer, allocatable :: height(:)    !! rows of each, from its first column's on [panels]
+    integer, allocatable :: height(:)    !! rows of each, from that of its first column on [panels]
   contains
     procedure :: entries
     procedure :: operations
@@ -21,10 +20,10 @@ module epcont_linalg_panel_layout
 
 contains
 
-  !> The panels of a matrix. Their last rows never go back where they overlap, so that the factor fills what
-  !! is stored.
+  !> Lay out the panels of a matrix. If panels overlap, their last rows never decrease, so the factor fills
+  !! the stored part.
   pure function new_panel_layout(profile) result(layout)
-    integer, intent(in) :: profile(:)      !! the last row that each column is coupled with [order]
+    integer, intent(in) :: profile(:)      !! last row coupled with each column [order]
     type(panel_layout) :: layout
     integer(i8) :: heights
     integer :: first, last, next, p, panels
@@ -46,14 +45,14 @@ contains
     end do
   end function new_panel_layout
 
-  !> Entries that the factor takes.
+  !> Entries of the factor.
   pure integer(i8) function entries(self)
     class(panel_layout), intent(in) :: self
 
     entries = sum(int(self%height, i8)*columns(self))
   end function entries
 
-  !> Operations that the factorization takes.
+  !> Operations of the factorization.
   pure real(wp) function operations(self)
     class(panel_layout), intent(in) :: self
 
@@ -63,7 +62,7 @@ contains
   !> Operations of `find_compliance`.
   pure real(wp) function compliance_operations(self, begins) result(operations)
     class(panel_layout), intent(in) :: self
-    integer, intent(in) :: begins(:)     !! the first equation of each row of N
+    integer, intent(in) :: begins(:)     !! first equation of each row of N
     integer :: active, p
 
     operations = 0.0_wp

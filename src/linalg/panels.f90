@@ -1,14 +1,14 @@
 !> Symmetric positive definite matrices in panels of columns, each with its own height: blocked variable-band
 !> Cholesky.
 !>
-!> The lower triangle is stored panel by panel: panel p has the columns first(p) to first(p+1)-1, and for all
-!> of them the rows from first(p) to last(p), column by column from entries(start(p)) on. The last rows never
-!> go back where panels overlap, so the factor fills what is stored and nothing else:
+!> The lower triangle is stored panel by panel. Panel p has the columns first(p) to first(p+1)-1, with the
+!> rows from first(p) to last(p), column by column from entries(start(p)) on. If panels overlap, their last
+!> rows never decrease, so the factor fills exactly the stored part:
 !>
 !>     x .        x: stored, .: stored but above the diagonal, never read
 !>     x x
-!>     x x x .    Of a plain band all panels have the height of the highest; here that of their own:
-!>         x x    about half the operations on graded meshes.
+!>     x x x .    In a plain band all panels have the height of the highest. With own heights, graded
+!>         x x    meshes take about half the operations.
 !>         x x
 module epcont_linalg_panels
   use epcont_base_kinds, only: i8, wp
@@ -23,8 +23,8 @@ module epcont_linalg_panels
 
   type, extends(assembled_matrix) :: panel_matrix
     integer :: width = 1     !! columns of a panel; the last may have fewer
-    integer :: kept = 0   !! panels at the front whose factor stands: the others are filled and factored anew
-    real(wp), allocatable :: row_sum(:)   !! of magnitudes, element by element [order]
+    integer :: kept = 0   !! first panels that stay factored; the others are filled and factored again
+    real(wp), allocatable :: row_sum(:)   !! sums of magnitudes, element by element [order]
   contains
     procedure :: begin => begin_panels
     procedure :: clear => clear_panels
@@ -40,8 +40,8 @@ contains
   !> Begin a matrix of zeros.
   subroutine begin_panels(self, layout, trailing)
     class(panel_matrix), intent(inout) :: self
-    type(panel_layout), intent(in) :: layout   !! where its panels begin and how high they are
-    !> Last equations, the only ones that `find_compliance` is asked for; 0: any.
+    type(panel_layout), intent(in) :: layout   !! its panels
+    !> Number of last equations that `find_compliance` may use; 0 if all
     integer, intent(in) :: trailing
 
     self%width = layout%width
@@ -49,7 +49,7 @@ contains
     call begin_blocks(self, layout%first, layout%height, trailing)
   end subroutine begin_panels
 
-  !> Whatever stands behind the first stale column is stale, too.
+  !> Mark all columns after the first stale one as stale.
   pure subroutine clear_panels(self, stale)
     class(panel_matrix), intent(inout) :: self
     logical, intent(inout) :: stale(:)   !! as in `assembled_matrix`
@@ -60,7 +60,7 @@ contains
     self%row_sum(self%first(self%kept + 1):) = 0.0_wp
   end subroutine clear_panels
 
-  !> Entries go to the panel of their column; those of panels that are kept are left out.
+  !> Add entries to the panel of their column, unless the panel is kept.
   pure subroutine add_to_panels(self, n, number, k)
     class(panel_matrix), intent(inout) :: self
     integer, intent(in) :: n   !! rows of the element
@@ -73,7 +73,7 @@ contains
       if (number(j) <= 0) cycle
       p = (number(j) - 1)/self%width + 1
       if (p <= self%kept) cycle
-      ! Where row 0 of the column would be
+      ! Position of row 0 of the column
       above = self%start(p) + int(number(j) - self%first(p), i8)*self%height(p) - self%first(p)
       do i = 1, n
         if (number(i) >= number(j)) then
@@ -84,11 +84,10 @@ contains
     end do
   end subroutine add_to_panels
 
-  !> Panel by panel: what those before eliminate from it is taken off, and it is factored. Thus each is
-  !! brought from memory once.
+  !> Factor panel by panel, after subtracting the part that earlier panels eliminate. So each is read once.
   subroutine eliminate_panels(self, failed)
     class(panel_matrix), intent(inout) :: self
-    integer, intent(out) :: failed   !! equation that has no pivot; 0: none
+    integer, intent(out) :: failed   !! equation without a pivot; 0 if there is none
     real(wp), allocatable :: given(:)
     integer :: before, p, q
 
@@ -108,12 +107,12 @@ contains
     self%norm = maxval(self%row_sum)
   end subroutine eliminate_panels
 
-  !> Factor a panel that those before have been taken off.
+  !> Factor a panel after all subtractions.
   pure subroutine factor_panel(self, p, given, failed)
     class(panel_matrix), intent(inout) :: self
     integer, intent(in) :: p
     real(wp), intent(in) :: given(:)    !! diagonal of the matrix in these columns
-    integer, intent(out) :: failed      !! equation that has no pivot; 0: none
+    integer, intent(out) :: failed      !! equation without a pivot; 0 if there is none
 
     associate (h => self%height(p), w => self%columns(p), s => self%start(p), f => self%first(p))
       call dpotrf('L', w, self%entries(s), h, failed)
@@ -126,7 +125,7 @@ contains
     end associate
   end subroutine factor_panel
 
-  !> Take off a panel what a factored one before it, which reaches it, eliminates from it.
+  !> Subtract from a panel the part that a factored panel, which reaches it, eliminates.
   pure subroutine take_off(self, factored, p)
     class(panel_matrix), intent(inout) :: self
     integer, intent(in) :: factored, p
@@ -146,7 +145,7 @@ contains
     end associate
   end subroutine take_off
 
-  !> Each panel is taken from memory once, for all right-hand sides.
+  !> Forward substitution. Each panel is read once, for all right-hand sides.
   subroutine solve_lower(self, x)
     class(panel_matrix), intent(in) :: self
     real(wp), contiguous, intent(inout) :: x(:, :)
@@ -158,7 +157,7 @@ contains
     end do
   end subroutine solve_lower
 
-  !> The same the other way.
+  !> Backward substitution.
   subroutine solve_upper(self, x, first)
     class(panel_matrix), intent(in) :: self
     real(wp), contiguous, intent(inout) :: x(:, :)
@@ -171,13 +170,13 @@ contains
     end do
   end subroutine solve_upper
 
-  !> All rows of a panel follow on one another in the right-hand sides, too.
+  !> Substitute with one panel, whose rows are consecutive in the right-hand sides too.
   pure subroutine take_panel(self, p, forwards, sides, x)
     class(panel_matrix), intent(in) :: self
     integer, intent(in) :: p   !! the panel
-    logical, intent(in) :: forwards   !! with L; else with its transpose
+    logical, intent(in) :: forwards   !! with L, otherwise with its transpose
     integer, intent(in) :: sides   !! right-hand sides
-    real(wp), intent(inout) :: x(self%order, sides)   !! these, then what comes of them [order, sides]
+    real(wp), intent(inout) :: x(self%order, sides)   !! right-hand sides, then results [order, sides]
 
     associate (h => self%height(p), w => self%columns(p), s => self%start(p), f => self%first(p))
       if (forwards) then
@@ -188,9 +187,9 @@ contains
     end associate
   end subroutine take_panel
 
-  !> By inversion where only the last equations are asked for. For any equations by forward substitution: with
-  !! X = L^-1 N', taken panel by panel through a window as high as the highest, N K^-1 N' is X'X: no
-  !! right-hand side is touched before its first equation, and none is ever stored whole.
+  !> Invert the trailing block if only the last equations are needed. For any equations, use forward
+  !! substitution: with X = L^-1 N', N K^-1 N' is X'X. X passes panel by panel through a window as high as the
+  !! highest panel. Work on a right-hand side begins at its first equation, and none is stored whole.
   pure subroutine find_panel_compliance(self, rows, compliance)
     class(panel_matrix), intent(in) :: self
     type(sparse_rows), intent(in) :: rows   !! N
@@ -232,8 +231,7 @@ contains
     end do
   end subroutine find_panel_compliance
 
-  !> Take those right-hand sides that have begun through a panel, add what they have there to X'X, and move
-  !! the window on.
+  !> Substitute with a panel for the active right-hand sides, add their part to X'X, and move the window.
   pure subroutine pass_window(self, p, active, high, n, window, product)
     class(panel_matrix), intent(in) :: self
     integer, intent(in) :: p, active, high, n

@@ -1,10 +1,10 @@
-!> Right-hand sides that begin at ascending rows, and their products: each column is zero before its row, and
-!> what is zero is left out. So L^-1 B and its product with itself take a third of the operations each, the
-!> two together as many as the inverse of LL'.
+!> Right-hand sides that begin at ascending rows, and their products. Zeros before these rows are left out, so
+!> L^-1 B and its product with itself take a third of the operations each, together as many as the inverse of
+!> LL'.
 !>
 !>     x
 !>     x x
-!>     x x x        columns are taken in blocks, each from the row that its first column begins at
+!>     x x x        a block of columns begins at the first row of its first column
 !>     x x x x
 module epcont_linalg_staircase
   use epcont_base_kinds, only: wp
@@ -13,8 +13,8 @@ module epcont_linalg_staircase
   private
   public :: solve_staircase, multiply_staircase
 
-  !> Columns of a block: with fewer the products are not at their rate, with more nothing is left out (level
-  !! from 64 to 192, of 500 to 3 000 columns).
+  !> Columns of a block: with fewer the products are slow, with more no zeros are left out (the same time from
+  !! 64 to 192, for 500 to 3 000 columns).
   integer, parameter :: width = 96
 
 contains
@@ -23,7 +23,7 @@ contains
   pure subroutine solve_staircase(n, l, begins, x)
     integer, intent(in) :: n             !! rows
     real(wp), intent(in) :: l(n, n)      !! lower triangle
-    integer, intent(in) :: begins(:)     !! the row that each column begins at, ascending, n + 1 at most
+    integer, intent(in) :: begins(:)     !! first row of each column, ascending, at most n + 1
     real(wp), intent(inout) :: x(n, *)   !! [n, columns]
     integer :: columns, first
 
@@ -35,12 +35,12 @@ contains
     end do
   end subroutine solve_staircase
 
-  !> X'X, its columns put in another order.
+  !> Compute X'X, with its columns in another order.
   pure subroutine multiply_staircase(n, x, begins, place, product)
     integer, intent(in) :: n             !! rows
     real(wp), intent(in) :: x(n, *)      !! [n, columns]
-    integer, intent(in) :: begins(:)     !! the row that each column begins at, ascending, n + 1 at most
-    integer, intent(in) :: place(:)      !! of each column in the product, which is a permutation
+    integer, intent(in) :: begins(:)     !! first row of each column, ascending, at most n + 1
+    integer, intent(in) :: place(:)      !! position of each column in the product
     real(wp), intent(out) :: product(:, :)   !! lower triangle, zeros above it [columns, columns]
     real(wp), allocatable :: rows(:, :)  ! of the product, columns from the first on
     integer :: first, i, j, last

@@ -1,5 +1,5 @@
-!> Unknowns of a body that are kept out of its band or fronts, since each may be coupled with a whole line of
-!> nodes: what others follow (RBE2, MPC), the angles of platens that turn, the ends of springs.
+!> Unknowns of a body that are kept out of its band or fronts, because each may be coupled with a whole line
+!> of nodes: master DOFs (RBE2, MPC), angles of rotating platens, and ends of springs.
 module epcont_plan_border
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: directions
@@ -12,16 +12,16 @@ module epcont_plan_border
 
 contains
 
-  !> Number the border of a body; what is free and not in it has the number 0 still.
+  !> Number the border of a body. Other free DOFs keep the number 0.
   subroutine number_border(model, own, equation, border, tied)
-    type(model_type), intent(in) :: model        !! the scene
+    type(model_type), intent(in) :: model
     integer, intent(in) :: own(:)                !! nodes of the body
-    !> Of each freedom: minus its row of `tied` [directions, nodes]
+    !> Minus the row of `tied` of each DOF [directions, nodes]
     integer, intent(inout) :: equation(:, :)
     integer, intent(out) :: border               !! unknowns
-    !> Sums of these, which freedoms are; the first are each one of them
+    !> Sums of these that DOFs are; the first rows are each one of them
     type(sparse_rows), intent(out) :: tied
-    integer :: angles(size(model%platen))        ! their numbers
+    integer :: angles(size(model%platen))        ! number of each angle; 0 if it has none
     integer :: c, i
 
     equation(:, own) = 0
@@ -47,7 +47,7 @@ contains
 
   contains
 
-    !> What a freedom follows.
+    !> Take the masters of a DOF.
     subroutine take_leaders(c, node)
       integer, intent(in) :: c, node
       integer :: i
@@ -61,7 +61,7 @@ contains
       end do
     end subroutine take_leaders
 
-    !> Both ends of a spring, or what they follow, which is there already.
+    !> Take both ends of a spring; masters of its ends are in the border already.
     subroutine take_ends(k)
       integer, intent(in) :: k
       integer :: i
@@ -74,30 +74,20 @@ contains
       end do
     end subroutine take_ends
 
-    !> A freedom, or the angle of a platen, is of the border if it is free.
+    !> Put a DOF, or the angle of a platen, in the border if it is free.
     subroutine take(c, node)
       integer, intent(in) :: c, node
 
       if (.not. is_free(model, c, node)) return
-      if (number_of(c, node) > 0) return
-      border = border + 1
       if (c == angle) then
+        if (angles(node) > 0) return
+        border = border + 1
         angles(node) = border
-      else
+      else if (equation(c, node) == 0) then
+        border = border + 1
         equation(c, node) = -border
       end if
     end subroutine take
-
-    !> The number of one; 0: it has none.
-    integer function number_of(c, node) result(number)
-      integer, intent(in) :: c, node
-
-      if (c == angle) then
-        number = angles(node)
-      else
-        number = -equation(c, node)
-      end if
-    end function number_of
   end subroutine number_border
 
   !> Append a row for each DOF of some nodes that is a sum. A sum in which nothing is free gets none.
@@ -148,10 +138,10 @@ contains
     tied%weight = tied%weight(:entries)
   end subroutine add_sums
 
-  !> Is a freedom, or the angle of a platen, one that an equation is solved for? It is no part of a sum.
+  !> Is a DOF, or the angle of a platen, an unknown? It is not a sum itself.
   pure logical function is_free(model, component, node)
     type(model_type), intent(in) :: model
-    integer, intent(in) :: component, node   !! 1: x, 2: y; `angle`: of the platen of that number
+    integer, intent(in) :: component, node   !! component 1: x, 2: y; `angle`: of the platen with this number
 
     if (component == angle) then
       is_free = .not. (model%platen(node)%held .or. model%platen(node)%reference)

@@ -1,8 +1,8 @@
-!> Rigid motions that supports leave free, and the SUPORT freedoms that measure them.
+!> Rigid-body modes that supports leave free, and the SUPORT DOFs that measure them.
 !>
-!> Found before anything is factored, since a Cholesky factorization calls many singular matrices definite.
-!> The free motions of a body are the null space of one matrix: three columns a rigid part, a row for each
-!> hinge, tie and support.
+!> They are found before any factorization, because Cholesky factorization succeeds for many singular
+!> matrices. The modes of a body are the null space of one matrix, with three columns for each rigid part, and
+!> a row for each hinge, tie and support.
 module epcont_plan_free_motion
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
@@ -20,18 +20,18 @@ module epcont_plan_free_motion
   private
   public :: free_motions, find_free_motions
 
-  !> SUPORT freedoms that measure the motions with a condition above this are too close to each other: six
+  !> Largest condition with which SUPORT DOFs measure modes. Nodes too close to each other exceed it: six
   !! digits of the displacements would be lost.
   real(wp), parameter :: largest_condition = 1.0e6_wp
 
-  !> The free motions of all bodies.
+  !> Rigid-body modes of all bodies.
   type :: free_motions
     integer :: count = 0
-    integer, allocatable :: body(:), node(:), component(:)  !! of each motion: body, SUPORT freedom [count]
-    !> First of each body: they end before that of the next [bodies + 1]
+    integer, allocatable :: body(:), node(:), component(:)  !! of each mode: body, SUPORT DOF [count]
+    !> First mode of each body [bodies + 1]
     integer, allocatable :: first(:)
     type(rigid_parts) :: parts
-    !> Of x, y, turn of each part of its body in each motion, and the columns before those of a motion
+    !> Displacements and rotation of each part in each mode, and number of columns before those of a mode
     !! [part_motions, any], [count]
     real(wp), allocatable, private :: coefficient(:, :)
     integer, allocatable, private :: before(:)
@@ -45,11 +45,11 @@ module epcont_plan_free_motion
 
 contains
 
-  !> Add rigid motions to displacements.
+  !> Add rigid-body displacements.
   subroutine add(self, model, motion, displacement)
     class(free_motions), intent(in) :: self
     type(model_type), intent(in) :: model              !! the scene
-    real(wp), intent(in) :: motion(:)                  !! how far each goes [count]
+    real(wp), intent(in) :: motion(:)                  !! amplitude of each mode [count]
     real(wp), intent(inout) :: displacement(:, :)      !! [length] [directions, nodes]
     integer :: k, node
 
@@ -64,11 +64,11 @@ contains
     !$omp end parallel do
   end subroutine add
 
-  !> Displacement of a node in unit motion k.
+  !> Displacement of a node in mode k with amplitude one.
   pure function displacement(self, model, node, k) result(u)
     class(free_motions), intent(in) :: self
     type(model_type), intent(in) :: model   !! the scene
-    integer, intent(in) :: node, k   !! the node, and the number of the motion
+    integer, intent(in) :: node, k   !! node, and number of the mode
     real(wp) :: u(directions)
 
     u = 0.0_wp
@@ -78,18 +78,17 @@ contains
     end associate
   end function displacement
 
-  !> By how much the part of a node turns in a motion of its body: what a place at the body's extent from its
-  !! centre moves by [length].
+  !> Rotation of the part of a node in a mode, times the extent of the body [length].
   pure real(wp) function turn(self, node, k)
     class(free_motions), intent(in) :: self
-    integer, intent(in) :: node, k   !! the node, and the number of the motion
+    integer, intent(in) :: node, k   !! node, and number of the mode
 
     turn = self%coefficient(part_motions, self%before(k) + self%parts%own(self%parts%of_node(node)))
   end function turn
 
-  !> How far each unit motion takes its body, whatever the axes: what it moves the SUPORT node by that
-  !! measures both directions (the mean of several; where there is none, of all SUPORT nodes of the body), and
-  !! what the turn of each part moves one of these by about another [length] [any, count].
+  !> Sizes of the displacements in each mode, independent of the axes: those of the SUPORT node that measures
+  !! both directions (the mean of several; if there is none, of all SUPORT nodes of the body), and those of
+  !! one SUPORT node about another by the rotation of each part [length] [any, count].
   pure function travels(self, model) result(travel)
     class(free_motions), intent(in) :: self
     type(model_type), intent(in) :: model   !! the scene

@@ -1,4 +1,4 @@
-!> Messages about bodies that nothing holds, and about SUPORTs that measure no motion.
+!> Messages about unconstrained bodies, and about SUPORT DOFs that measure no rigid-body mode.
 module epcont_plan_loose_bodies
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: plural, short_real, text_of
@@ -52,7 +52,7 @@ contains
     type(findings), intent(inout) :: found   !! gets an error
     real(wp) :: motion(directions, size(nodes), size(loose, 3))
     character(len=:), allocatable :: body, cards, text
-    logical :: follows(directions, size(nodes))   ! and cannot be a SUPORT freedom
+    logical :: follows(directions, size(nodes))   ! dependent DOFs, which cannot be SUPORT DOFs
     integer :: at(3), i, k, moving
 
     moving = 0

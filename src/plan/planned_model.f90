@@ -14,11 +14,11 @@ module epcont_plan_planned_model
 
   type :: planned_model
     type(model_type) :: model
-    type(free_motions) :: motions          !! of its bodies
+    type(free_motions) :: motions          !! rigid-body modes of its bodies
     type(numbering_type) :: numbering      !! of its equations
     type(iteration_plan) :: iteration      !! how contact and yielding are found
     type(forecast_type) :: expected        !! memory and work
-    logical :: other_rule = .false.        !! not the one that suits the scene, which has failed
+    logical :: other_rule = .false.        !! the preferred contact solver has failed: use the other one
     integer :: plan_cases = 1              !! load cases that share the plan
   contains
     procedure :: find_motions
@@ -27,15 +27,15 @@ module epcont_plan_planned_model
 
 contains
 
-  !> Find the free motions of the model's bodies.
+  !> Find the rigid-body modes of all bodies.
   subroutine find_motions(self, found)
     class(planned_model), intent(inout) :: self
-    type(findings), intent(inout) :: found   !! bodies that cannot be solved for are added
+    type(findings), intent(inout) :: found   !! errors are added
 
     call find_free_motions(self%model, self%motions, found)
   end subroutine find_motions
 
-  !> Plan how the model, whose free motions are known, is solved.
+  !> Plan the solution of the model, whose rigid-body modes are known.
   subroutine make_plan(self, watch)
     class(planned_model), intent(inout) :: self
     class(stopwatch), intent(inout) :: watch   !! takes the time

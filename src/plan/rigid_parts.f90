@@ -1,7 +1,8 @@
-!> Rigid parts of the bodies, as far as their free motions are concerned.
+!> Rigid parts of the bodies, for their rigid-body modes.
 !>
-!> Elements that share two nodes turn as one; where parts share a single node they are hinged. A node without
-!> elements is a part that cannot turn. The angle of a platen that turns is a part that can do nothing else.
+!> Elements that share two nodes rotate together. Parts that share a single node are hinged there. A node
+!> without elements is a part that cannot rotate. The angle of a rotating platen is a part that can only
+!> rotate.
 module epcont_plan_rigid_parts
   use epcont_base_kinds, only: wp
   use epcont_base_partition, only: new_partition, partition
@@ -11,18 +12,19 @@ module epcont_plan_rigid_parts
   private
   public :: rigid_parts, find_rigid_parts
 
-  !> Free motions of a part by itself: along x, along y, turn.
+  !> Unknowns of a part: displacements along x and y, rotation.
   integer, parameter, public :: part_motions = directions + 1
 
   type :: rigid_parts
     integer :: count = 0
-    integer, allocatable :: of_node(:)      !! a part of each node [nodes]
+    integer, allocatable :: of_node(:)      !! part of each node [nodes]
     integer, allocatable :: body(:)         !! of each part [count]
     integer, allocatable :: own(:)          !! number of each part among the parts of its body [count]
-    !> Rings do not move along x nor turn, and what has no elements does not turn [part_motions, count]
+    !> Axisymmetric parts do not move along x or rotate; nodes without elements do not rotate [part_motions,
+    !! count]
     logical, allocatable :: cannot(:, :)
     integer, allocatable :: hinge(:, :)     !! node, part, other part of each hinge [3, hinges]
-    integer, allocatable :: of_platen(:)    !! a part of each platen that turns [platens]
+    integer, allocatable :: of_platen(:)    !! part of each rotating platen [platens]
     real(wp), allocatable :: centre(:, :)   !! of each body [length] [directions, bodies]
     real(wp), allocatable :: extent(:)      !! of each body, largest half width [length] [bodies]
   contains
@@ -33,9 +35,9 @@ module epcont_plan_rigid_parts
 
 contains
 
-  !> The rigid parts of all bodies, with their hinges.
+  !> Find the rigid parts of all bodies, and their hinges.
   function find_rigid_parts(model) result(parts)
-    type(model_type), intent(in) :: model   !! the scene
+    type(model_type), intent(in) :: model
     type(rigid_parts) :: parts
     integer, allocatable :: of_element(:)   ! the part of each element
     integer :: e, i, points, solid
@@ -83,7 +85,7 @@ contains
       end do
     end subroutine number_parts
 
-    !> Number the sets of elements that share two nodes.
+    !> Number sets of elements that share two nodes.
     subroutine join_elements()
       type(partition) :: sets
       integer, allocatable :: met_by(:)   ! the last element with which each was found to share a node
@@ -105,7 +107,7 @@ contains
       call sets%numbers(of_element, solid)
     end subroutine join_elements
 
-    !> Where parts share a single node.
+    !> Find nodes that several parts share.
     subroutine find_hinges()
       integer :: here, hinges, k
       integer, allocatable :: met(:)   ! parts of the elements at a node
@@ -153,22 +155,22 @@ contains
     column = part_motions*(self%own(part) - 1)
   end function column
 
-  !> Displacement of a place of a body by the unit motions of the part it belongs to [directions, motions].
+  !> Displacements of a node due to unit displacements and rotation of its part [directions, part_motions].
   pure function rows(self, model, node)
     class(rigid_parts), intent(in) :: self
-    type(model_type), intent(in) :: model   !! the scene
-    integer, intent(in) :: node   !! the place
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: node
     real(wp) :: rows(directions, part_motions)
 
     rows = reshape([1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, self%turn(model, node)], shape(rows))
   end function rows
 
-  !> Displacement of a place of a body by the turn that moves the body's extent by one; zero if its part
-  !! cannot rotate, wherever it lies.
+  !> Displacement of a node due to the rotation that moves the extent of its body by one; zero if its part
+  !! cannot rotate.
   pure function turn(self, model, node)
     class(rigid_parts), intent(in) :: self
-    type(model_type), intent(in) :: model   !! the scene
-    integer, intent(in) :: node   !! the place
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: node
     real(wp) :: turn(directions)
 
     turn = 0.0_wp
