@@ -16,6 +16,7 @@ module epcont_plan_forecast
 
   type :: forecast_type
     integer(i8) :: bytes = 0            !! peak of the process on one thread
+    integer(i8) :: apart_bytes = 0      !! about the peak if joined bodies are solved one by one, with F
     real(wp) :: operations = 0.0_wp     !! floating-point operations of factor, flexibility and simplex
   end type forecast_type
 
@@ -101,6 +102,7 @@ contains
       expected%bytes = expected%bytes + of_node_of_point*model%node_count(model%point_element(p)) + &
                        merge(of_yielding_point, 0_i8, model%can_yield(model%point_element(p)))
     end do
+    expected%apart_bytes = expected%bytes + int(pair_matrices*real(model%pairs, wp)**2, i8)*real_bytes
     ! The factors of the unloaded state are kept beside those of the last state.
     if (cases > 1 .and. plan%yields) expected%bytes = 2*expected%bytes - of_process
   end function forecast
