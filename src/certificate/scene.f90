@@ -1,12 +1,12 @@
-!> Looks through the displaced outlines of all bodies for places where one lies inside another, or inside
-!> itself, and for forces that press across a gap. Pairs and lines have no say in where it looks.
+!> Searches the displaced outlines of all bodies for points of one body inside another, or inside itself, and
+!> for contact forces across a gap. The search does not depend on pairs or lines.
 !>
-!> Each side of the outlines that meets the box of another body is sampled: where it begins, at its quarter
-!> points, and between two places where it crosses the other outline. The depth of a point is its distance
-!> from the other outline.
+!> Each edge of the outlines that meets the box of another body is sampled: at its start, at its quarter
+!> points, and between two crossings with the other outline. The depth of a point is its distance from the
+!> other outline.
 !>
-!> What pressed pairs press on, once displaced, is told by the gap between the outlines along the normal, how
-!> far beside the other body the node stands, and how far the two sides have slid along each other. Last,
+!> Pairs with a contact force have three figures: the gap between the displaced outlines along the normal,
+!> the distance of the node beside the end of the other body, and the relative tangential displacement. Last,
 !> nodes may be displaced beyond a line at which their body ends: the axis of rings, or a line of symmetry.
 module epcont_certificate_scene
   use epcont_base_kinds, only: wp
@@ -24,29 +24,29 @@ module epcont_certificate_scene
   private
   public :: beyond_place, overlap_place, overlaps_type, look_through
 
-  !> Sides turned [rad] or stretched by more than this are warned of.
+  !> Rotation [rad] or stretch of an edge that gives a warning.
   real(wp), parameter, public :: largest_change = 0.2_wp
-  !> Below this part of what is allowed, rounding chooses the place.
+  !> Fraction of the allowed depth below which rounding chooses the point.
   real(wp), parameter, public :: little = 0.01_wp
-  !> Points of each side: its beginning and its quarter points.
+  !> Points of each edge: start and quarter points.
   real(wp), parameter :: quarters(4) = [0.0_wp, 0.25_wp, 0.5_wp, 0.75_wp]
 
-  !> Sides that slide by less than this part of the longer one carry what they carried where they were drawn;
-  !! so do bodies that slide by less than that part of the smaller one. A node may stand as far beside the
-  !! other body as that.
+  !> Allowed relative tangential displacement, as fractions of the longer edge and of the smaller body. A node
+  !! may be as far beside the end of the other body.
   real(wp), parameter :: part_of_side = 0.25_wp, part_of_body = 0.05_wp
 
 contains
 
-  !> Look through the whole scene.
+  !> Search the whole model.
   function look_through(model, displacement, force) result(scene)
-    type(model_type), intent(in) :: model        !! what is looked through
+    type(model_type), intent(in) :: model        !! the model
     real(wp), intent(in) :: displacement(:, :)   !! [length] [directions, nodes]
     real(wp), intent(in) :: force(:)             !! contact forces [pairs]
     type(overlaps_type) :: scene
     type(search_type) :: search
-    integer :: near   ! the side that was nearest to the point before: near to the next
-    integer :: part, side
+    integer :: near   ! edge nearest to the last point, where the search for the next one starts
+    integer, allocatable :: others(:)
+    integer :: b, part, side
 
     scene%looked_through = .true.
     if (model%body_outline%sides == 0) return
@@ -56,8 +56,11 @@ contains
     do side = 1, model%body_outline%sides
       call look_at_side(search, scene, near, side)
     end do
-    do part = 1, model%body_outline%parts
-      call look_at_middle(search, scene, near, part)
+    do part = 1, model%body_outline%parts   ! if two bodies have the same outline, no point of it is inside
+      others = search%now%part_tree%meeting(box_query(search%middle(part)%x, search%middle(part)%x))
+      do b = 1, size(others)
+        if (others(b) /= part) call look_at_point(search, scene, near, search%middle(part), others(b))
+      end do
     end do
     call look_at_pairs(model, force, search, scene)
     call look_at_ways(search, scene)
@@ -66,7 +69,7 @@ contains
     scene%change = search%allowance%change(scene%changed_side)
   end function look_through
 
-  !> The points of a side, in the bodies whose boxes it meets.
+  !> Check the points of an edge against the bodies whose boxes it meets.
   subroutine look_at_side(search, scene, near, side)
     type(search_type), intent(in) :: search      !! its outlines
     type(overlaps_type), intent(inout) :: scene     !! what is found is added
@@ -95,23 +98,7 @@ contains
     end do
   end subroutine look_at_side
 
-  !> A point within a part, in the others whose boxes it meets: of bodies with one outline no point of that
-  !! lies inside.
-  subroutine look_at_middle(search, scene, near, part)
-    type(search_type), intent(in) :: search      !! its outlines
-    type(overlaps_type), intent(inout) :: scene     !! what is found is added
-    integer, intent(inout) :: near              !! side nearest to the point before
-    integer, intent(in) :: part
-    integer, allocatable :: parts(:)
-    integer :: b
-
-    parts = search%now%part_tree%meeting(box_query(search%middle(part)%x, search%middle(part)%x))
-    do b = 1, size(parts)
-      if (parts(b) /= part) call look_at_point(search, scene, near, search%middle(part), parts(b))
-    end do
-  end subroutine look_at_middle
-
-  !> One point of a body, in another.
+  !> Check a point of a body against another body.
   subroutine look_at_point(search, scene, near, point, part)
     type(search_type), intent(in) :: search      !! its outlines
     type(overlaps_type), intent(inout) :: scene     !! what is found is added
@@ -127,7 +114,7 @@ contains
       call keep(search, meet(search, point, place), scene%inside, scene%deepest, scene%deep)
   end subroutine look_at_point
 
-  !> The points of a side, behind another side of its own body, before which they were drawn.
+  !> Check the points of an edge against another edge of its own body that they were in front of.
   subroutine look_at_itself(search, scene, side, other)
     type(search_type), intent(in) :: search      !! its outlines
     type(overlaps_type), intent(inout) :: scene     !! what is found is added
@@ -153,7 +140,7 @@ contains
     end associate
   end subroutine look_at_itself
 
-  !> All pressed pairs of two bodies.
+  !> Check all pairs with a contact force between two bodies.
   subroutine look_at_pairs(model, force, search, scene)
     type(model_type), intent(in) :: model        !! the model
     real(wp), intent(in) :: force(:)             !! contact forces [pairs]
@@ -180,7 +167,7 @@ contains
     end associate
   end subroutine look_at_pairs
 
-  !> One pressed pair: its node B, at the part that A is of.
+  !> Check node B of a pair against the outline of node A.
   subroutine look_at_pair(model, search, scene, pair, point, part)
     type(model_type), intent(in) :: model        !! the model
     type(search_type), intent(in) :: search      !! its outlines
@@ -266,7 +253,7 @@ contains
     end associate
   end function beyond_end
 
-  !> Where the chord of a side crosses those of another part, ascending.
+  !> Find the crossings of the chord of an edge with those of another outline, in ascending order.
   pure function crossings(now, side, other) result(place)
     type(outline_shape), intent(in) :: now
     integer, intent(in) :: side, other

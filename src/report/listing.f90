@@ -1,4 +1,4 @@
-!> The listing: what is said of the deck and the plan once, and of each load case.
+!> The listing: deck and plan once, then the results of each load case.
 module epcont_report_listing
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: newline, plural, short_real, text_of
@@ -22,7 +22,7 @@ module epcont_report_listing
 
 contains
 
-  !> Title, what the deck holds, warnings and notes, those of its only case among them, and the plan.
+  !> List title, numbers of cards, warnings and notes (with those of an only load case), and the plan.
   subroutine list_scene(run, plan, listing)
     type(run_results), intent(in) :: run         !! what is known of the run
     character(len=*), intent(in) :: plan         !! in lines
@@ -41,7 +41,7 @@ contains
 
   contains
 
-    !> Title, and what the deck holds.
+    !> List title and numbers of cards.
     subroutine list_deck()
       character(len=20) :: units
       integer :: k
@@ -62,7 +62,7 @@ contains
     end subroutine list_deck
   end subroutine list_scene
 
-  !> What case control calls a load case.
+  !> List SUBTITLE and LABEL of a load case.
   subroutine list_titles(run, listing)
     type(run_results), intent(in) :: run
     type(table_type), intent(inout) :: listing
@@ -73,7 +73,7 @@ contains
     end associate
   end subroutine list_titles
 
-  !> What came of a load case.
+  !> List the results of a load case.
   subroutine list_case(run, figures, all_tables, listing)
     type(run_results), intent(in) :: run              !! what is known of the run, with that case
     type(figure_type), intent(in) :: figures(:)       !! of its summary
@@ -106,7 +106,7 @@ contains
 
   contains
 
-    !> Summary and certificate.
+    !> List summary and certificate.
     subroutine list_summary()
       call listing%heading('SUMMARY')
       call list_figures(listing, figures, [character(len=21) :: 'max_pressure', 'total_contact_force', &
@@ -119,7 +119,7 @@ contains
         'energy_balance'])
     end subroutine list_summary
 
-    !> What stopping and rounding leave.
+    !> List iteration error and rounding error.
     subroutine list_rounding()
       call list_figures(listing, figures, ['iteration_error_', 'condition       '])
       call list_figure(listing, 'digits that rounding leaves, at least', &
@@ -131,7 +131,7 @@ contains
     end subroutine list_rounding
   end subroutine list_case
 
-  !> Add a named figure: its value at the right of 13 columns, and what is to be said of it.
+  !> List a figure: name, value at the right of 13 columns, note.
   subroutine list_figure(listing, name, value, note)
     type(table_type), intent(inout) :: listing
     character(len=*), intent(in) :: name, value, note   ! the name in at most 44 characters
@@ -141,7 +141,7 @@ contains
     call listing%say(label//right(value, 13)//note)
   end subroutine list_figure
 
-  !> Figures of the summary that have a name, and whose keys begin so; a key that ends in `|` is one alone.
+  !> List named figures of the summary whose keys begin with `keys`; a key that ends in `|` is a whole key.
   subroutine list_figures(listing, figures, keys)
     type(table_type), intent(inout) :: listing
     type(figure_type), intent(in) :: figures(:)
@@ -156,7 +156,7 @@ contains
     end do
   end subroutine list_figures
 
-  !> One line a solve, and what is to be known of the yielding.
+  !> List one line for each solve, and the number of yielded elements.
   subroutine list_iterations(listing, run)
     type(table_type), intent(inout) :: listing
     type(run_results), intent(in) :: run
@@ -172,7 +172,7 @@ contains
              text_of(run%model%elements)//' beyond the yield point')
   end subroutine list_iterations
 
-  !> The pairs, how the set of contacts was found, and what contact makes of zones, lines and bodies.
+  !> List pairs, work of the contact solver, zones, lines and bodies.
   subroutine list_contact(listing, run)
     type(table_type), intent(inout) :: listing
     type(run_results), intent(in) :: run
@@ -195,7 +195,7 @@ contains
     call put_table(run, 'bodies', listing)
   end subroutine list_contact
 
-  !> Bodies in each other and pairs that press across gaps: the worst, and the deepest where that differs.
+  !> List penetrations and gaps under pressure: the worst, and the largest if it is another one.
   subroutine list_scene_found(listing, run)
     type(table_type), intent(inout) :: listing
     type(run_results), intent(in) :: run
@@ -214,7 +214,7 @@ contains
 
   contains
 
-    !> A depth, over what is allowed; and where.
+    !> List depth over allowed depth, and the point.
     subroutine list_place(name, place)
       character(len=*), intent(in) :: name
       type(overlap_place), intent(in) :: place
@@ -228,7 +228,7 @@ contains
     end subroutine list_place
   end subroutine list_scene_found
 
-  !> What the mesh leaves, and the pairs that may as well be open, or touch.
+  !> List mesh errors and pairs with uncertain contact state.
   subroutine list_mesh(listing, run, figures)
     type(table_type), intent(inout) :: listing
     type(run_results), intent(in) :: run
@@ -246,7 +246,7 @@ contains
 
   contains
 
-    !> Pairs that touch, or that do not, but may as well.
+    !> List pairs in contact, or open pairs, whose state is uncertain.
     subroutine list_pairs(what, touching)
       character(len=*), intent(in) :: what
       logical, intent(in) :: touching
@@ -269,7 +269,7 @@ contains
     end associate
   end subroutine list_wanted
 
-  !> Warnings and notes.
+  !> List warnings and notes.
   subroutine list_remarks(text, warnings, notes, listing)
     character(len=*), intent(in) :: text         !! in lines
     integer, intent(in) :: warnings, notes       !! how many
@@ -287,7 +287,7 @@ contains
     end do
   end subroutine list_remarks
 
-  !> Add text, on lines of at most 132 columns.
+  !> Add text in lines of at most 132 columns.
   subroutine wrap(listing, text)
     type(table_type), intent(inout) :: listing
     character(len=*), intent(in) :: text

@@ -1,4 +1,4 @@
-!> The plan in words: what is modelled, what is not needed, and what it will take.
+!> The plan in words: model, methods, memory and operations.
 module epcont_report_plan_text
   use epcont_base_kinds, only: i8, wp
   use epcont_base_text, only: plural, short_real, text_of
@@ -15,7 +15,7 @@ module epcont_report_plan_text
   private
   public :: plan_text
 
-  !> Free motions, bodies and contacts that are told of one by one, and corners of each line.
+  !> Largest number of rigid-body modes, bodies and contacts that are listed, and of corners of each line.
   integer, parameter :: most = 20, most_corners = 8
 
   type(column), parameter :: body_columns(*) = [ &
@@ -24,7 +24,7 @@ module epcont_report_plan_text
     column(whole, head='contact equations', width=19), column(whole, head='border', width=8), &
     column(word, head='factorizations', width=16), column(state, head='flexibility by', width=16)]
 
-  !> What the methods do, from SECANT on.
+  !> Descriptions of the methods, beginning with SECANT.
   character(len=*), parameter :: method_text(*) = [character(len=90) :: &
     'all load each time, secant moduli from the last strains', &
     'secant moduli from that mixture of the last strains which changes least (Anderson)', &
@@ -33,10 +33,10 @@ module epcont_report_plan_text
 
 contains
 
-  !> The plan of a scene, in lines.
+  !> Write the plan of a model, in lines.
   function plan_text(scene, of) result(text)
-    type(planned_model), intent(in) :: scene   !! what is to be solved, and how
-    character(len=*), intent(in), optional :: of   !! these load cases
+    type(planned_model), intent(in) :: scene   !! model and plan
+    character(len=*), intent(in), optional :: of   !! names of the load cases
     character(len=:), allocatable :: text
     type(table_type) :: plan
     integer :: k
@@ -70,7 +70,7 @@ contains
 
   contains
 
-    !> How many are not told of one by one.
+    !> Say how many are not listed.
     subroutine say_further(count, noun, behind)
       integer, intent(in) :: count
       character(len=*), intent(in) :: noun, behind
@@ -78,7 +78,7 @@ contains
       if (count > most) call plan%say('and '//plural(count - most, noun)//behind)
     end subroutine say_further
 
-    !> How bodies are factored, where it is not in panels of their bands alone.
+    !> Say how many bodies are factored with fronts.
     subroutine say_factors()
       integer :: fronts
 
@@ -92,7 +92,7 @@ contains
       end if
     end subroutine say_factors
 
-    !> What PARAM ACCURACY has chosen.
+    !> Say what PARAM ACCURACY has chosen.
     subroutine say_choices()
       character(len=:), allocatable :: chosen
 
@@ -104,8 +104,8 @@ contains
       call plan%say('ACCURACY '//short_real(scene%model%controls%accuracy)//' chooses '//chosen(3:))
     end subroutine say_choices
 
-    !> A row a body: what its matrix is like, how often that is factored, and how its flexibility follows from
-    !! the factor: by inverting the trailing block, or by forward substitution of the pairs.
+    !> List the bodies: matrix, number of factorizations, and the way to the flexibility (inversion of the
+    !! trailing block, or forward substitution of the pairs).
     subroutine say_bodies()
       character(len=14) :: width, times, way
       integer :: b
@@ -129,7 +129,7 @@ contains
     end subroutine say_bodies
   end function plan_text
 
-  !> Whether the scene can yield, and how that is iterated.
+  !> Say whether the model can yield, and how the iteration works.
   subroutine say_iteration(plan, scene)
     type(table_type), intent(inout) :: plan
     type(planned_model), intent(in) :: scene
@@ -157,7 +157,7 @@ contains
       'strain by formula (2-4): stresses up to (1 - 2 nu)/3 below the curve')
   end subroutine say_iteration
 
-  !> How the pairs in contact are found.
+  !> Name the contact solver.
   subroutine say_rule(plan, scene)
     type(table_type), intent(inout) :: plan
     type(planned_model), intent(in) :: scene
@@ -175,7 +175,7 @@ contains
       call plan%say('  not JOINED: nothing gives way at any pair')
   end subroutine say_rule
 
-  !> A contact of lines.
+  !> Describe a contact of lines.
   subroutine say_contact(plan, scene, contact)
     type(table_type), intent(inout) :: plan
     type(planned_model), intent(in) :: scene
@@ -201,7 +201,7 @@ contains
 
   contains
 
-    !> The corners of lines: where a face ends, and nothing is smoothed.
+    !> List the corners of a line, where normals are not smoothed.
     subroutine say_corners(line, id)
       class(boundary_line), intent(in) :: line
       integer, intent(in) :: id(:)
@@ -216,7 +216,7 @@ contains
     end subroutine say_corners
   end subroutine say_contact
 
-  !> Has a body anything that can yield? [bodies]
+  !> Has a body elements that can yield? [bodies]
   pure function yielding_bodies(model) result(yields)
     type(model_type), intent(in) :: model
     logical :: yields(model%bodies)
@@ -228,7 +228,7 @@ contains
     end do
   end function yielding_bodies
 
-  !> Memory, rounded up.
+  !> Write an amount of memory, rounded up.
   pure function megabytes(bytes) result(text)
     integer(i8), intent(in) :: bytes   !! of it
     character(len=:), allocatable :: text
