@@ -16,15 +16,12 @@ module epcont_deck_bulk
   use epcont_deck_source, only: source
   use epcont_deck_spelling, only: suggestion
   use epcont_deck_table, only: card_table
-  use epcont_system_threads, only: threads_over
   implicit none
   private
   public :: read_bulk
 
-  !> Kinds of lines beside those of the cards that begin there.
+  !> Kinds of lines other than those of known cards.
   integer, parameter :: no_card = 0, unknown_card = card_kinds + 1
-  !> Cards that a thread takes at once.
-  integer, parameter :: at_once = 1000
 
 contains
 
@@ -34,7 +31,7 @@ contains
     integer, intent(in) :: first                              !! the first line that is not of case control
     logical, intent(in) :: heated                             !! temperatures have an effect
     type(card_table), allocatable, intent(out) :: table(:)    !! the cards of each kind [card_kinds]
-    type(diagnostics), intent(inout) :: faults   !! what is wrong is added to them
+    type(diagnostics), intent(inout) :: faults   !! errors and notes are added
     type(card_entry) :: entry(card_kinds)
     type(card_fields) :: card
     type(field_entry), allocatable :: parameter_entry(:)
@@ -42,7 +39,7 @@ contains
     integer, allocatable :: kind(:, :)   ! of the card that begins on each line [1, lines]
     type(incidence) :: begun             ! lines on which those of each kind begin
     integer :: next(card_kinds)          ! cards of each that the next line may begin
-    integer :: k, line
+    integer :: errors, k, line
 
     entry = catalogue()
     associate (field => entry(card_mat1)%field)
@@ -57,18 +54,22 @@ contains
     do k = 1, card_kinds
       call note_without_cards(entry(k)%field)
       call table(k)%begin(entry(k), begun%of(k))
-      if (k /= card_param .and. entry(k)%list_slot == huge(1)) call read_plain(lines, table(k))
     end do
     next = 1
     do line = first, lines%count
       k = kind(1, line)
       if (k == no_card) cycle
+      errors = faults%errors
+      call gather(lines, line, card, faults)
       if (k == unknown_card) then
-        call gather(lines, line, card, faults)
         if (card%sound) call refuse_name(first, card, names, faults)
         cycle
       end if
-      if (.not. table(k)%sound(next(k))) call read_in_turn(table(k), next(k))
+      call table(k)%begin_list(next(k))
+      if (k == card_param .and. card%sound) &
+        call choose_parameter(card, parameter_entry, table(k)%entry%field(2), faults)
+      if (faults%errors == errors) call read_card(card, table(k), next(k), faults)
+      table(k)%sound(next(k)) = faults%errors == errors
       next(k) = next(k) + 1
     end do
     do k = 1, card_kinds
@@ -77,7 +78,7 @@ contains
 
   contains
 
-    !> What has an effect with some cards alone has none without one of them.
+    !> Mark the fields that have no effect because the deck has none of certain cards.
     pure subroutine note_without_cards(field)
       type(field_entry), intent(inout) :: field(:)
       integer :: i, k
@@ -88,56 +89,9 @@ contains
                                 index(field(i)%with_cards, '/'//trim(names(k))//'/') > 0, k=1, card_kinds)])
       end do
     end subroutine note_without_cards
-
-    !> Read a card that has a list, is a PARAM, or is at fault: faults are told in the order of lines.
-    subroutine read_in_turn(cards, i)
-      type(card_table), intent(inout) :: cards
-      integer, intent(in) :: i
-      integer :: errors
-
-      errors = faults%errors
-      call gather(lines, cards%line(i), card, faults)
-      call cards%clear(i)
-      call cards%begin_list(i)
-      if (k == card_param .and. card%sound) call choose_parameter(card, parameter_entry, &
-                                                                  cards%entry%field(2), faults)
-      if (faults%errors == errors) call read_card(card, cards, i, faults)
-      cards%sound(i) = faults%errors == errors
-    end subroutine read_in_turn
   end subroutine read_bulk
 
-  !> Read cards without lists, but those that are at fault, by as many threads as are granted.
-  subroutine read_plain(lines, cards)
-    type(source), intent(in) :: lines
-    type(card_table), intent(inout) :: cards
-    integer :: i
-
-    !$omp parallel do num_threads(threads_over(cards%count)) schedule(dynamic)
-    do i = 1, cards%count, at_once
-      call read_cards(cards, i, min(i + at_once - 1, cards%count))
-    end do
-    !$omp end parallel do
-
-  contains
-
-    subroutine read_cards(cards, first, last)
-      type(card_table), intent(inout) :: cards
-      integer, intent(in) :: first, last   !! of them
-      type(card_fields) :: card
-      type(diagnostics) :: unheard
-      integer :: errors, i
-
-      do i = first, last
-        errors = unheard%errors
-        call cards%clear(i)
-        call gather(lines, cards%line(i), card, unheard)
-        if (unheard%errors == errors) call read_card(card, cards, i, unheard)
-        cards%sound(i) = unheard%errors == errors
-      end do
-    end subroutine read_cards
-  end subroutine read_plain
-
-  !> The kind of the card that begins on each line. Cards of one name mostly follow each other.
+  !> Find the kind of the card that begins on each line. Cards with the same name are usually consecutive.
   subroutine find_kinds(lines, first, names, kind)
     type(source), intent(in) :: lines
     integer, intent(in) :: first
@@ -171,7 +125,7 @@ contains
     end do
   end subroutine find_kinds
 
-  !> The kind of the card that a line begins.
+  !> The kind of the card that begins on a line.
   pure integer function kind_of(names, text)
     character(len=*), intent(in) :: names(:), text
     character(len=8) :: name
@@ -184,7 +138,7 @@ contains
     if (kind_of == 0) kind_of = unknown_card
   end function kind_of
 
-  !> The card has a name that is not in the catalogue.
+  !> Report a card whose name is not in the catalogue.
   subroutine refuse_name(first, card, names, faults)
     integer, intent(in) :: first
     type(card_fields), intent(in) :: card
@@ -214,8 +168,7 @@ contains
     call faults%add_error(card%place(0), 'unknown card '//name, remedy)
   end subroutine refuse_name
 
-  !> Which PARAM it is, and so what its value may be: any word where the name is none, and a fault where it
-  !! is unknown.
+  !> Find the PARAM and its possible values: any word if the name is malformed; an unknown name is an error.
   subroutine choose_parameter(card, parameter_entry, value_entry, faults)
     type(card_fields), intent(in) :: card
     type(field_entry), intent(in) :: parameter_entry(:)

@@ -34,7 +34,6 @@ module epcont_deck_table
     procedure :: number
     procedure :: has
     procedure :: identity
-    procedure :: clear
     procedure :: begin_list
     procedure :: add_item
   end type card_table
@@ -52,8 +51,9 @@ contains
     self%entry = entry
     self%line = line
     self%count = size(line)
-    allocate (self%value(columns, self%count), self%given(columns, self%count))
-    if (any(entry%field%kind == kind_word)) allocate (self%word(columns, self%count))
+    allocate (self%value(columns, self%count), source=0.0_wp)
+    allocate (self%given(columns, self%count), source=.false.)
+    if (any(entry%field%kind == kind_word)) allocate (self%word(columns, self%count), source=repeat(' ', 8))
     allocate (self%sound(self%count), source=.false.)
     allocate (self%list_start(self%count + 1), source=1)
     allocate (self%list(16))
@@ -103,17 +103,7 @@ contains
     end if
   end function identity
 
-  !> All fields of a card are blank. (Row by row, since threads that read touch their memory first.)
-  pure subroutine clear(self, card)
-    class(card_table), intent(inout) :: self
-    integer, intent(in) :: card   !! which
-
-    self%value(:, card) = 0.0_wp
-    self%given(:, card) = .false.
-    if (allocated(self%word)) self%word(:, card) = ''
-  end subroutine clear
-
-  !> What items are added from here on are of this card; those before it have theirs.
+  !> Begin the list of a card; items that are added from now on belong to it.
   pure subroutine begin_list(self, card)
     class(card_table), intent(inout) :: self
     integer, intent(in) :: card   !! which
