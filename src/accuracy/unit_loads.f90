@@ -109,7 +109,8 @@ contains
         do m = scene%motions%first(body), scene%motions%first(body + 1) - 1
           if (scene%motions%component(m) == c) rest = rest - scene%motions%displacement(scene%model, i, m)
         end do
-        is_free = is_free .and. norm2(rest) <= least_difference
+        is_free = norm2(rest) <= least_difference
+        if (.not. is_free) return
       end do
     end function is_free
   end subroutine find_unit_loads

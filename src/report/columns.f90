@@ -1,5 +1,5 @@
-!> The one way to write a table. What its columns are is said once, by data: a section of the listing, a file
-!> of comma separated values and the manual page all come from that. Rows are values of mixed kind.
+!> Writes all tables. Columns are constants: the section of the listing, the file of comma separated values
+!> and the manual page are made from them. A row has integers, numbers and words.
 module epcont_report_columns
   use epcont_base_kinds, only: wp
   use epcont_base_decimal, only: decimal_text
@@ -12,23 +12,22 @@ module epcont_report_columns
   public :: column, table_type, columns_text
   public :: right, listed_number, full_number, estimate_number, rounding_number
 
-  !> What the values of a column are. Of a number it says how that is written: in a file in full, in the
-  !! listing in the digits that tell.
+  !> Kinds of columns. Numbers are written in full in files, and in the listing with significant digits only.
   integer, parameter, public :: &
-    state = -2, &      !! a word at the left of its column, behind two blanks
+    state = -2, &      !! a word at the left of its column, after two blanks
     word = -1, &       !! at the right of its column
     whole = 0, &       !! an id, or a count
     number = 1, &      !! six digits
-    known = 2, &       !! the same; not known where it is negative
-    estimate = 3, &    !! two digits; not known where it is negative
+    known = 2, &       !! the same; unknown if it is negative
+    estimate = 3, &    !! two digits; unknown if it is negative
     size_of = 4, &     !! four digits
-    rounding = 5, &    !! the power of ten that it is below, where it is rounding
-    off_curve = 6, &   !! the same: a stress's distance from its curve over the latter
-    factor = 7, &      !! of errors: two digits; not known where it is negative
+    rounding = 5, &    !! the next higher power of ten if it is rounding
+    off_curve = 6, &   !! the same: deviation from the stress-strain curve, relative
+    factor = 7, &      !! of errors: two digits; unknown if it is negative
     part = 8, &        !! per cent
-    no_number = 9      !! there is none in this scene
+    no_number = 9      !! this model has no such number
 
-  !> A number, of any of these kinds, that is not known.
+  !> Value of an unknown number of any kind.
   real(wp), parameter, public :: unknown = -huge(1.0_wp)
 
   !> Characters of the longest word, which is a key of the summary.
@@ -37,25 +36,25 @@ module epcont_report_columns
   !> Units.
   character(len=*), parameter, public :: length = 'length', force = 'force', stress = 'force/length2'
 
-  !> Beyond these rounding has a say in the number itself.
+  !> Larger values are written as `> 10` and `> 1E6`: rounding changes their digits.
   real(wp), parameter :: largest_off_curve = 10.0_wp, largest_factor = 1.0e6_wp
 
   !> One column.
   type :: column
     integer :: kind = whole            !! one of those above
-    character(len=23) :: name = ''     !! in the file; empty: the listing alone has this column
-    character(len=14) :: unit = ''     !! empty: none
-    character(len=64) :: meaning = ''  !! for the manual page; empty: that of the column before, and its unit
-    character(len=23) :: head = ''     !! in the listing; empty: the name
-    integer :: width = 13              !! in the listing; 0: the file alone has this column
+    character(len=23) :: name = ''     !! in the file; empty if only the listing has this column
+    character(len=14) :: unit = ''     !! empty if it has none
+    character(len=64) :: meaning = ''  !! for the manual page; empty if it is that of the column before
+    character(len=23) :: head = ''     !! in the listing; empty if it is the name
+    integer :: width = 13              !! in the listing; 0 if only the file has this column
   end type column
 
-  !> A table that is being written, to the listing or to a file of its own.
+  !> A table that is being written, to the listing or to a file.
   type, extends(text_file) :: table_type
     logical :: listed = .true.                       !! in the listing
-    integer :: subcase = 0                           !! of the rows of a file that has several; 0: it has not
+    integer :: subcase = 0                           !! of the rows; 0 if the file has one load case
     type(column), allocatable, private :: column(:)
-    integer, allocatable, private :: nth(:)          !! which value of its sort each of them has in a row
+    integer, allocatable, private :: nth(:)          !! index of its value among those of its sort
     real(wp), allocatable, private :: scale(:)       !! of each number in a row
   contains
     procedure :: begin
@@ -65,7 +64,7 @@ module epcont_report_columns
 
 contains
 
-  !> The columns of a file in words, for the manual page: `x, y (GRID B as drawn; length), force (...)`.
+  !> Describe the columns of a file for the manual page: `x, y (GRID B as drawn; length), force (...)`.
   pure function columns_text(columns) result(text)
     type(column), intent(in) :: columns(:)   !! in the order of the file
     character(len=:), allocatable :: meaning, text
@@ -86,7 +85,7 @@ contains
     text = text(3:)//meaning
   end function columns_text
 
-  !> Write the heading, and the heads of the columns.
+  !> Write the heading and the heads of the columns.
   subroutine begin(self, title, columns, scale)
     class(table_type), intent(inout) :: self
     character(len=*), intent(in) :: title        !! of the section of the listing; empty: none
@@ -166,7 +165,7 @@ contains
     end if
   end subroutine write_cells
 
-  !> Text at the right of `width` columns; wider text is kept whole.
+  !> Right-adjust text in `width` columns; longer text is kept.
   pure function right(text, width) result(field)
     character(len=*), intent(in) :: text   !! any text
     integer, intent(in) :: width           !! number of columns
@@ -175,7 +174,7 @@ contains
     field = repeat(' ', max(0, width - len(text)))//text
   end function right
 
-  !> A number of one of the kinds above in the listing.
+  !> Write a number for the listing.
   pure function listed_number(kind, value, scale) result(text)
     integer, intent(in) :: kind   !! one of the kinds above
     real(wp), intent(in) :: value   !! the number
@@ -206,8 +205,8 @@ contains
     end select
   end function listed_number
 
-  !> A number in a file: 17 digits, and blanks behind them; of errors, pressures and the like that are
-  !! negative nothing is known.
+  !> Write a number for a file: 17 digits. It is empty if the number is unknown: errors or pressures below
+  !! zero.
   pure function full_number(kind, value) result(text)
     integer, intent(in) :: kind     !! one of those above
     real(wp), intent(in) :: value   !! the number
@@ -218,7 +217,7 @@ contains
     if (value >= 0.0_wp .or. all(kind /= [known, estimate, factor, part])) text = decimal_text(value, 17, 3)
   end function full_number
 
-  !> A number of a listing's column, six digits in 13 characters: there are many.
+  !> Write a number for a column of the listing: six digits in 13 characters.
   pure function column_number(value, scale) result(text)
     real(wp), intent(in) :: value
     real(wp), intent(in) :: scale  !! of the column: its largest magnitude
@@ -233,8 +232,8 @@ contains
     end if
   end function column_number
 
-  !> A figure that is rounding in a valid answer, as the power of ten it is below, since rounding differs
-  !! between builds: `< 1E-12` at the least. What is no rounding has two digits.
+  !> Write a figure that is rounding in a valid answer as upper bound, `< 1E-12` or more, because rounding
+  !! differs between builds. Larger figures have two digits.
   pure function rounding_number(value) result(text)
     real(wp), intent(in) :: value   !! the number
     character(len=:), allocatable :: text
@@ -243,7 +242,7 @@ contains
     if (value < least_difference) text = '< 1E'//text_of(ceiling(log10(max(value, 0.999_wp*rounded_off))))
   end function rounding_number
 
-  !> An estimate: two digits.
+  !> Write an estimate: two digits.
   pure function estimate_number(value) result(text)
     real(wp), intent(in) :: value   !! the number
     character(len=:), allocatable :: text

@@ -1,4 +1,4 @@
-!> The tables: what their columns are, and what stands in their rows. They go to files, the listing or both.
+!> The tables: columns and rows. They are written to files, to the listing, or to both.
 module epcont_report_tables
   use epcont_accuracy_unit_loads, only: most_bodies
   use epcont_base_kinds, only: wp
@@ -104,7 +104,7 @@ module epcont_report_tables
 
 contains
 
-  !> The columns of a file of results, in a sentence; empty: it is none of these tables.
+  !> Describe the columns of a file of results; empty if it is not one of these tables.
   pure function columns_in(suffix) result(text)
     character(len=*), intent(in) :: suffix   !! of the file's name
     character(len=:), allocatable :: text
@@ -150,7 +150,7 @@ contains
 
   contains
 
-    !> Forces, pressures and gaps: a row a pair.
+    !> Forces, pressures and gaps: one row for each pair.
     subroutine put_contact()
       associate (model => run%model, contact => run%answer%contact)
         call table%begin('CONTACT', contact_columns, &
@@ -166,7 +166,7 @@ contains
       end associate
     end subroutine put_contact
 
-    !> Runs of touching pairs: a row a zone.
+    !> Runs of pairs in contact: one row for each zone.
     subroutine put_zones()
       character(len=12) :: limit
 
@@ -181,7 +181,7 @@ contains
       end do
     end subroutine put_zones
 
-    !> Contact of lines, seen from both sides: a row a contact.
+    !> Contact of lines, from both sides: one row for each contact.
     subroutine put_lines()
       call table%begin('LINES IN CONTACT  (pressures on the slave line are those above; '// &
                        'on the master line by its nodes'' forces)', line_columns, &
@@ -195,7 +195,7 @@ contains
       end do
     end subroutine put_lines
 
-    !> What contact exerts: a row a body that has elements. Rings have no x.
+    !> Contact forces on bodies with elements, one row each. Axisymmetric bodies have no x.
     subroutine put_bodies()
       type(column) :: columns(size(body_columns))
 
@@ -213,7 +213,7 @@ contains
       end associate
     end subroutine put_bodies
 
-    !> Displacements and reactions: a row a node.
+    !> Displacements and reactions: one row for each node.
     subroutine put_nodes()
       call table%begin('DISPLACEMENTS AND REACTIONS', node_columns, &
                        [0.0_wp, 0.0_wp, spread(maxval(abs(run%answer%displacement)), 1, directions), &
@@ -224,7 +224,7 @@ contains
       end do
     end subroutine put_nodes
 
-    !> The plastic iteration: a row a solve.
+    !> Equilibrium iteration: one row for each solve.
     subroutine put_history()
       call table%begin('ITERATIONS', history_columns, [1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp])
       do k = 1, size(run%answer%history)
@@ -236,8 +236,7 @@ contains
     end subroutine put_history
   end subroutine put_table
 
-  !> The first pivots of the simplex: those of the last solve, below the pairs of the listing; in a file, of
-  !! all.
+  !> First pivots of the simplex: in the listing those of the last solve, in a file those of all solves.
   subroutine put_pivots(run, table)
     type(run_results), intent(in) :: run
     type(table_type), intent(inout) :: table
@@ -255,7 +254,7 @@ contains
 
   contains
 
-    !> Those of one iteration.
+    !> Pivots of one iteration.
     subroutine put_pivots_of(iteration, pivot)
       integer, intent(in) :: iteration
       type(pivot_record), intent(in) :: pivot(:)
@@ -267,7 +266,7 @@ contains
       end do
     end subroutine put_pivots_of
 
-    !> A variable of the simplex by the id of its pair.
+    !> Name a variable of the simplex by the id of its pair.
     pure function variable(code) result(text)
       integer, intent(in) :: code
       character(len=14) :: text
@@ -278,7 +277,7 @@ contains
     end function variable
   end subroutine put_pivots
 
-  !> Stresses and strains: a row an element.
+  !> Stresses and strains: one row for each element.
   subroutine put_elements(run, table)
     type(run_results), intent(in) :: run
     type(table_type), intent(inout) :: table
@@ -300,7 +299,7 @@ contains
 
   contains
 
-    !> Id of the corner of an element that an integration point is nearest to; of one in the middle: none.
+    !> Id of the corner nearest to an integration point; `-` if the element has one point.
     pure function nearest_grid(point) result(id)
       integer, intent(in) :: point
       character(len=8) :: id
@@ -318,7 +317,7 @@ contains
     end function nearest_grid
   end subroutine put_elements
 
-  !> The first of some ids, and a mark where there are more: the plan has them all.
+  !> Write the first of some ids, and `+` if there are more. The plan lists all.
   pure function first_of(id) result(text)
     integer, intent(in) :: id(:)
     character(len=10) :: text
