@@ -27,12 +27,13 @@ SUMMARY = [(re.compile(pattern), kind) for pattern, kind in (
     (r"p_max|max_pressure|mesh_error_max_pressure|mesh_error_pressure_.*", "pressure"), (r"max_equivalent_stress", "stress"),
     (r"half_width|mesh_error_half_width.*", "width"), (r"(p_max|half_width)_error|mesh_error_energy_norm", "part"),
     (r"(lowest|highest)_temperature", "temperature"), (r"load_factor", "part"))]
-#: What listings call them.
+#: What listings call them, also those of version 0.5.0.
 LISTED = {"largest pressure": "p_max", "total contact force": "total_contact_force", "largest equivalent stress": "max_equivalent_stress",
-          "largest displacement": "max_displacement", "approach: ": "approach of ", "turn of GRID ": "angle_", "pull of spring ": "spring_",
-          "moment of the support of GRID ": "moment_"}
-TITLES = {"CONTACT": "contact", "ZONES": "zones", "BODIES": "bodies", "DISPLACEMENTS": "nodes", "STRESSES": "elements"}
-HEADS = {"to last pair": "half_width_last_pair", "max pressure": "max_pressure", "first pair": "-", "last pair": "-", "half-width": "half_width",
+          "largest displacement": "max_displacement", "approach: ": "approach of ", "rotation of GRID ": "angle_", "turn of GRID ": "angle_",
+          "force of spring ": "spring_", "pull of spring ": "spring_", "moment of the support of GRID ": "moment_"}
+TITLES = {"CONTACT": "contact", "CONTACT ZONES": "zones", "ZONES": "zones", "CONTACT FORCE ON BODIES": "bodies", "BODIES": "bodies",
+          "DISPLACEMENTS": "nodes", "STRESSES": "elements"}
+HEADS = {"to last closed": "half_width_last_pair", "to last pair": "half_width_last_pair", "p_max": "max_pressure", "max pressure": "max_pressure", "first pair": "-", "last pair": "-", "half-width": "half_width",
          "first GRID": "-", "at GRID": "-", "GRID": "node", "force x": "force_x", "force y": "force_y", "equivalent": "equivalent_stress",
          "largest": "max_equivalent_stress", "strain": "equivalent_strain", "secant": "secant_modulus"}
 #: Two units in the last of six digits, as listings have them; more than rounding in single precision. Rotations [radian] are compared with no less.

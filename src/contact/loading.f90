@@ -223,7 +223,6 @@ contains
       place(entering) = row
       place(leaving) = -column
       solution%pivots = solution%pivots + 1
-      if (ratio <= negligible) solution%degenerate_pivots = solution%degenerate_pivots + 1
       if (solution%pivots <= history_limit) solution%history = &
         [solution%history, pivot_record(entering, leaving, value(place(load_factor)), ratio)]
       ! (3-4), the contact entry rule: R_k for w_k and w_k for R_k, so that never are both basic

@@ -66,7 +66,6 @@ module epcont_contact_problem
     logical, allocatable :: motion_free(:)
     integer :: sets = 0                      !! active sets that RULE JOINED has tried; 0: CONRY found it
     integer :: pivots = 0                    !! pairs exchanged by the rule that found the set
-    integer :: degenerate_pivots = 0         !! of these, without change of any variable
     integer :: restarts = 0                  !! fresh starts, after a set failed the test at full load
     type(pivot_record), allocatable :: history(:)  !! the first pivots of CONRY, at most `history_limit`
   end type contact_solution

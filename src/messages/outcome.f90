@@ -20,8 +20,8 @@ module epcont_messages_outcome
   public :: outcome_type, judge, limit_of_pressure, reason_of
   public :: remark_lines
 
-  character(len=*), parameter, public :: unbounded = 'unbounded'
-  character(len=*), parameter :: not_resolved = 'not resolved', no_contact = 'no contact'
+  character(len=*), parameter, public :: unbounded = 'singular'
+  character(len=*), parameter :: not_resolved = 'mesh too coarse', no_contact = 'no contact'
 
   !> What came of a run.
   type :: outcome_type
@@ -184,9 +184,9 @@ contains
     character(len=:), allocatable :: text
 
     text = ''
-    if (word == unbounded) text = '   unbounded: it grows with every finer mesh'
+    if (word == unbounded) text = '   singular: diverges with mesh refinement'
     if (word == no_contact) text = '   no contact: nothing touches'
-    if (word == not_resolved) text = '   not resolved: too few pairs where it is largest'
+    if (word == not_resolved) text = '   mesh too coarse: too few pairs in contact where it is largest'
   end function reason_of
 
   !> Warnings of an answer in lines, and its notes if these are wanted.

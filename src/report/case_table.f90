@@ -16,7 +16,7 @@ module epcont_report_case_table
     integer :: subcase = 0                     !! its number
     logical :: has_answer = .false.            !! else nothing below is known, but for its status
     character(len=20) :: status = ''           !! in a word
-    character(len=12) :: limit = ''            !! what the largest pressure is
+    character(len=16) :: limit = ''            !! what the largest pressure is
     integer :: touching = 0, plastic = 0       !! pairs, elements
     real(wp) :: pressure = -1.0_wp, pressure_error = -1.0_wp   !! the largest [stress]
     real(wp) :: half_width = -1.0_wp           !! of the zone that has it [length]
@@ -28,15 +28,15 @@ module epcont_report_case_table
   type(column), parameter, public :: case_columns(*) = [ &
     column(whole, 'subcase', '', 'its number', 'SUBCASE', 10), &
     column(word, 'status', '', 'what came of it, in a word', width=20), &
-    column(whole, 'pairs_in_contact', '', 'pairs that touch', 'touching', 10), &
-    column(whole, 'plastic_elements', '', 'elements beyond the yield point', 'plastic', 9), &
-    column(known, 'max_pressure', stress, 'empty: no boundary, or no answer', 'max pressure'), &
-    column(estimate, 'mesh_error_max_pressure', stress, 'empty: not known', 'error', 10), &
-    column(word, 'max_pressure_is', '', 'bounded, unbounded, not resolved, or no contact', 'it is', 13), &
+    column(whole, 'pairs_in_contact', '', 'pairs in contact', 'in contact', 11), &
+    column(whole, 'plastic_elements', '', 'yielded elements', 'yielded', 9), &
+    column(known, 'max_pressure', stress, 'empty: no boundary, or no answer', 'p_max'), &
+    column(estimate, 'mesh_error_max_pressure', stress, 'empty: not known', 'p_max error', 13), &
+    column(word, 'max_pressure_is', '', 'bounded, singular, mesh too coarse, no contact', 'p_max is', 17), &
     column(known, 'half_width', length, 'of the zone with that pressure; empty: not known', 'half-width'), &
-    column(number, 'approach', length, 'of the first free motion'), &
+    column(number, 'approach', length, 'of the first SUPORT DOF'), &
     column(rounding, 'equilibrium_residual', '', 'of the certificate, relative', 'residual', 11), &
-    column(part, 'mesh_error_energy_norm', '', 'relative', 'mesh error', 12)]
+    column(part, 'mesh_error_energy_norm', '', 'relative', 'energy error', 14)]
 
 contains
 
@@ -98,12 +98,12 @@ contains
     if (row%pressure <= 0.0_wp) then
       text = 'not known: no pair has a pressure'
     else if (row%limit == unbounded) then
-      text = 'not to be had: the largest pressure is unbounded'
+      text = 'not possible: the largest pressure is singular'
     else if (row%pressure_error < 0.0_wp) then
       text = 'not known: too few pairs are in contact'
     else
       text = when(relative_error(row) > wanted, 'not reached', 'reached')// &
-             ': the error of the mesh is estimated at '//estimate_number(relative_error(row))
+             ': the estimated mesh error is '//estimate_number(relative_error(row))
     end if
   end function accuracy_text
 

@@ -238,7 +238,7 @@ contains
     real(wp), intent(in) :: value   !! the number
     character(len=:), allocatable :: text
 
-    text = formatted('(es9.1e3)', value)
+    text = formatted('(es9.1e2)', value)
     if (value < least_difference) text = '< 1E'//text_of(ceiling(log10(max(value, 0.999_wp*rounded_off))))
   end function rounding_number
 

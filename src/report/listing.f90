@@ -47,12 +47,12 @@ contains
       integer :: k
 
       call listing%line(program_name//' '//program_version// &
-                        '   elastoplastic contact of plane bodies and rings')
+                        '   frictionless elastoplastic contact in two dimensions')
       call listing%line('')
       if (len(run%deck%title) > 0) call listing%say(printable(run%deck%title))
       if (.not. run%has_cases()) call list_titles(run, listing)
       units = run%deck%parameter_word('UNITS')
-      if (units == '') units = 'as the deck has them'
+      if (units == '') units = 'those of the deck'
       call listing%say('units: '//units)
       call listing%heading('DECK')
       do k = 1, size(run%deck%card)
@@ -122,9 +122,8 @@ contains
     !> List iteration error and rounding error.
     subroutine list_rounding()
       call list_figures(listing, figures, ['iteration_error_', 'condition       '])
-      call list_figure(listing, 'digits that rounding leaves, at least', &
+      call list_figure(listing, 'significant digits after rounding, at least', &
                        text_of(max(0, floor(-log10(run%answer%rounding())))), '')
-      call list_figure(listing, 'linear residual', rounding_number(run%certificate%equilibrium), '')
       if (run%accuracy%sensitivity%known) &
         call list_figure(listing, 'rounding in the contact forces, at most', &
                          rounding_number(run%accuracy%sensitivity%rounding), '   of the largest')
@@ -165,31 +164,19 @@ contains
     call listing%line('')
     if (run%answer%load_steps > run%model%controls%load_steps) &
       call listing%say('in '//plural(run%model%controls%load_steps, 'load step')// &
-               ' no answer was found; tried again in '//text_of(run%answer%load_steps)//' (AUTO)')
+               ' no answer was found; solved again in '//text_of(run%answer%load_steps)//' (AUTO)')
     if (any(run%answer%history%by_tangent)) call listing%say(&
-      'the last step is one by the tangent: its change is what the others have left')
-    call listing%say(plural(count(run%answer%plastic), 'element')//' of '// &
-             text_of(run%model%elements)//' beyond the yield point')
+      'the last step uses the tangent: its change is the error that the other steps have left')
+    call listing%say(text_of(count(run%answer%plastic))//' of '// &
+             plural(run%model%elements, 'element')//' yielded')
   end subroutine list_iterations
 
-  !> List pairs, work of the contact solver, zones, lines and bodies.
+  !> Pairs, contact zones, contact lines, and contact forces on bodies.
   subroutine list_contact(listing, run)
     type(table_type), intent(inout) :: listing
     type(run_results), intent(in) :: run
-    character(len=:), allocatable :: text
 
     call put_table(run, 'contact', listing)
-    call listing%line('')
-    associate (contact => run%answer%contact)
-      text = '  '//plural(contact%pivots, 'pivot')//', '//text_of(contact%degenerate_pivots)// &
-             ' degenerate'
-      if (contact%sets > 0) text = '  joined bodies: '//plural(contact%sets, 'set')//', '// &
-                                   plural(contact%pivots, 'exchange')//' of pairs'
-      call listing%line(text//when(size(run%answer%history) > 1, ', in the last solve'))
-      if (size(contact%history) > 0) call put_table(run, 'pivots', listing)
-      if (size(contact%history) > 0 .and. contact%pivots > size(contact%history)) &
-        call listing%say('and '//text_of(contact%pivots - size(contact%history))//' more')
-    end associate
     call put_table(run, 'zones', listing)
     if (size(run%answer%lines) > 0) call put_table(run, 'lines', listing)
     call put_table(run, 'bodies', listing)
@@ -201,15 +188,15 @@ contains
     type(run_results), intent(in) :: run
 
     associate (scene => run%certificate%scene)
-      call list_place('bodies in each other, of what is allowed', scene%inside)
+      call list_place('penetration anywhere / tolerance', scene%inside)
       if (scene%deepest%ratio >= little .and. scene%deepest%depth > deeper*scene%inside%depth) &
-        call list_place('  at the deepest place, of what is allowed', scene%deepest)
-      if (scene%passed%side > 0) call list_place('  on their way through each other', scene%passed)
+        call list_place('  where it is deepest / tolerance', scene%deepest)
+      if (scene%passed%side > 0) call list_place('  of bodies that passed through each other', scene%passed)
       if (run%model%pairs == 0) return
-      call list_place('pressed across a gap, of what is allowed', scene%apart)
+      call list_place('gap at a loaded pair / tolerance', scene%apart)
       if (scene%widest%ratio >= little .and. scene%widest%depth > deeper*scene%apart%depth) &
-        call list_place('  at the widest place, of what is allowed', scene%widest)
-      if (scene%beside%ratio >= little) call list_place('  beside the other body', scene%beside)
+        call list_place('  where it is widest / tolerance', scene%widest)
+      if (scene%beside%ratio >= little) call list_place('  at a pair beside the other body', scene%beside)
     end associate
 
   contains
@@ -236,25 +223,30 @@ contains
 
     call list_figures(listing, figures, [character(len=21) :: 'contact_amplification', 'mesh_error_'])
     if (size(run%accuracy%worst) > 0) &
-      call listing%say('refine first: element '//joined(run%model%element_id(run%accuracy%worst), ' ')// &
-               ', the first at '//centre_name(run%model, run%accuracy%worst(1))//'; '// &
-               percent(sum(run%accuracy%element(run%accuracy%worst)), sum(run%accuracy%element))// &
-               ' of the error')
+      call listing%say('refine elements '//joined(run%model%element_id(run%accuracy%worst), ' ')// &
+               ' first: '//percent(sum(run%accuracy%element(run%accuracy%worst)), &
+                                   sum(run%accuracy%element))//' of the error; element '// &
+               text_of(run%model%element_id(run%accuracy%worst(1)))//' is at '// &
+               centre_name(run%model, run%accuracy%worst(1)))
     if (.not. any(run%accuracy%weak)) return   ! nor is it known of each pair
-    call list_pairs('contact state uncertain: pressed by less than the error of the force', .true.)
-    call list_pairs('contact state uncertain: open by less than the error of the gap', .false.)
+    call list_pairs('closed pair', 'carry less force than its estimated error and may be open', .true.)
+    call list_pairs('open pair', 'have a gap below its estimated error and may be closed', .false.)
 
   contains
 
     !> List pairs in contact, or open pairs, whose state is uncertain.
-    subroutine list_pairs(what, touching)
-      character(len=*), intent(in) :: what
+    subroutine list_pairs(noun, what, touching)
+      character(len=*), intent(in) :: noun, what
       logical, intent(in) :: touching
       logical, allocatable :: chosen(:)
 
-      chosen = run%accuracy%weak .and. (run%answer%contact%touching .eqv. touching)
-      if (any(chosen)) call listing%say(what//', '//plural(count(chosen), 'pair')//': '// &
-                                joined(pack(run%model%pair_id, chosen), ' ', most_pairs))
+      chosen = run%answer%contact%touching .eqv. touching
+      associate (uncertain => chosen .and. run%accuracy%weak)
+        if (any(uncertain)) call listing%say(text_of(count(uncertain))//' of '// &
+            plural(count(chosen), noun)//' '//what// &
+            when(2*count(uncertain) > count(chosen) .and. touching, ': the mesh is too coarse', &
+                 ': '//joined(pack(run%model%pair_id, uncertain), ' ', most_pairs)))
+      end associate
     end subroutine list_pairs
   end subroutine list_mesh
 

@@ -26,10 +26,10 @@ module epcont_report_plan_text
 
   !> Descriptions of the methods, beginning with SECANT.
   character(len=*), parameter :: method_text(*) = [character(len=90) :: &
-    'all load each time, secant moduli from the last strains', &
-    'secant moduli from that mixture of the last strains which changes least (Anderson)', &
-    'elastic stiffness, factored once; plastic stresses as initial stresses, mixed (Anderson)', &
-    'consistent tangents, contact exact in each step, line search on the energy']
+    'full load, secant moduli from the previous strains', &
+    'full load, secant moduli from previous strains with Anderson acceleration', &
+    'elastic stiffness, factored once; initial stresses with Anderson acceleration', &
+    'consistent tangent, exact contact in each iteration, line search on the energy']
 
 contains
 
@@ -39,15 +39,19 @@ contains
     character(len=*), intent(in), optional :: of   !! names of the load cases
     character(len=:), allocatable :: text
     type(table_type) :: plan
+    logical :: deformable(scene%model%bodies)
     integer :: k
 
+    deformable = .false.
+    deformable(scene%model%body(scene%model%connectivity(1, :))) = .true.
     plan%text = ''
     if (present(of)) call plan%heading('PLAN  ('//of//')')
     if (.not. present(of)) call plan%heading('PLAN')
     call plan%say(plural(scene%model%nodes, 'node')//', '//plural(scene%model%elements, 'element')//', '// &
-             plural(scene%model%pairs, 'pair')//'; bodies: '//text_of(scene%model%bodies))
+             plural(scene%model%pairs, 'contact pair')//'; bodies: '//text_of(count(deformable))// &
+             ' deformable'//when(.not. all(deformable), ', '//text_of(count(.not. deformable))//' rigid'))
     if (scene%iteration%from_first_pivot) &
-      call plan%say('ORIGINAL: as the program of about 1980, each contact from its first pivot on')
+      call plan%say('ORIGINAL: as in about 1980, with all pivots of the simplex in each iteration')
     call say_iteration(plan, scene)
     call say_rule(plan, scene)
     do k = 1, min(most, size(scene%model%line_contact))
@@ -55,17 +59,18 @@ contains
     end do
     call say_further(size(scene%model%line_contact), 'further contact', ' of lines')
     do k = 1, min(most, scene%motions%count)
-      call plan%say('free motion: '//motion_name(scene, k))
+      call plan%say('rigid-body mode solved for (SUPORT): '//motion_name(scene, k))
     end do
-    call say_further(scene%motions%count, 'further free motion', '')
+    call say_further(scene%motions%count, 'further rigid-body mode', '')
     call say_factors()
     if (scene%model%controls%accuracy > 0.0_wp) call say_choices()
     call say_bodies()
     call plan%line('')
     call plan%say('memory '//megabytes(scene%expected%bytes)// &
              when(scene%iteration%joined, ' (up to '//megabytes(scene%expected%apart_bytes)// &
-                  ' should bodies have to be solved apart)')// &
-             ', operations '//short_real(scene%expected%operations)//when(scene%iteration%yields, ' a solve'))
+                  ' with CONRY)')// &
+             ', operations '//short_real(scene%expected%operations)// &
+             when(scene%iteration%yields, ' per solve'))
     text = plan%lines()
 
   contains
@@ -84,10 +89,10 @@ contains
 
       fronts = count(scene%numbering%body%solver == solver_frontal)
       if (fronts > 0 .and. .not. scene%iteration%joined) then
-        call plan%say('bodies factored in nested fronts (FRONTAL): '//text_of(fronts))
+        call plan%say('bodies factored with nested fronts (FRONTAL): '//text_of(fronts))
         if (scene%model%controls%solver == solver_auto) &
-          call plan%say('  chosen here (AUTO): faster where a band (BAND) takes more than '// &
-                   short_real(many_operations)//' operations, the flexibility by it '// &
+          call plan%say('  chosen by AUTO: faster if a band (BAND) needs more than '// &
+                   short_real(many_operations)//' operations, or its flexibility matrix '// &
                    short_real(many_of_flexibility))
       end if
     end subroutine say_factors
@@ -100,32 +105,35 @@ contains
                     ', TOL '//short_real(scene%iteration%tolerance))// &
                when(scene%iteration%yields .and. scene%iteration%chosen_here, &
                     ', METHOD '//trim(method_name(scene%iteration%method)))
-      if (len(chosen) == 0) chosen = ', nothing: no iteration, or the deck sets TOL and METHOD'
+      if (len(chosen) == 0) chosen = ', nothing: no iteration, or TOL and METHOD are in the deck'
       call plan%say('ACCURACY '//short_real(scene%model%controls%accuracy)//' chooses '//chosen(3:))
     end subroutine say_choices
 
-    !> List the bodies: matrix, number of factorizations, and the way to the flexibility (inversion of the
-    !! trailing block, or forward substitution of the pairs).
+    !> A row for each body with equations: its matrix, the number of factorizations, and how its flexibility
+    !! matrix follows from the factor: inversion of the trailing block, or forward substitution of the pairs.
     subroutine say_bodies()
       character(len=14) :: width, times, way
-      integer :: b
+      integer :: b, listed
 
       call plan%line('')
       call plan%begin('', body_columns)
-      do b = 1, min(most, size(scene%numbering%body))
+      listed = 0
+      do b = 1, size(scene%numbering%body)
+        if (scene%numbering%body(b)%equations == 0) cycle   ! rigid
+        listed = listed + 1
+        if (listed > most) cycle
         associate (body => scene%numbering%body(b))
           width = text_of(body%half_bandwidth)
           if (body%solver /= solver_band) width = solver_name(body%solver)
           times = '1'
           if (body%can_yield .and. scene%iteration%method /= method_inistr) times = 'each iteration'
-          if (body%equations == 0) times = '0'
           way = '-'
           if (body%contact_equations > 0) way = merge('inversion   ', 'substitution', body%contact_last)
           call plan%row([b, size(body%node), body%equations, body%contact_equations, body%border], &
                         [real(wp) ::], [width, times, way])
         end associate
       end do
-      call say_further(size(scene%numbering%body), 'further one', '')
+      call say_further(listed, 'further one', '')
     end subroutine say_bodies
   end function plan_text
 
@@ -141,15 +149,15 @@ contains
     call plan%say(when(scene%model%controls%flow_theory, 'flow', 'total')// &
              ' theory of plasticity; bodies that can yield: '//text_of(count(yielding_bodies(scene%model))))
     associate (method => scene%iteration%method)
-      call plan%say('iteration '//trim(method_name(method))//': '//method_text(method))
+      call plan%say('plasticity iteration '//trim(method_name(method))//': '//method_text(method))
     end associate
-    if (scene%iteration%chosen_here) call plan%say('  chosen here (AUTO): '// &
+    if (scene%iteration%chosen_here) call plan%say('  chosen by AUTO: '// &
       when(scene%iteration%method == method_newton, 'it needs the fewest factorizations', &
-           'the method of the paper, as MUP PAPER has no tangent for NEWTON'))
-    call plan%say('  until no displacement changes, or is estimated to be off, by more than '// &
+           'MUP PAPER has no tangent for NEWTON'))
+    call plan%say('  converged if change and estimated error of displacements are at most '// &
              short_real(scene%iteration%tolerance)//' of the largest,')
-    call plan%say('  and no stress is off its curve by more than '//short_real(scene%iteration%off_curve)// &
-             ' of the stress there; at most '//plural(scene%model%controls%most_iterations, 'iteration'))
+    call plan%say('  and the stress error is at most '//short_real(scene%iteration%off_curve)// &
+             '; at most '//plural(scene%model%controls%most_iterations, 'iteration'))
     if (scene%iteration%load_steps > 1) &
       call plan%say(plural(scene%iteration%load_steps, 'load step')//when(scene%model%controls%flow_theory, &
         ', each from the plastic strains of the one before', '; elastic unloading is not modelled'))
@@ -163,16 +171,16 @@ contains
     type(planned_model), intent(in) :: scene
 
     if (scene%model%pairs == 0) then
-      call plan%say('no pairs: no flexibility, no simplex')
+      call plan%say('no contact pairs')
     else if (scene%iteration%joined) then
-      call plan%say('contact by joined bodies, one system below, without their flexibility (JOINED)')
-      if (scene%iteration%rule_chosen_here) call plan%say('  chosen here (AUTO): faster where the '// &
-        'flexibility takes more than '//short_real(many_of(scene%model))//' operations a node')
+      call plan%say('contact solver JOINED: all bodies in one sparse system, no flexibility matrix')
+      if (scene%iteration%rule_chosen_here) call plan%say('  chosen by AUTO: faster if the '// &
+        'flexibility matrix needs more than '//short_real(many_of(scene%model))//' operations per node')
     else
-      call plan%say('contact by the simplex with contact entry rule (CONRY)')
+      call plan%say('contact solver: Conry-Seireg simplex (CONRY)')
     end if
     if (scene%model%controls%rule == rule_joined .and. .not. (scene%iteration%joined .or. scene%other_rule)) &
-      call plan%say('  not JOINED: nothing gives way at any pair')
+      call plan%say('  not JOINED: no pair is at a deformable body')
   end subroutine say_rule
 
   !> Describe a contact of lines.
@@ -185,17 +193,17 @@ contains
     master = joined(contact%master_id, ', ')
     associate (gap => scene%model%initial_gap(contact%first:contact%last))
       call plan%say('BCONP '//joined(contact%bconp, ', ')//': nodes of BLSEG '// &
-               joined(contact%slave_id, ', ')//' against sides of BLSEG '//master//': '// &
+               joined(contact%slave_id, ', ')//' against edges of BLSEG '//master//': '// &
                plural(size(gap), 'pair')//', initial gaps '//short_real(minval(gap))//' to '// &
                short_real(maxval(gap))// &
-               when(contact%nodes_left_out > 0, '; left out, since they face nothing within '// &
-                    short_real(contact%search)//': '//plural(contact%nodes_left_out, 'node')))
+               when(contact%nodes_left_out > 0, '; '//plural(contact%nodes_left_out, 'node')// &
+                    ' without a pair: no edge within '//short_real(contact%search)))
     end associate
     if (contact%last >= contact%first_of_master) &
-      call plan%say('  of these nodes of BLSEG '//master//' that stand on sides of the former: '// &
+      call plan%say('  of these, corners of BLSEG '//master//' on edges of the slave line: '// &
                text_of(contact%last - contact%first_of_master + 1))
     if (contact%is_wider .or. size(contact%came_near) > 0) &
-      call plan%say('  solved anew, with nodes that came near')
+      call plan%say('  solved again, with pairs for nodes that came close')
     call say_corners(contact%slave, contact%slave_id)
     call say_corners(contact%master, contact%master_id)
 

@@ -28,7 +28,7 @@ module epcont_report_summary
     character(len=26) :: value = ''
     character(len=13) :: unit = ''
     character(len=44) :: name = ''     !! in the listing; empty: it is not there
-    character(len=52) :: listed = ''   !! its value there
+    character(len=64) :: listed = ''   !! its value there
     character(len=80) :: note = ''     !! what follows that
   end type figure_type
 
@@ -77,7 +77,7 @@ contains
       call figures%put('approach_'//motion_key(run, k), motion_unit(run, k), number, &
                        run%answer%contact%approach(k), 'approach: '//motion_name(run, k), &
                        when(run%answer%contact%motion_free(k), newline// &
-                            '    nothing resists or drives this motion: its value is a choice'))
+                            '    undetermined: nothing resists or drives this motion; the smallest is taken'))
       call figures%list_as(listed_number(number, run%answer%contact%approach(k), &
                                          merge(0.0_wp, farthest, run%motions%component(k) == angle)))
     end do
@@ -85,14 +85,14 @@ contains
     do k = 1, size(run%model%spring)
       id = text_of(run%model%spring(k)%id)
       call figures%put('spring_'//id, force, number, run%model%spring(k)%stiffness* &
-                       spring_stretch(run%model, k, run%answer%displacement), 'pull of spring '//id)
+                       spring_stretch(run%model, k, run%answer%displacement), 'force of spring '//id)
     end do
     call figures%put('total_contact_force', force, number, sum(run%answer%contact%force), &
                      when(run%model%pairs > 0, 'total contact force'))
     call figures%put_word('pairs_in_contact', text_of(count(run%answer%contact%touching)), &
                           when(run%model%pairs > 0, 'pairs in contact'))
     call figures%put_word('plastic_elements', text_of(count(run%answer%plastic)), &
-                          when(any(run%answer%plastic), 'elements beyond the yield point'))
+                          when(any(run%answer%plastic), 'yielded elements'))
     call figures%put_word('iterations', text_of(size(run%answer%history)), '')
     call figures%put_word('factorizations', text_of(run%answer%factorizations), '')
     call figures%put_word('pivots', text_of(sum(run%answer%history%pivots)), '')
@@ -133,7 +133,8 @@ contains
 
     do k = 1, size(run%model%platen)
       id = text_of(run%model%node_id(run%model%platen(k)%leader))
-      call figures%put('angle_'//id, radian, number, run%answer%angle(k), 'turn of GRID '//id//' [radian]')
+      call figures%put('angle_'//id, radian, number, run%answer%angle(k), &
+                       'rotation of GRID '//id//' [radian]')
       if (run%model%platen(k)%held) call figures%put('moment_'//id, 'force*length', number, &
                                                      run%answer%moment(k), &
                                              'moment of the support of GRID '//id)
@@ -165,20 +166,20 @@ contains
     associate (c => run%certificate)
       call figures%put('equilibrium_residual', none, rounding, c%equilibrium, 'equilibrium residual')
       call figures%put('smallest_force', force, number, c%smallest_force, &
-                       'most negative force, of the largest')
+                       'largest pull / largest force')
       call figures%list_as(listed_number(rounding, max(0.0_wp, -c%smallest_force)/c%force_scale, 0.0_wp))
       call figures%put('smallest_gap', length, number, c%smallest_gap, &
-                       'most negative gap, of the largest length')
+                       'largest overlap of a pair / largest length')
       call figures%list_as(listed_number(rounding, c%overlap/c%length_scale, 0.0_wp))
       call figures%put('largest_force_gap_product', 'force*length', number, c%force_gap, &
                        'largest force times gap')
       call figures%list_as(listed_number(rounding, c%force_gap/c%force_scale/c%length_scale, 0.0_wp))
-      call figures%put('stress_off_curve', none, rounding, c%off_curve, 'stress off the curve')
+      call figures%put('stress_off_curve', none, rounding, c%off_curve, 'stress error')
       call figures%put('curve_tolerance', none, size_of, c%curve_tolerance, &
-                       when(c%curve_tolerance > valid_to, 'of which the iteration may leave'))
+                       when(c%curve_tolerance > valid_to, '  tolerance, from the iteration'))
       call figures%put('stress_off_curve_limit', none, size_of, c%off_curve_limit, &
                        when(c%off_curve > c%curve_tolerance .and. c%off_curve <= c%off_curve_limit, &
-                            'and with the rounding of displacements'))
+                            '  tolerance, with rounding of displacements'))
       call figures%put('energy_balance', none, rounding, c%energy, 'energy balance')
       if (.not. c%scene%looked_through) return
       call put_places(figures, 'penetration', c%scene%deepest, c%scene%inside)
@@ -206,13 +207,14 @@ contains
     integer :: last   ! solve for the loads that the answer is for
 
     last = findloc(run%answer%history%load_factor, run%answer%load_factor, dim=1, back=.true.)
-    call figures%put('condition', none, size_of, run%answer%condition, 'condition of the stiffness (1-norm)')
+    call figures%put('condition', none, size_of, run%answer%condition, &
+                     'condition number of the stiffness (1-norm)')
     call figures%put('load_factor', none, number, run%answer%load_factor)
     call figures%put('iteration_error_displacement', none, rounding, run%answer%history(last)%error, &
-                     when(size(run%answer%history) > 1, 'iteration error, of the largest displacement'))
+                     when(size(run%answer%history) > 1, 'iteration error / largest displacement'))
     call figures%put('iteration_error_force', none, rounding, run%answer%history(last)%force_error, &
                      when(size(run%answer%history) > 1 .and. run%model%pairs > 0, &
-                          'iteration error, of the largest force'))
+                          'iteration error / largest force'))
     if (run%model%controls%paper_ratio .and. run%iteration%yields) &
       call figures%put('stress_below_curve', none, part, run%answer%shortfall)
   end subroutine put_iteration

@@ -3,7 +3,6 @@ module epcont_report_tables
   use epcont_accuracy_unit_loads, only: most_bodies
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of
-  use epcont_contact_problem, only: pivot_record
   use epcont_element_kinematics, only: directions
   use epcont_report_case_table, only: case_columns
   use epcont_report_columns, only: column, columns_text, estimate, force, known, length, no_number, number, &
@@ -37,14 +36,14 @@ module epcont_report_tables
     column(number, 'force', force, 'sum over its pairs'), &
     column(known, 'max_pressure', stress, 'empty where no boundary belongs to its pairs', 'max pressure'), &
     column(number, 'half_width_last_pair', length, 'half of the way between its last pairs', &
-           'to last pair', 14), &
+           'to last closed', 16), &
     column(known, 'half_width', length, 'to where the pressure vanishes; empty: not known', 'half-width'), &
-    column(word, 'max_pressure_is', '', 'bounded, unbounded or not resolved; empty: not known', width=0)]
+    column(word, 'max_pressure_is', '', 'bounded, singular or mesh too coarse; empty: not known', width=0)]
 
   type(column), parameter :: line_columns(*) = [ &
     column(word, head='BCONP', width=10), column(word, head='slave', width=9), &
     column(word, head='master', width=9), column(whole, head='pairs', width=9), &
-    column(whole, head='left out', width=9), column(whole, head='touching', width=9), &
+    column(whole, head='no pair', width=9), column(whole, head='closed', width=9), &
     column(number, head='force'), column(number, head='on slave'), column(number, head='on master'), &
     column(number, head='difference')]
 
@@ -86,21 +85,21 @@ module epcont_report_tables
   type(column), parameter :: history_columns(*) = [ &
     column(whole, 'iteration', '', 'counted through all load steps', width=0), &
     column(whole, head='iteration', width=10), column(number, head='load factor'), &
-    column(rounding, 'change', '', 'of a displacement, over the largest displacement'), &
-    column(off_curve, 'residual', '', 'distance of a stress from its curve, over the latter', &
-           'off the curve', 15), &
-    column(whole, 'pairs_in_contact', '', 'their number', 'touching', 10), &
+    column(rounding, 'change', '', 'of a displacement / largest displacement', 'disp. change'), &
+    column(off_curve, 'stress_error', '', 'deviation of a stress from the curve, relative', &
+           'stress error', 15), &
+    column(whole, 'pairs_in_contact', '', 'their number', 'in contact', 12), &
     column(whole, 'plastic_elements', '', 'their number', 'yielded', 10), &
     column(whole, 'pivots', '', 'of the contact solver', width=10), &
     column(number, 'load_factor', '', 'part of the loads that the iteration is for', width=0)]
 
   type(column), parameter :: pivot_columns(*) = [ &
-    column(whole, 'iteration', '', 'counted through all load steps', width=0), &
-    column(whole, 'pivot', '', 'counted in it; the first 50 are kept', width=10), &
-    column(word, 'entered', '', 'the pair whose force or gap entered the basis, or the load', width=17), &
-    column(word, 'left', '', 'that which left it', width=17), &
-    column(number, 'load_factor', '', 'part of the loads, behind it', 'load factor'), &
-    column(number, 'ratio', '', 'growth of what entered, in scaled units')]
+    column(whole, 'iteration', '', 'counted through all load steps'), &
+    column(whole, 'pivot', '', 'counted in the iteration; the first 50 are kept'), &
+    column(word, 'entered', '', 'the pair whose force or gap entered the basis, or the load'), &
+    column(word, 'left', '', 'the pair whose force or gap left it'), &
+    column(number, 'load_factor', '', 'part of the loads after the pivot'), &
+    column(number, 'ratio', '', 'growth of the variable that entered, in scaled units')]
 
 contains
 
@@ -168,10 +167,10 @@ contains
 
     !> Runs of pairs in contact: one row for each zone.
     subroutine put_zones()
-      character(len=12) :: limit
+      character(len=16) :: limit
 
-      call table%begin('ZONES  (half-widths of whole zones, mirrored at lines of symmetry; '// &
-                       'forces of the pairs listed alone)', zone_columns)
+      call table%begin('CONTACT ZONES  (half-width: of the full zone, mirrored at symmetry lines; '// &
+                       'force: of the listed pairs only)', zone_columns)
       do k = 1, size(run%answer%zones)
         limit = limit_of_pressure(run, k)
         associate (zone => run%answer%zones(k))
@@ -183,8 +182,8 @@ contains
 
     !> Contact of lines, from both sides: one row for each contact.
     subroutine put_lines()
-      call table%begin('LINES IN CONTACT  (pressures on the slave line are those above; '// &
-                       'on the master line by its nodes'' forces)', line_columns, &
+      call table%begin('CONTACT LINES  (largest pressure on the slave line, and on the master line from '// &
+                       'its nodal forces)', line_columns, &
                        [0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp])
       do k = 1, size(run%answer%lines)
         associate (contact => run%model%line_contact(k), line => run%answer%lines(k))
@@ -202,8 +201,8 @@ contains
       columns = body_columns
       if (run%model%has_rings()) columns([3, 4, 6])%kind = no_number
       associate (bodies => run%answer%bodies)
-        call table%begin('BODIES  (force of contact on each that has elements; error: of the mesh, '// &
-                         'estimated of up to '//text_of(most_bodies)//' bodies)', &
+        call table%begin('CONTACT FORCE ON BODIES  (deformable bodies; mesh error, estimated for at most '// &
+                         text_of(most_bodies)//' bodies)', &
                          columns, spread(maxval([(abs(bodies(k)%resultant), k=1, size(bodies))]), 1, 5))
         do k = 1, size(bodies)
           call table%row([bodies(k)%body, run%model%node_id(bodies(k)%node)], &
@@ -236,35 +235,25 @@ contains
     end subroutine put_history
   end subroutine put_table
 
-  !> First pivots of the simplex: in the listing those of the last solve, in a file those of all solves.
+  !> The first pivots of the simplex in each solve.
   subroutine put_pivots(run, table)
     type(run_results), intent(in) :: run
     type(table_type), intent(inout) :: table
-    integer :: first, k, last
+    integer :: first, i, k
 
     call table%begin('', pivot_columns, [1.0_wp, 1.0_wp])
-    if (table%listed) call put_pivots_of(0, run%answer%contact%history)
-    if (table%listed) return
-    last = 0
+    first = 0
     do k = 1, size(run%answer%history)
-      first = last + 1
-      last = last + run%answer%history(k)%kept
-      call put_pivots_of(k, run%answer%pivot(first:last))
+      do i = 1, run%answer%history(k)%kept
+        associate (pivot => run%answer%pivot(first + i))
+          call table%row([k, i], [pivot%load_factor, pivot%ratio], &
+                         [variable(pivot%entered), variable(pivot%left)])
+        end associate
+      end do
+      first = first + run%answer%history(k)%kept
     end do
 
   contains
-
-    !> Pivots of one iteration.
-    subroutine put_pivots_of(iteration, pivot)
-      integer, intent(in) :: iteration
-      type(pivot_record), intent(in) :: pivot(:)
-      integer :: i
-
-      do i = 1, size(pivot)
-        call table%row([iteration, i], [pivot(i)%load_factor, pivot(i)%ratio], &
-                       [variable(pivot(i)%entered), variable(pivot(i)%left)])
-      end do
-    end subroutine put_pivots_of
 
     !> Name a variable of the simplex by the id of its pair.
     pure function variable(code) result(text)

@@ -139,7 +139,7 @@ def table(rows):
                 line = (f"{word:17}{element} {state}  {len(judged):4} of {len(mine) - len(sharp):4}  covered {covered:6.1%}  within a factor of 3 {near:6.1%}  "
                         f"median estimate/error {statistics.median(over) if over else 0.0:5.1f}  median estimate {size:6.2%}  needs {ten:5.2f}")
                 if sharp:
-                    line += f"   without limit {len(sharp)}, said so {sum(r['said'].startswith('unbounded') for r in sharp)}"
+                    line += f"   without limit {len(sharp)}, said so {sum(r['said'].startswith('singular') for r in sharp)}"
                 print(line)
                 if covered < COVERED:
                     faults.append(f"{word} {element} {state}: {covered:.1%}")

@@ -16,7 +16,7 @@ FACTORS = [0.5, 1.0, 0.25, 1.0]
 #: What is found is the same; how, it may not be.
 OF_THE_WAY = {"condition", "rounding_error_force", "contact_amplification", "iteration_error_displacement", "iteration_error_force", "load_factor",
               "stress_off_curve", "curve_tolerance", "energy_balance", "equilibrium_residual", "largest_force_gap_product", "smallest_gap",
-              "smallest_force", "stress_off_curve_limit", "factorizations", "pivots", "degenerate_pivots"}
+              "smallest_force", "stress_off_curve_limit", "factorizations", "pivots"}
 
 #: The left one .05 above the floor, the right one .3, beyond SEARCH.
 TWO_FEET = (

@@ -107,7 +107,7 @@ class Symmetry(scene.Extremes):
                 with self.subTest(kind=kind, slave=slave):
                     zone, = self.valid(deck).table("zones")
                     self.assertAlmostEqual(zone["half_width_last_pair"], 0.5, delta=1e-9)
-                    self.assertEqual(zone["max_pressure_is"], "unbounded")
+                    self.assertEqual(zone["max_pressure_is"], "singular")
 
 
 class Axis(scene.Extremes):
@@ -141,7 +141,7 @@ class Axis(scene.Extremes):
     def test_both_lines_tell_of_a_pressure(self):
         """The master's corner on the axis too has the pressure of its neighbour, not a force over rounding."""
         result = scene.solve(Punch("CTRAX6", True, ROUND, "elastic", "punch", across=20, load=60.0).deck())
-        line = result.listing.split("LINES IN CONTACT", 1)[1].split("\n")[2].split()
+        line = result.listing.split("CONTACT LINES", 1)[1].split("\n")[2].split()
         on_slave, on_master, difference = map(float, line[-3:])
         self.assertLess(abs(on_master - on_slave), 0.1 * on_slave)
         self.assertLess(difference, 0.1)

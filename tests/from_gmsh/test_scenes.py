@@ -121,7 +121,7 @@ class Scenes(unittest.TestCase):
         self.assertGreater(error, 5.0)
         self.assertLess(error / 3.0, told)
         self.assertLess(told, 3.0 * error)
-        x, y = map(float, re.search(r"refine first: .* the first at (\S+) (\S+);", accuracy).groups())
+        x, y = map(float, re.search(r"refine elements .* is at (\S+) (\S+)", accuracy).groups())
         self.assertLess(math.hypot(x - 2.0, y), 0.5)
 
     def listed(self, *changes):

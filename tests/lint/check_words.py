@@ -24,7 +24,7 @@ MOST_WORDS = 40
 #: Documents that are generated, or quote old texts.
 GENERATED = {"tools/benchmark/results.md", "tools/tradeoff.md"}
 #: Formulas, lists of names and quotations for which the rule makes no sense: (file, part of the line).
-EXCEPTIONS = {("input/reading_a_listing.md", "bodies in each other"), ("input/troubleshooting.md", "bodies in each other")}   # of the listing
+EXCEPTIONS = set()
 SENTENCE_END = re.compile(r"(?<=[.!?:;])\s+(?=[A-Z`*(\[0-9])")
 
 

@@ -1,4 +1,4 @@
-"""A panel of the iteration: what changes, what is off the curve, what touches and has yielded."""
+"""A panel of the iteration: what changes, stress errors, what touches and has yielded."""
 import numpy as np
 from matplotlib.ticker import LogLocator, NullLocator
 
@@ -10,7 +10,7 @@ def draw(figure, run):
     above, below = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
     n = run.history["iteration"]
     mark = "o-" if len(n) <= 40 else "-"
-    for key, colour, name in (("change", BLUE, "change"), ("residual", RED, "off the curve")):
+    for key, colour, name in (("change", BLUE, "change"), ("stress_error", RED, "stress error")):
         positive = run.history[key] > 0
         above.semilogy(n[positive], run.history[key][positive], mark, ms=3, lw=1.0, color=colour, label=name)
     for key, colour, name in (("pairs_in_contact", DARK, "pairs touching"), ("plastic_elements", GREEN, "elements yielded")):
