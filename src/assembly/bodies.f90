@@ -196,8 +196,10 @@ contains
     do b = 1, size(half)
       associate (body => scene%numbering%body(b), settlement => self%settlement)
         allocate (inner(body%equations, 1), border(body%border, 1), source=0.0_wp)
-        ! Each equation belongs to one DOF; those in sums belong to many.
-        !$omp parallel do num_threads(merge(1, threads_over(size(body%node)), size(body%tied%start) > 1))
+        ! One thread if several DOFs may share an equation: in sums, and ties of joined bodies.
+        !$omp parallel do &
+        !$omp num_threads(merge(1, threads_over(size(body%node)), scene%numbering%joined .or. &
+        !$omp             size(body%tied%start) > 1))
         do i = 1, size(body%node)
           associate (at => body%node(i))
             call put_forces(scene%numbering, b, at, &

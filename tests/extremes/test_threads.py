@@ -74,6 +74,16 @@ class Bytes(Extremes):
         """Large enough that threads share its dissection, its solves and the loops over its points, too."""
         self.same(stack(1, 150, stress=120.0), counts=FEW)
 
+    def test_joined_bodies_with_a_platen(self):
+        """Nodes of a platen share an equation: forces on them are added by one thread."""
+        deck = Deck(*STEEL)
+        deck.parameter("RULE", "JOINED")
+        nodes = deck.block(1, [i/300 for i in range(301)], [j/300 for j in range(81)])
+        deck.stand(nodes, 100.0, gaps=[1e-6*((k - 150)/150.0)**2 for k in range(301)])
+        deck.cards.remove(("SUPORT", nodes[-1][-1], 2))
+        deck.card("RBE2", 900001, nodes[-1][0], 2, *nodes[-1][1:])
+        self.same(deck, counts=(1, 2, 3, 8))
+
     def test_large_body_of_triangles(self):
         """Elements in several parts, half of them clockwise: read, checked, compared and certified by threads."""
         deck = Deck(*STEEL)
