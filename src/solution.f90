@@ -1,6 +1,9 @@
-!> The story of one scene: from the model to a certified answer.
+!> The story of one model: from the plan to a certified answer, in as many attempts as it takes.
 module epcont_solution
   use epcont_accuracy_accuracy, only: accuracy_type, assess, kept_estimates
+  use epcont_attempts, only: attempt_list, attempts, because_near, because_no_contact, &
+    because_not_converged, because_not_unique, because_refused, because_singular, because_unbalanced, &
+    more_pairs, more_steps, other_rule, refinement
   use epcont_base_error, only: error_type
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: lost_digits
@@ -15,7 +18,6 @@ module epcont_solution
   use epcont_model_model, only: line_contact
   use epcont_plan_forecast, only: check_memory
   use epcont_plan_iteration_plan, only: iteration_plan
-  use epcont_plan_joining, only: can_join
   use epcont_plan_planned_model, only: planned_model
   use epcont_plan_side_by_side, only: plan_threads
   use epcont_plasticity_load_path, only: follow_loads
@@ -37,13 +39,11 @@ module epcont_solution
   private
   public :: solution_type
 
-  !> A scene is solved again while nodes come near that had no pair, but not more often.
-  integer, parameter :: most_solves = 8
   !> Steps of refinement where forces, gaps or the energy are out of balance, or rounding has taken too much
   !! of a pivot; each gains as many digits as the factors have.
   integer, parameter :: most_refinements = 3
   !> So many times the load steps, where those asked for did not lead to an answer.
-  integer, parameter :: more_steps = 5
+  integer, parameter :: times_the_steps = 5
 
   !> What load cases hand on, where another follows (`follow_loads`).
   type :: kept_factors
@@ -66,52 +66,237 @@ module epcont_solution
     type(kept_factors) :: kept           !! from load case to load case
     !> The scene before nodes that came near in this load case got pairs; not allocated if there were none
     type(planned_model), allocatable :: as_given
+    type(attempt_list) :: attempts       !! that were made
+    logical, private :: unique = .true.  !! contact forces, as far as the contact rule has to know
   contains
     procedure :: solve
     procedure :: return_to_given
+    procedure, private :: plan_again
+    procedure, private :: solve_as_planned
+    procedure, private :: follow
+    procedure, private :: choose_attempt
+    procedure, private :: make_attempt
+    procedure, private :: why_more_steps
+    procedure, private :: why_other_rule
+    procedure, private :: why_refine
+    procedure, private :: why_more_pairs
+    procedure, private :: refine
+    procedure, private :: evaluate
+    procedure, private :: assess_answer
   end type solution_type
 
 contains
 
-  !> Solve a scene whose plan is made, anew with more pairs while nodes come near that had none.
+  !> Solve a model whose plan is made, in further attempts while there is a reason for one.
   subroutine solve(self, limit, watch, error)
     class(solution_type), intent(inout) :: self
     real(wp), intent(in) :: limit                         !! of memory [GB]
     class(observer), intent(inout) :: watch               !! takes the time, and is told of each solve
     type(error_type), allocatable, intent(out) :: error   !! there is not enough memory
-    type(line_contact), allocatable :: contacts(:)
-    integer :: count, failures
-    logical :: failed, near
+    type(accuracy_type) :: none
+    integer :: what, why
 
+    self%accuracy = none
     if (allocated(self%as_given)) deallocate (self%as_given)
-    failures = 0
-    do count = 1, most_solves + 2   ! two more, should a rule find no contact
-      call check_memory(self%expected%bytes, limit, error)
+    call self%attempts%begin()
+    call self%solve_as_planned(limit, watch, error)
+    do
       if (allocated(error)) return
-      self%iteration%threads = plan_threads(self%numbering, self%expected%bytes, granted_threads())
-      call watch%expect(self%expected%operations)
-      call analyse(self%planned_model, self%kept, self%answer, self%certificate, self%accuracy, watch, &
-                   failed)
-      ! What neither rule finds, the simplex has the words for.
-      if (failed .and. (self%iteration%joined .or. failures == 0 .and. can_join(self%model))) then
-        failures = failures + 1
-        self%other_rule = .not. self%other_rule
-      else
-        if (self%answer%failed_body > 0 .or. count >= most_solves) exit
-        call find_nodes_that_came_near(self%model, self%answer%displacement, self%answer%contact%touching, &
-                                       contacts, near)
-        if (.not. near) exit
-        if (.not. allocated(self%as_given)) self%as_given = self%planned_model
-        call pair_nodes_that_came_near(self%model, contacts, near)
-        if (.not. near) exit
-      end if
-      call self%kept%forget()
-      call self%make_plan(watch)
+      call self%choose_attempt(what, why)
+      if (why == 0) exit
+      call self%make_attempt(what, why, limit, watch, error)
     end do
+    if (self%answer%failed_body == 0 .and. self%answer%contact%state == contact_solved) &
+      call self%assess_answer(watch)
     self%verdict = find_verdict(self%answer, self%certificate, self%model%contact_is_off)
     if (.not. self%kept%another) call self%kept%forget()
     if (allocated(self%kept%virgin) .and. allocated(self%kept%linear)) deallocate (self%kept%linear)
   end subroutine solve
+
+  !> Choose the first attempt of the list that has a reason.
+  subroutine choose_attempt(self, what, why)
+    class(solution_type), intent(inout) :: self
+    integer, intent(out) :: what, why   !! `why` is 0 if there is none
+
+    do what = 1, attempts
+      why = 0
+      if (.not. self%attempts%has_left(what)) cycle
+      select case (what)
+      case (more_steps)
+        why = self%why_more_steps()
+      case (other_rule)
+        why = self%why_other_rule()
+      case (refinement)
+        why = self%why_refine()
+      case (more_pairs)
+        call self%why_more_pairs(why)
+      end select
+      if (why > 0) exit
+    end do
+  end subroutine choose_attempt
+
+  !> Make an attempt.
+  subroutine make_attempt(self, what, why, limit, watch, error)
+    class(solution_type), intent(inout) :: self
+    integer, intent(in) :: what, why
+    real(wp), intent(in) :: limit
+    class(observer), intent(inout) :: watch
+    type(error_type), allocatable, intent(out) :: error
+    integer :: many
+
+    many = 0
+    if (what == more_steps) many = times_the_steps*self%model%controls%load_steps
+    if (what == refinement) call self%refine(many, watch)
+    call self%attempts%add(what, why, many)
+    select case (what)
+    case (more_steps)
+      deallocate (self%kept%linear)
+      call self%follow(many, watch)
+    case (other_rule)
+      self%other_rule = .not. self%other_rule
+      call self%plan_again(limit, watch, error)
+    case (more_pairs)
+      call self%plan_again(limit, watch, error)
+    end select
+  end subroutine make_attempt
+
+  !> Plan the model as it now is, and solve it.
+  subroutine plan_again(self, limit, watch, error)
+    class(solution_type), intent(inout) :: self
+    real(wp), intent(in) :: limit
+    class(observer), intent(inout) :: watch
+    type(error_type), allocatable, intent(out) :: error
+
+    call self%kept%forget()
+    call self%make_plan(watch)
+    call self%solve_as_planned(limit, watch, error)
+  end subroutine plan_again
+
+  !> Is there neither an answer nor a limit load, by a method that was chosen here? What the first solve does
+  !> not find, steps do not.
+  pure integer function why_more_steps(self) result(why)
+    class(solution_type), intent(in) :: self
+
+    associate (answer => self%answer, plan => self%iteration)
+      why = merge(because_not_converged, 0, plan%chosen_here .and. plan%yields .and. &
+                  size(answer%history) > 1 .and. &
+                  .not. (answer%converged .or. answer%runs_away .or. answer%lacks_memory))
+    end associate
+  end function why_more_steps
+
+  !> Has the contact rule found no contact, or what it cannot explain? What neither rule finds, that one says
+  !! which can.
+  integer function why_other_rule(self) result(why)
+    class(solution_type), intent(in) :: self
+
+    why = 0
+    if (.not. self%has_other_rule()) return
+    associate (answer => self%answer, rule => self%kept%linear%rule)
+      if (rule%explains .and. self%attempts%count_of(other_rule) > 0) return
+      if (rule%failed .or. answer%contact%state == contact_stalled) then
+        why = because_no_contact
+      else if (rule%explains .or. answer%lacks_memory) then
+        return
+      else if (answer%failed_body > 0) then
+        why = because_singular
+      else if (answer%contact%state /= contact_solved) then
+        return
+      else if (.not. self%unique) then
+        why = because_not_unique
+      else if (answer%converged .and. .not. self%certificate%valid) then
+        why = because_refused
+      end if
+    end associate
+  end function why_other_rule
+
+  !> Are forces, gaps or the energy out of balance, or has a pivot lost too many digits?
+  pure integer function why_refine(self) result(why)
+    class(solution_type), intent(in) :: self
+
+    why = merge(because_unbalanced, 0, self%answer%converged .and. &
+                .not. (self%certificate%balanced .and. self%answer%lost() <= lost_digits))
+  end function why_refine
+
+  !> Do nodes penetrate that have no pair? They get pairs.
+  subroutine why_more_pairs(self, why)
+    class(solution_type), intent(inout) :: self
+    integer, intent(out) :: why
+    type(line_contact), allocatable :: contacts(:)
+    logical :: near
+
+    why = 0
+    if (self%answer%failed_body > 0) return
+    call find_nodes_that_came_near(self%model, self%answer%displacement, self%answer%contact%touching, &
+                                   contacts, near)
+    if (.not. near) return
+    if (.not. allocated(self%as_given)) self%as_given = self%planned_model
+    call pair_nodes_that_came_near(self%model, contacts, near)
+    if (near) why = because_near
+  end subroutine why_more_pairs
+
+  !> Solve the model as it is planned.
+  subroutine solve_as_planned(self, limit, watch, error)
+    class(solution_type), intent(inout) :: self
+    real(wp), intent(in) :: limit
+    class(observer), intent(inout) :: watch
+    type(error_type), allocatable, intent(out) :: error
+
+    call check_memory(self%expected%bytes, limit, error)
+    if (allocated(error)) return
+    self%iteration%threads = plan_threads(self%numbering, self%expected%bytes, granted_threads())
+    call watch%expect(self%expected%operations)
+    call self%follow(self%model%controls%load_steps, watch)
+  end subroutine solve_as_planned
+
+  !> Follow the loads in some load steps, and evaluate the state that was found.
+  subroutine follow(self, load_steps, watch)
+    class(solution_type), intent(inout) :: self
+    integer, intent(in) :: load_steps    !! of this load case, if something can yield
+    class(observer), intent(inout) :: watch
+    type(iteration_plan) :: plan
+    type(answer_type) :: none
+    type(certificate_type) :: no_certificate
+
+    self%answer = none
+    self%certificate = no_certificate
+    plan = self%iteration
+    if (plan%yields) plan%load_steps = load_steps
+    associate (kept => self%kept, answer => self%answer)
+      call follow_loads(self%planned_model, plan, kept%another, kept%linear, kept%virgin, &
+                        answer%followed_loads, watch)
+      if (kept%linear%rule%failed .or. answer%failed_body > 0 .or. &
+          answer%contact%state /= contact_solved) return
+      self%unique = kept%linear%rule%is_unique(self%planned_model, kept%linear%factored_bodies)
+    end associate
+    call watch%lap(stage_contact)
+    if (self%unique) call self%evaluate(watch)
+  end subroutine follow
+
+  !> Refine the answer. Gaps far below a travel are rounding, and contact found from them is out of balance:
+  !! what the certificate finds worse is not taken.
+  subroutine refine(self, steps, watch)
+    class(solution_type), intent(inout) :: self
+    integer, intent(out) :: steps        !! taken
+    class(observer), intent(inout) :: watch
+    type(answer_type) :: found           ! before refinement
+    type(certificate_type) :: found_certificate
+
+    found = self%answer
+    found_certificate = self%certificate
+    steps = 0
+    do
+      call self%kept%linear%sharpen(self%planned_model, self%answer%load_factor, self%answer%solved_state, &
+                                    self%answer%last_correction, watch)
+      if (self%answer%last_correction >= huge(1.0_wp)) exit
+      steps = steps + 1
+      call self%evaluate(watch)
+      if (steps == most_refinements .or. self%why_refine() == 0 .and. &
+          self%answer%last_correction <= lost_digits) exit
+    end do
+    if (.not. self%certificate%has_spoilt(found_certificate)) return
+    self%answer = found
+    self%certificate = found_certificate
+  end subroutine refine
 
   !> Return to the scene without the pairs of nodes that came near in this load case: other load cases are
   !! solved as if they were alone.
@@ -136,81 +321,17 @@ contains
     self%line = no_line
   end subroutine forget
 
-  !> Solve the scene as it is.
-  subroutine analyse(scene, kept, answer, certificate, accuracy, watch, failed)
-    type(planned_model), intent(in) :: scene
-    type(kept_factors), intent(inout) :: kept
-    type(answer_type), intent(out) :: answer
-    type(certificate_type), intent(out) :: certificate
-    type(accuracy_type), intent(out) :: accuracy
+  !> Stresses, pressures and zones of the state that was found, and their certificate.
+  subroutine evaluate(self, watch)
+    class(solution_type), intent(inout) :: self
     class(observer), intent(inout) :: watch
-    logical, intent(out) :: failed      !! the other rule is to find the contact
+    logical, allocatable :: touching(:)
 
-    call follow_or_step()
-    failed = kept%linear%rule%failed .or. &
-             scene%numbering%joined .and. answer%failed_body > 0 .and. .not. answer%lacks_memory .or. &
-             .not. scene%numbering%joined .and. answer%contact%state == contact_stalled
-    if (failed .or. answer%failed_body > 0 .or. answer%contact%state /= contact_solved) return
-    failed = .not. kept%linear%rule%is_unique(scene, kept%linear%factored_bodies)
-    call watch%lap(stage_contact)
-    if (failed) return
-    call evaluate_refined()
-    failed = scene%numbering%joined .and. answer%converged .and. .not. certificate%valid
-    if (failed) return
-    call use_tangent()
-    call assess(scene, kept%linear, kept%line, kept%estimates, answer, accuracy)
-    ! An open pair does not press.
-    where (.not. answer%contact%touching .and. answer%pressure > 0.0_wp) answer%pressure = -1.0_wp
-    call watch%lap(stage_accuracy)
-
-  contains
-
-    !> The stiffness that tells what errors do to an answer: its tangent, by whatever method and step it was
-    !! found.
-    subroutine use_tangent()
-      type(newton_method) :: tangent
-      integer :: failed_body
-
-      if (.not. answer%converged .or. scene%model%controls%paper_ratio .or. .not. any(answer%plastic)) return
-      if (scene%iteration%method == method_newton .or. answer%history(size(answer%history))%by_tangent) return
-      call linearise(scene, tangent, answer%solved_state, kept%linear, watch)
-      call factor_law(scene, tangent, answer%solved_state, kept%linear, failed_body, watch)
-      if (failed_body > 0) answer%condition = huge(1.0_wp)
-    end subroutine use_tangent
-
-    !> What was found, refined where rounding has left too much, and its certificate.
-    subroutine evaluate_refined()
-      type(answer_type) :: found                      ! before refinement
-      type(certificate_type) :: found_certificate
-      integer :: step
-
-      call evaluate()
-      do step = 1, most_refinements
-        if (.not. answer%converged .or. certificate%balanced .and. answer%lost() <= lost_digits .and. &
-            (step == 1 .or. answer%last_correction <= lost_digits)) exit
-        if (step == 1) then
-          found = answer
-          found_certificate = certificate
-        end if
-        call kept%linear%sharpen(scene, answer%load_factor, answer%solved_state, answer%last_correction, &
-                                 watch)
-        call evaluate()
-      end do
-      ! Gaps far below a travel are rounding, and contact found from them is out of balance.
-      if (step > 1 .and. certificate%has_spoilt(found_certificate)) then
-        answer = found
-        certificate = found_certificate
-      end if
-    end subroutine evaluate_refined
-
-    !> Stresses, pressures and zones of the state that was found, and their certificate.
-    subroutine evaluate()
-      logical, allocatable :: touching(:)
-
-      if (.not. allocated(kept%line%node)) kept%line = find_contact_line(scene%model)
+    associate (model => self%model, kept => self%kept, answer => self%answer)
+      if (.not. allocated(kept%line%node)) kept%line = find_contact_line(model)
       if (kept%linear%materials%yields .and. .not. allocated(answer%point)) &
         answer%point = kept%linear%materials%states(answer%strain)
-      associate (model => scene%model, force => answer%contact%force, volume => kept%linear%operator%volume)
+      associate (force => answer%contact%force, volume => kept%linear%operator%volume)
         call recover_stresses(model, kept%linear, answer%load_factor*model%load + pair_forces(model, force), &
                               answer)
         answer%locking = find_locking(model, volume, answer%stress, answer%equivalent_stress, &
@@ -222,29 +343,35 @@ contains
         call compare_sides(model, answer%contact%touching, force, answer%pressure, answer%lines, answer%apart)
         answer%bodies = find_body_forces(model, force)
         call watch%lap(stage_stresses)
-        call certify(model, answer, scene%iteration%off_curve, certificate)
-        if (answer%converged .and. certificate%valid) &
-          certificate%scene = look_through(model, answer%displacement, force)
+        call certify(model, answer, self%iteration%off_curve, self%certificate)
+        if (answer%converged .and. self%certificate%valid) &
+          self%certificate%scene = look_through(model, answer%displacement, force)
       end associate
-      call watch%lap(stage_certificate)
-    end subroutine evaluate
+    end associate
+    call watch%lap(stage_certificate)
+  end subroutine evaluate
 
-    !> Follow the loads; where the method was chosen here and has found neither an answer nor a limit load, in
-    !! more steps.
-    subroutine follow_or_step()
-      type(iteration_plan) :: plan
+  !> Estimate the errors of the answer, by its tangent stiffness: that tells what errors do, by whatever
+  !! method and step the answer was found.
+  subroutine assess_answer(self, watch)
+    class(solution_type), intent(inout) :: self
+    class(observer), intent(inout) :: watch
+    type(newton_method) :: tangent
+    integer :: failed_body
 
-      plan = scene%iteration
-      if (plan%yields) plan%load_steps = scene%model%controls%load_steps   ! of this load case
-      call follow_loads(scene, plan, kept%another, kept%linear, kept%virgin, answer%followed_loads, watch)
-      ! What the first solve does not find, steps do not.
-      if (plan%chosen_here .and. plan%yields .and. size(answer%history) > 1 .and. &
-          .not. (answer%converged .or. answer%runs_away .or. answer%lacks_memory)) then
-        plan%load_steps = more_steps*plan%load_steps
-        deallocate (kept%linear)
-        call follow_loads(scene, plan, kept%another, kept%linear, kept%virgin, answer%followed_loads, watch)
+    associate (answer => self%answer, kept => self%kept)
+      if (answer%converged .and. .not. self%model%controls%paper_ratio .and. any(answer%plastic)) then
+        if (self%iteration%method /= method_newton .and. &
+            .not. answer%history(size(answer%history))%by_tangent) then
+          call linearise(self%planned_model, tangent, answer%solved_state, kept%linear, watch)
+          call factor_law(self%planned_model, tangent, answer%solved_state, kept%linear, failed_body, watch)
+          if (failed_body > 0) answer%condition = huge(1.0_wp)
+        end if
       end if
-      answer%load_steps = plan%load_steps
-    end subroutine follow_or_step
-  end subroutine analyse
+      call assess(self%planned_model, kept%linear, kept%line, kept%estimates, answer, self%accuracy)
+      ! An open pair does not press.
+      where (.not. answer%contact%touching .and. answer%pressure > 0.0_wp) answer%pressure = -1.0_wp
+    end associate
+    call watch%lap(stage_accuracy)
+  end subroutine assess_answer
 end module epcont_solution

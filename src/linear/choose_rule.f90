@@ -19,6 +19,7 @@ contains
 
     if (plan%joined) allocate (joined_rule :: rule)
     if (.not. plan%joined) allocate (simplex_rule :: rule)
+    rule%explains = .not. plan%joined
     rule%threads = plan%threads
     rule%problem%initial_gap = scene%model%initial_gap
     rule%problem%travel = scene%motions%travels(scene%model)

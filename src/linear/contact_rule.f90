@@ -44,13 +44,14 @@ module epcont_linear_contact_rule
     real(wp), allocatable :: resultant(:)    !! of all loads along the rigid-body modes [motions]
     integer :: threads = 1             !! that share the work
     logical :: keeps = .false.         !! the bodies cannot yield, and a load case may follow
+    logical :: explains = .true.       !! it can say why there is no answer, and which forces are not unique
     logical :: failed = .false.        !! in this load case, to find a contact or all that is to be told of it
   contains
     procedure, non_overridable :: see_case
     procedure(take_case), deferred :: take_case
     procedure(factor), deferred :: factor
     procedure(solve), deferred :: solve
-    procedure(refine), deferred :: refine
+    procedure :: refine
     procedure(is_unique), deferred :: is_unique
     procedure(respond), deferred :: respond
     procedure(sensitivity), deferred :: sensitivity
@@ -87,18 +88,6 @@ module epcont_linear_contact_rule
       type(solved_state), intent(inout) :: state
       class(stopwatch), intent(inout) :: watch
     end subroutine solve
-
-    !> Take one step of iterative refinement.
-    subroutine refine(self, scene, bodies, load_factor, state, refined, watch)
-      import :: contact_rule, factored_bodies, planned_model, solved_state, stopwatch, wp
-      class(contact_rule), intent(inout) :: self
-      type(planned_model), intent(in) :: scene
-      class(factored_bodies), intent(in) :: bodies
-      real(wp), intent(in) :: load_factor
-      type(solved_state), intent(inout) :: state   !! contact, deformation and strain
-      logical, intent(out) :: refined              !! false: there is nothing to gain, or no contact
-      class(stopwatch), intent(inout) :: watch
-    end subroutine refine
 
     !> Are the contact forces the only ones, as far as the rule has to know?
     logical function is_unique(self, scene, bodies)
@@ -146,6 +135,19 @@ contains
     self%travel_gap = gap_opening(scene%model, scene%model%travel)
     call see_motions(scene%model, scene%motions, self%problem%motion, self%resultant)
   end subroutine see_case
+
+  !> Take one step of iterative refinement. A rule whose steps end where nothing changes gains nothing by it.
+  subroutine refine(self, scene, bodies, load_factor, state, refined, watch)
+    class(contact_rule), intent(inout) :: self
+    type(planned_model), intent(in) :: scene
+    class(factored_bodies), intent(in) :: bodies
+    real(wp), intent(in) :: load_factor
+    type(solved_state), intent(inout) :: state   !! contact, deformation and strain
+    logical, intent(out) :: refined              !! false: there is nothing to gain, or no contact
+    class(stopwatch), intent(inout) :: watch
+
+    refined = .false.
+  end subroutine refine
 
   !> Say which loads are asked for; loads without forces tell nothing.
   pure subroutine ask_for(self, asked)

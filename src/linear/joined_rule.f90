@@ -30,7 +30,6 @@ module epcont_linear_joined_rule
     procedure :: take_case
     procedure :: factor
     procedure :: solve
-    procedure :: refine
     procedure :: is_unique
     procedure :: respond
     procedure :: sensitivity
@@ -137,19 +136,6 @@ contains
           contact%force > lost_digits*maxval([contact%force, 0.0_wp]))
     end associate
   end subroutine settle
-
-  !> There is nothing to gain: the steps of `solve` end where nothing changes.
-  subroutine refine(self, scene, bodies, load_factor, state, refined, watch)
-    class(joined_rule), intent(inout) :: self
-    type(planned_model), intent(in) :: scene
-    class(factored_bodies), intent(in) :: bodies
-    real(wp), intent(in) :: load_factor
-    type(solved_state), intent(inout) :: state
-    logical, intent(out) :: refined
-    class(stopwatch), intent(inout) :: watch
-
-    refined = .false.
-  end subroutine refine
 
   !> Are the contact forces the only ones? If not, the solution cannot say which ones are indeterminate.
   logical function is_unique(self, scene, bodies)

@@ -23,6 +23,7 @@ module epcont_plan_planned_model
   contains
     procedure :: find_motions
     procedure :: make_plan
+    procedure :: has_other_rule
   end type planned_model
 
 contains
@@ -47,4 +48,11 @@ contains
     self%expected = forecast(self%model, self%motions, self%numbering, self%iteration, self%plan_cases)
     call watch%lap(stage_plan)
   end subroutine make_plan
+
+  !> Can the contact be found by another rule than the plan's?
+  logical function has_other_rule(self)
+    class(planned_model), intent(in) :: self
+
+    has_other_rule = self%iteration%joined .or. can_join(self%model)
+  end function has_other_rule
 end module epcont_plan_planned_model

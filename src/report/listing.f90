@@ -9,6 +9,7 @@ module epcont_report_listing
   use epcont_report_case_table, only: accuracy_text, row_of_case
   use epcont_report_columns, only: estimate_number, right, rounding_number, table_type
   use epcont_report_echo, only: list_cards
+  use epcont_messages_attempt_text, only: attempts_text
   use epcont_messages_names, only: centre_name, joined, percent, point_name, when
   use epcont_messages_outcome, only: remark_lines
   use epcont_messages_sentences, only: most_pairs
@@ -92,6 +93,10 @@ contains
       call listing%line('')
       call wrap(listing, '  *NOT VALID*  '//run%outcome%word//': '//run%outcome%sentence)
     end if
+    if (size(run%attempts%made) > 0) then
+      call listing%line('')
+      call wrap(listing, '  attempts: '//attempts_text(run))
+    end if
     if (.not. run%outcome%has_answer) return
     if (run%iteration%yields) call list_iterations(listing, run)
     if (run%model%pairs > 0) call list_contact(listing, run)
@@ -162,9 +167,6 @@ contains
 
     call put_table(run, 'history', listing)
     call listing%line('')
-    if (run%answer%load_steps > run%model%controls%load_steps) &
-      call listing%say('in '//plural(run%model%controls%load_steps, 'load step')// &
-               ' no answer was found; solved again in '//text_of(run%answer%load_steps)//' (AUTO)')
     if (any(run%answer%history%by_tangent)) call listing%say(&
       'the last step uses the tangent: its change is the error that the other steps have left')
     call listing%say(text_of(count(run%answer%plastic))//' of '// &

@@ -41,7 +41,6 @@ module epcont_result_answer
     type(gradient_type) :: gradient                  !! of displacements that are not small
     !> Of displacements and forces by refinement's last step, relative
     real(wp) :: last_correction = huge(1.0_wp)
-    integer :: load_steps = 1                        !! taken, where those of the plan led to no answer
   contains
     procedure :: largest_pressure
     procedure :: lost

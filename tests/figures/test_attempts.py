@@ -1,0 +1,47 @@
+#!/usr/bin/env python3
+"""The listing says which attempts were made, if there was more than one, and why."""
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+SOURCE = pathlib.Path(__file__).resolve().parent.parent.parent
+
+
+def attempts(deck):
+    """The line of the listing that says so; none if there was one attempt."""
+    with tempfile.TemporaryDirectory() as folder:
+        subprocess.run([os.environ["EPCONT_PROGRAM"], "--quiet", SOURCE / deck, "-o", folder], capture_output=True, check=False)
+        listing, = pathlib.Path(folder).glob("*.lst")
+        return [line.strip() for line in listing.read_text().splitlines() if line.startswith("  attempts: ")]
+
+
+class Attempts(unittest.TestCase):
+
+    def test_one_attempt_is_not_told(self):
+        self.assertEqual(attempts("input/hertz/hertz44.dat"), [])
+
+    def test_nodes_that_came_near(self):
+        self.assertEqual(attempts("tests/found/bar_across_a_vee.bdf"),
+                         ["attempts: (1) simplex: nodes without a pair came near; (2) more pairs: valid"])
+
+    def test_other_rule(self):
+        self.assertEqual(attempts("tests/found/pile_on_a_corner.bdf"),
+                         ["attempts: (1) simplex: no active set found; (2) joined bodies: valid"])
+
+    def test_refinement(self):
+        self.assertEqual(attempts("tests/found/oblique150x1.bdf"),
+                         ["attempts: (1) simplex: residuals, or digits lost; (2) 2 steps of refinement: valid"])
+
+    def test_more_load_steps(self):
+        self.assertEqual(attempts("tests/found/changes_that_stay.dat"),
+                         ["attempts: (1) simplex: not converged; (2) 5 load steps: ill-conditioned"])
+
+    def test_each_load_case_has_its_own(self):
+        self.assertEqual(attempts("tests/found/cases_that_come_near.bdf"),
+                         ["attempts: (1) simplex: nodes without a pair came near; (2) more pairs: valid"])
+
+
+if __name__ == "__main__":
+    unittest.main()
