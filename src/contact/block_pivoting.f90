@@ -1,11 +1,12 @@
-!> Block principal pivoting: of a set of contacts all pairs that pull open, and of the others all that overlap
-!> close, at once (Kostreva 1978; Judice and Pires 1994). It decides where rounding hides the set from the
-!> simplex, whose path it does not follow: each set is solved by a factor of its own.
+!> Block principal pivoting: of a set of contacts all pairs whose force is beyond a bound take that, and of
+!> the others all whose gap has the wrong sign close, at once (Kostreva 1978; Judice and Pires 1994). It
+!> decides where rounding hides the set from the simplex, whose path it does not follow: each set is solved by
+!> a factor of its own.
 module epcont_contact_block_pivoting
   use epcont_base_kinds, only: wp
   use epcont_contact_basis, only: new_basis
-  use epcont_contact_scaling, only: scaled_problem
-  use epcont_contact_state, only: contact_state, solve_set
+  use epcont_contact_scaling, only: active_set, scaled_problem
+  use epcont_contact_state, only: contact_state, inner_forces, signed_gaps, solve_set
   implicit none
   private
   public :: exchange_blocks
@@ -19,12 +20,12 @@ module epcont_contact_block_pivoting
 contains
 
   !> Exchange pairs until none is wrong, or that leads nowhere. The exchanges are counted.
-  subroutine exchange_blocks(scaled, closed, exchanged)
+  subroutine exchange_blocks(scaled, set, exchanged)
     type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
-    logical, intent(inout) :: closed(:)          !! the first set, then the last [n]
+    type(active_set), intent(inout) :: set       !! the first, then the last
     integer, intent(inout) :: exchanged          !! pairs so far
     type(contact_state) :: trial
-    logical :: wrong(size(closed))
+    logical :: wrong(size(set%closed))
     integer :: fewest     ! wrong pairs, at best
     integer :: patience   ! steps left to come below it
     integer :: step
@@ -32,23 +33,25 @@ contains
     fewest = huge(fewest)
     patience = patience_limit
     do step = 1, step_limit
-      trial%contact_basis = new_basis(scaled, closed)
+      trial%contact_basis = new_basis(scaled, set%closed)
       if (.not. trial%sound) then
-        if (all(closed .or. .not. scaled%first_touching)) return
-        closed = closed .or. scaled%first_touching
+        if (all(set%closed .or. .not. scaled%first%closed)) return
+        set%closed = set%closed .or. scaled%first%closed
         cycle
       end if
+      trial%at_upper = set%at_upper .and. .not. set%closed
       call solve_set(trial, scaled, scaled%gap, scaled%resultant, refinements=0)
-      wrong = wrong_pairs(scaled, trial, closed)
+      wrong = wrong_pairs(scaled, trial, set%closed)
       patience = merge(patience_limit, patience - 1, count(wrong) < fewest)
       if (patience < 0 .or. .not. any(wrong)) return
       fewest = min(fewest, count(wrong))
       exchanged = exchanged + count(wrong)
-      closed = closed .neqv. wrong
+      set%at_upper = merge(trial%force > 0.5_wp*scaled%upper, trial%at_upper, wrong .and. set%closed)
+      set%closed = set%closed .neqv. wrong
     end do
   end subroutine exchange_blocks
 
-  !> Pairs of the set that pull, and others that overlap.
+  !> Pairs of the set whose force is beyond a bound, and others whose gap has the wrong sign.
   pure function wrong_pairs(scaled, trial, closed) result(wrong)
     type(scaled_problem), intent(in) :: scaled
     type(contact_state), intent(in) :: trial
@@ -58,6 +61,7 @@ contains
 
     force_tolerance = exchange_tolerance*maxval([abs(trial%force), 1.0_wp])
     gap_tolerance = force_tolerance + exchange_tolerance*maxval([abs(scaled%gap), 0.0_wp])
-    wrong = merge(trial%force < -force_tolerance, trial%gap < -gap_tolerance, closed)
+    wrong = merge(.not. inner_forces(scaled, trial%force, -force_tolerance), &
+                  signed_gaps(trial) < -gap_tolerance, closed)
   end function wrong_pairs
 end module epcont_contact_block_pivoting

@@ -13,6 +13,9 @@
 !>     R, w |     entry     |  x - c |  row k: the basic one of R_k, w_k, at first
 !>          +---------------+--------+
 !>
+!> A force at its upper bound u is nonbasic, too: R_k then stands for u - R_k, and w_k for -w_k, so that a
+!> variable that leaves is always zero (upper bounding). Row and column of the pair change their signs.
+!>
 !> A pivot adds a column times a row to the entries. These are kept apart until there are `panel` of them, and
 !> then added by one dgemm; a column or a row of the tableau is put together when it is asked for: entry =
 !> settled + pivot_columns pivot_rows.
@@ -21,7 +24,7 @@ module epcont_contact_loading
   use epcont_base_tolerances, only: negligible, solved_to
   use epcont_contact_basis, only: respond
   use epcont_contact_problem, only: contact_solution, history_limit, pivot_record
-  use epcont_contact_scaling, only: scaled_problem
+  use epcont_contact_scaling, only: active_set, scaled_problem
   use epcont_contact_state, only: basic_values, contact_state
   use epcont_linalg_dense, only: add_product
   implicit none
@@ -36,197 +39,303 @@ module epcont_contact_loading
   !> Pivots whose products are added together.
   integer, parameter :: panel = 16
 
+  type :: load_tableau
+    integer :: n = 0                                    !! pairs
+    real(wp), allocatable :: settled(:, :)              !! the entries but for the last pivots [n, n + 1]
+    integer :: pending = 0                              !! so many are these
+    real(wp), allocatable :: pivot_columns(:, :), pivot_rows(:, :)   !! [n, panel], [panel, n + 1]
+    real(wp), allocatable :: value(:)                   !! basic variables [n]
+    !> Variable of each row, now and at the start; those are perturbed against ties [n]
+    integer, allocatable :: basic(:), first_basic(:)
+    !> Place of each variable: its row, or minus its column [-n:n]
+    integer, allocatable :: place(:)
+    real(wp), allocatable :: upper(:)                   !! bounds of the forces [n]
+    logical :: bounded = .false.                        !! some are finite
+    !> Pairs whose force is measured from its upper bound, now and at the start [n]
+    logical, allocatable :: turned(:), first_turned(:)
+    integer :: entering = load_factor                   !! variable
+    integer :: column = 0                               !! of that
+    real(wp), allocatable :: slope(:)                   !! change of the basic variables with it [n]
+    real(wp) :: load_rate = 1.0_wp                      !! and of the load factor
+    real(wp) :: ratio = 0.0_wp                          !! it grows by up to the next event
+    !> Row of the variable that leaves then; 0: none, or the entering one comes to its own bound
+    integer :: row = 0
+  contains
+    procedure :: begin
+    procedure :: turn
+    procedure :: test_ratios
+    procedure :: least_row
+    procedure :: entries_of_rows
+    procedure :: is_complete
+    procedure :: exchange
+    procedure :: pivot
+  end type load_tableau
+
 contains
 
   !> Pivot until the load is complete. Each pivot is an event of growing load: a pair closes or opens. The
   !! partner of the variable that left enters next (Conry and Seireg 1971).
-  subroutine follow_load(scaled, state, start, solution, complete, closed, ray)
+  subroutine follow_load(scaled, state, start, solution, complete, set, ray)
     type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
     type(contact_state), intent(in) :: state     !! a sound set at t = 1: its forces are basic at first
     real(wp), intent(in) :: start(:)             !! basic variable of each pair at t = 0, all >= 0 [n]
     type(contact_solution), intent(inout) :: solution   !! pivots are counted and recorded here
     !> All of the load is carried; else there is a ray, or rounding has broken the order of ties.
     logical, intent(out) :: complete
-    logical, allocatable, intent(out) :: closed(:)      !! pairs with a basic force at the end [n]
+    type(active_set), intent(out) :: set                !! pairs with a basic force at the end are closed
     !> Growth of the forces where the load cannot grow and nothing gives way; else not allocated [n]
     real(wp), allocatable, intent(out) :: ray(:)
-    real(wp) :: settled(size(start), size(start) + 1)   ! the entries but for the last pivots
-    integer :: pending                                  ! so many are these
-    real(wp) :: pivot_columns(size(start), panel), pivot_rows(panel, size(start) + 1)
-    real(wp) :: value(size(start))                      ! basic variables
-    !> Variable of each row, now and at the start; those are perturbed against ties
-    integer, dimension(size(start)) :: basic, first_basic
-    integer :: place(-size(start):size(start))          ! of each variable: its row, or minus its column
-    real(wp) :: slope(size(start))                      ! change of the basic variables with the entering one
-    real(wp) :: load_rate                               ! and of the load factor
-    integer :: column, count, entering, n, row
-    real(wp) :: ratio                                   ! the entering variable grows by up to the next event
+    type(load_tableau) :: tableau
+    integer :: count, i
+
+    call tableau%begin(scaled, state, start)
+    do count = 0, pivots_per_unknown*(tableau%n + size(scaled%resultant))
+      if (count > 0) call tableau%pivot(solution)
+      tableau%column = -tableau%place(tableau%entering)
+      tableau%slope = tableau%entries_of_rows([(i, i=1, tableau%n)], tableau%column)
+      call tableau%test_ratios()
+      complete = tableau%is_complete()
+      if (complete .or. tableau%ratio >= huge(1.0_wp)) exit
+    end do
+    associate (basic => tableau%basic, entering => tableau%entering)
+      if (.not. complete .and. tableau%ratio >= huge(1.0_wp)) then
+        allocate (ray(tableau%n), source=0.0_wp)
+        ray(pack(basic, basic > 0)) = pack(tableau%slope, basic > 0)
+        if (entering > 0) ray(entering) = 1.0_wp
+      end if
+      set%closed = tableau%place(1:) > 0
+      ! The force on its way in at full load is positive; where it moved no load it stays out.
+      if (entering > 0 .and. tableau%load_rate > 0.0_wp) set%closed(entering) = .true.
+    end associate
+    set%at_upper = tableau%turned .and. .not. set%closed
+  end subroutine follow_load
+
+  !> The tableau of the set, with the responses of the basic variables to unit nonbasic ones: gaps of the
+  !! pairs in contact, forces of the others.
+  subroutine begin(self, scaled, state, start)
+    class(load_tableau), intent(inout) :: self
+    type(scaled_problem), intent(in) :: scaled
+    type(contact_state), intent(in) :: state
+    real(wp), intent(in) :: start(:)
+    real(wp), allocatable, dimension(:, :) :: opening, load, force, approach, motion, responding
+    integer :: i, n
 
     n = size(start)
-    call begin_tableau()
-    entering = load_factor
-    do count = 0, pivots_per_unknown*(n + size(scaled%resultant))
-      if (count > 0) call pivot()
-      column = -place(entering)
-      slope = entries_of_rows([(row, row=1, n)], column)
-      call test_ratios()
-      complete = is_complete()
-      if (complete .or. row == 0) exit
+    self%n = n
+    allocate (self%pivot_columns(n, panel), self%pivot_rows(panel, n + 1), self%settled(n, n + 1))
+    allocate (self%place(-n:n))
+    self%value = start
+    self%upper = scaled%upper
+    self%bounded = any(self%upper < huge(1.0_wp))
+    associate (pairs => state%pairs)
+      self%basic = [(-i, i=1, n)]
+      self%basic(pairs) = pairs
+      self%first_basic = self%basic
+      self%place(self%basic) = [(i, i=1, n)]
+      self%place([-self%basic, load_factor]) = [(-i, i=1, n + 1)]
+      motion = scaled%motion%dense()
+      self%settled(:, :n) = scaled%flexibility_scale*scaled%flexibility
+      opening = self%settled(pairs, :n)
+      responding = self%settled(:, pairs)
+      load = -transpose(motion)
+      do i = 1, size(pairs)
+        opening(:, pairs(i)) = 0.0_wp
+        opening(i, pairs(i)) = -1.0_wp
+      end do
+      load(:, pairs) = 0.0_wp
+      self%settled(:, pairs) = 0.0_wp
+      call respond(state%contact_basis, opening, load, force, approach)
+      call add_product(1.0_wp, responding, force, self%settled(:, :n))
+      call add_product(-1.0_wp, motion, approach, self%settled(:, :n))
+      self%settled(pairs, :n) = force
+    end associate
+    self%turned = state%at_upper
+    self%first_turned = self%turned
+    do i = 1, n
+      if (.not. self%turned(i)) cycle
+      self%settled(i, :n) = -self%settled(i, :n)
+      self%settled(:, i) = -self%settled(:, i)
     end do
-    if (.not. complete .and. row == 0) then
-      allocate (ray(n), source=0.0_wp)
-      ray(pack(basic, basic > 0)) = pack(slope, basic > 0)
-      if (entering > 0) ray(entering) = 1.0_wp
-    end if
-    closed = place(1:) > 0
-    ! The force on its way in at full load is positive; where it moved no load it stays out.
-    if (entering > 0 .and. load_rate > 0.0_wp) closed(entering) = .true.
+    self%settled(:, n + 1) = basic_values(state) - start
+  end subroutine begin
+
+  !> Measure the force of a pair from its other bound, and its gap the other way.
+  subroutine turn(self, pair)
+    class(load_tableau), intent(inout) :: self
+    integer, intent(in) :: pair
+    integer :: k
+
+    self%turned(pair) = .not. self%turned(pair)
+    do k = -pair, pair, 2*pair
+      associate (at => self%place(k))
+        if (at < 0) then
+          self%settled(:, -at) = -self%settled(:, -at)
+          self%pivot_rows(:self%pending, -at) = -self%pivot_rows(:self%pending, -at)
+        else
+          self%settled(at, :) = -self%settled(at, :)
+          self%pivot_columns(at, :self%pending) = -self%pivot_columns(at, :self%pending)
+          self%value(at) = -self%value(at)
+          if (k > 0) self%value(at) = self%upper(pair) + self%value(at)
+          self%slope(at) = -self%slope(at)
+        end if
+      end associate
+    end do
+  end subroutine turn
+
+  !> How far the entering variable can grow, and the row of the basic one that comes to a bound first. 0: it
+  !! comes to its own before, or nothing comes to any (the ratio is huge).
+  subroutine test_ratios(self)
+    class(load_tableau), intent(inout) :: self
+    logical :: blocking(self%n)
+    real(wp) :: ratios(self%n)
+
+    associate (load_row => self%place(load_factor))
+      self%load_rate = merge(1.0_wp, 0.0_wp, self%entering == load_factor)
+      if (load_row > 0) &
+        self%load_rate = merge(self%slope(load_row), 0.0_wp, self%slope(load_row) > negligible)
+    end associate
+    self%row = 0
+    self%ratio = huge(1.0_wp)
+    if (self%entering > 0) self%ratio = self%upper(self%entering)
+    blocking = self%slope < -negligible .and. self%basic /= load_factor
+    ratios = huge(1.0_wp)
+    where (blocking) ratios = max(self%value, 0.0_wp)/(-self%slope)
+    if (self%bounded) call test_bounds()
+    if (.not. any(blocking)) return
+    if (self%ratio <= minval(ratios)) return
+    self%ratio = minval(ratios)
+    self%row = self%least_row(ratios <= self%ratio + negligible*max(self%ratio, 1.0_wp))
+    self%ratio = ratios(self%row)
 
   contains
 
-    !> The tableau of the set, with the responses of the basic variables to unit nonbasic ones: gaps of the
-    !! pairs in contact, forces of the others.
-    subroutine begin_tableau()
-      real(wp), allocatable, dimension(:, :) :: opening, load, force, approach, motion, responding
+    !> Forces that grow come to their upper bounds.
+    subroutine test_bounds()
       integer :: i
 
-      associate (pairs => state%pairs)
-        basic = [(-i, i=1, n)]
-        basic(pairs) = pairs
-        first_basic = basic
-        place(basic) = [(i, i=1, n)]
-        place([-basic, load_factor]) = [(-i, i=1, n + 1)]
-        value = start
-        pending = 0
-        motion = scaled%motion%dense()
-        settled(:, :n) = scaled%flexibility_scale*scaled%flexibility
-        opening = settled(pairs, :n)
-        responding = settled(:, pairs)
-        load = -transpose(motion)
-        do i = 1, size(pairs)
-          opening(:, pairs(i)) = 0.0_wp
-          opening(i, pairs(i)) = -1.0_wp
-        end do
-        load(:, pairs) = 0.0_wp
-        settled(:, pairs) = 0.0_wp
-        call respond(state%contact_basis, opening, load, force, approach)
-        call add_product(1.0_wp, responding, force, settled(:, :n))
-        call add_product(-1.0_wp, motion, approach, settled(:, :n))
-        settled(pairs, :n) = force
-        settled(:, n + 1) = basic_values(state) - start
-      end associate
-    end subroutine begin_tableau
-
-    !> How far the entering variable can grow, and the row of the basic one that becomes zero first; 0: none.
-    subroutine test_ratios()
-      logical :: blocking(n)
-      real(wp) :: ratios(n)
-
-      associate (load_row => place(load_factor))
-        load_rate = merge(1.0_wp, 0.0_wp, entering == load_factor)
-        if (load_row > 0) load_rate = merge(slope(load_row), 0.0_wp, slope(load_row) > negligible)
-      end associate
-      row = 0
-      ratio = huge(ratio)
-      blocking = slope < -negligible .and. basic /= load_factor
-      if (.not. any(blocking)) return
-      ratios = huge(ratio)
-      where (blocking) ratios = max(value, 0.0_wp)/(-slope)
-      ratio = minval(ratios)
-      row = least_row(ratios <= ratio + negligible*max(ratio, 1.0_wp))
-      ratio = ratios(row)
-    end subroutine test_ratios
-
-    !> The one of the tied rows that would block first if the basic variables of the start were larger by e,
-    !! e^2, ... (lexicographic order). Without it ties could make the simplex go round in circles. Row i
-    !! changes with such a variable by 1 if it is basic in it, not at all if it is basic elsewhere, and else
-    !! by minus the entry of its column.
-    pure integer function least_row(tied) result(row)
-      logical, intent(in) :: tied(:)     !! [n]
-      logical :: left(size(tied))
-      integer, allocatable :: rows(:)
-      real(wp), allocatable :: ratio(:)
-      real(wp) :: least
-      integer :: i, j
-
-      left = tied
-      rows = pack([(i, i=1, n)], left)
-      do j = 1, n
-        if (size(rows) == 1) exit
-        row = place(first_basic(j))
-        if (row > 0) then
-          if (.not. left(row) .or. -negligible*slope(row) >= 1.0_wp) cycle
-          left(row) = .false.
-        else
-          ratio = entries_of_rows(rows, -row)/slope(rows)
-          least = minval(ratio)
-          left(rows) = ratio <= least + negligible*max(abs(least), 1.0_wp)
-        end if
-        rows = pack(rows, left(rows))
+      do i = 1, self%n
+        if (self%basic(i) <= 0 .or. self%slope(i) <= negligible) cycle
+        associate (room => self%upper(self%basic(i)) - self%value(i))
+          if (self%upper(self%basic(i)) < huge(1.0_wp)) ratios(i) = max(room, 0.0_wp)/self%slope(i)
+        end associate
+        blocking(i) = ratios(i) < huge(1.0_wp)
       end do
-      row = rows(1)
-    end function least_row
+    end subroutine test_bounds
+  end subroutine test_ratios
 
-    !> Those of some rows in a column.
-    pure function entries_of_rows(rows, column) result(entry)
-      integer, intent(in) :: rows(:), column
-      real(wp) :: entry(size(rows))
-      integer :: i
+  !> The one of the tied rows that would block first if the basic variables of the start were larger by e,
+  !! e^2, ... (lexicographic order). Without it ties could make the simplex go round in circles. Row i
+  !! changes with such a variable by 1 if it is basic in it, not at all if it is basic elsewhere, and else
+  !! by minus the entry of its column; the other way if the variable has been turned since.
+  pure integer function least_row(self, tied) result(row)
+    class(load_tableau), intent(in) :: self
+    logical, intent(in) :: tied(:)     !! [n]
+    logical :: left(size(tied))
+    integer, allocatable :: rows(:)
+    real(wp), allocatable :: ratio(:)
+    real(wp) :: least, way
+    integer :: i, j
 
-      entry = settled(rows, column)
-      do i = 1, pending
-        entry = entry + pivot_rows(i, column)*pivot_columns(rows, i)
-      end do
-    end function entries_of_rows
-
-    !> Is all of the load carried before another variable blocks, or together with it?
-    pure logical function is_complete() result(complete)
-      real(wp) :: carried   ! so far
-
-      carried = 0.0_wp
-      if (place(load_factor) > 0) carried = value(place(load_factor))
-      complete = carried >= 1.0_wp - solved_to
-      if (load_rate > 0.0_wp) &
-        complete = complete .or. max(1.0_wp - carried, 0.0_wp)/load_rate*(1.0_wp - solved_to) <= ratio
-    end function is_complete
-
-    !> Exchange the basic variable of `row` with the entering one, whose partner enters next; of the first
-    !! pivots, write down what happened.
-    subroutine pivot()
-      integer :: j, leaving
-
-      if (pending == panel) then
-        call add_product(1.0_wp, pivot_columns, pivot_rows, settled)
-        pending = 0
+    left = tied
+    rows = pack([(i, i=1, self%n)], left)
+    do j = 1, self%n
+      if (size(rows) == 1) exit
+      way = merge(1.0_wp, -1.0_wp, self%turned(j) .eqv. self%first_turned(j))
+      row = self%place(self%first_basic(j))
+      if (row > 0) then
+        if (.not. left(row)) cycle
+        if (negligible*abs(self%slope(row)) >= 1.0_wp) cycle
+        if (way*self%slope(row) > 0.0_wp) return   ! before all others
+        left(row) = .false.
+      else
+        ratio = way*self%entries_of_rows(rows, -row)/self%slope(rows)
+        least = minval(ratio)
+        left(rows) = ratio <= least + negligible*max(abs(least), 1.0_wp)
       end if
-      ! The entering row and the leaving column are replaced as a whole by the product; the others change by
-      ! it.
-      associate (p => pending + 1)
-        do j = 1, n + 1
-          pivot_rows(p, j) = -(settled(row, j) &
-                               + dot_product(pivot_columns(row, :p - 1), pivot_rows(:p - 1, j)))/slope(row)
-          settled(row, j) = 0.0_wp
-        end do
-        pivot_rows(:p - 1, column) = 0.0_wp
-        pivot_rows(p, column) = 1.0_wp/slope(row)
-        settled(:, column) = 0.0_wp
-        pivot_columns(row, :p - 1) = 0.0_wp
-        pivot_columns(:, p) = slope
-        pivot_columns(row, p) = 1.0_wp
-      end associate
-      pending = pending + 1
-      value = value + ratio*slope
-      value(row) = ratio
+      rows = pack(rows, left(rows))
+    end do
+    row = rows(1)
+  end function least_row
 
-      leaving = basic(row)
-      basic(row) = entering
-      place(entering) = row
-      place(leaving) = -column
-      solution%pivots = solution%pivots + 1
-      if (solution%pivots <= history_limit) solution%history = &
-        [solution%history, pivot_record(entering, leaving, value(place(load_factor)), ratio)]
-      ! (3-4), the contact entry rule: R_k for w_k and w_k for R_k, so that never are both basic
-      entering = -leaving
-    end subroutine pivot
-  end subroutine follow_load
+  !> Those of some rows in a column.
+  pure function entries_of_rows(self, rows, column) result(entry)
+    class(load_tableau), intent(in) :: self
+    integer, intent(in) :: rows(:), column
+    real(wp) :: entry(size(rows))
+    integer :: i
+
+    entry = self%settled(rows, column)
+    do i = 1, self%pending
+      entry = entry + self%pivot_rows(i, column)*self%pivot_columns(rows, i)
+    end do
+  end function entries_of_rows
+
+  !> Is all of the load carried before another variable blocks, or together with it?
+  pure logical function is_complete(self) result(complete)
+    class(load_tableau), intent(in) :: self
+    real(wp) :: carried   ! so far
+
+    carried = 0.0_wp
+    if (self%place(load_factor) > 0) carried = self%value(self%place(load_factor))
+    complete = carried >= 1.0_wp - solved_to
+    if (self%load_rate > 0.0_wp) complete = complete .or. &
+      max(1.0_wp - carried, 0.0_wp)/self%load_rate*(1.0_wp - solved_to) <= self%ratio
+  end function is_complete
+
+  !> Go to the next event: a basic variable leaves, or the entering one comes to its other bound. The partner
+  !! of the variable that left enters next; of the first pivots, write down what happened.
+  subroutine pivot(self, solution)
+    class(load_tableau), intent(inout) :: self
+    type(contact_solution), intent(inout) :: solution
+    integer :: entered, leaving
+
+    entered = self%entering
+    leaving = entered
+    if (self%row > 0) leaving = self%basic(self%row)
+    if (self%row == 0) then
+      self%value = self%value + self%ratio*self%slope
+      call self%turn(leaving)
+    else
+      if (self%slope(self%row) > 0.0_wp) call self%turn(leaving)   ! at its upper bound
+      call self%exchange()
+    end if
+    solution%pivots = solution%pivots + 1
+    if (solution%pivots <= history_limit) solution%history = &
+      [solution%history, pivot_record(entered, leaving, self%value(self%place(load_factor)), self%ratio)]
+    ! (3-4), the contact entry rule: R_k for w_k and w_k for R_k, so that never are both basic
+    self%entering = -leaving
+  end subroutine pivot
+
+  !> Exchange the basic variable of `row` with the entering one.
+  subroutine exchange(self)
+    class(load_tableau), intent(inout) :: self
+    integer :: j, leaving
+
+    if (self%pending == panel) then
+      call add_product(1.0_wp, self%pivot_columns, self%pivot_rows, self%settled)
+      self%pending = 0
+    end if
+    ! The entering row and the leaving column are replaced as a whole by the product; the others change by
+    ! it.
+    associate (p => self%pending + 1, row => self%row, column => self%column)
+      do j = 1, self%n + 1
+        self%pivot_rows(p, j) = -(self%settled(row, j) &
+          + dot_product(self%pivot_columns(row, :p - 1), self%pivot_rows(:p - 1, j)))/self%slope(row)
+        self%settled(row, j) = 0.0_wp
+      end do
+      self%pivot_rows(:p - 1, column) = 0.0_wp
+      self%pivot_rows(p, column) = 1.0_wp/self%slope(row)
+      self%settled(:, column) = 0.0_wp
+      self%pivot_columns(row, :p - 1) = 0.0_wp
+      self%pivot_columns(:, p) = self%slope
+      self%pivot_columns(row, p) = 1.0_wp
+    end associate
+    self%pending = self%pending + 1
+    self%value = self%value + self%ratio*self%slope
+    self%value(self%row) = self%ratio
+    leaving = self%basic(self%row)
+    self%basic(self%row) = self%entering
+    self%place(self%entering) = self%row
+    self%place(leaving) = -self%column
+  end subroutine exchange
 end module epcont_contact_loading

@@ -24,9 +24,12 @@ contains
     real(wp), allocatable :: moved(:, :), square(:, :)  ! displacements of these modes, and their products
     real(wp), allocatable :: change(:, :), given(:, :)  ! of the modes, in all and by a force at each gap
     integer, allocatable :: pair(:)                     ! those whose gaps they open
+    real(wp), allocatable :: side(:)                    ! -1 if the gap must not be positive [these pairs]
     integer :: info
 
-    call find_neutral(problem, solution%force > 0.0_wp, loose, pair, opening)
+    call find_neutral(problem, problem%between(solution%force), loose, pair, opening)
+    side = merge(-1.0_wp, 1.0_wp, solution%at_upper(pair))
+    opening = opening*spread(side, 2, size(opening, 2))
     moved = displacements(problem, loose)
     square = matmul(transpose(moved), moved)
     call cholesky_factor(square, info)
@@ -37,14 +40,14 @@ contains
     given = transpose(opening)
     call cholesky_solve(square, change)
     call cholesky_solve(square, given)
-    call keep_open(solution%gap(pair), opening, given, change(:, 1), info)
+    call keep_open(side*solution%gap(pair), opening, given, change(:, 1), info)
     if (info /= 0) return
     associate (approach => solution%approach, &
                before => abs(solution%approach) + matmul(abs(loose), abs(change(:, 1))))
       approach = approach + matmul(loose, change(:, 1))
       where (abs(approach) <= cancelled*before) approach = 0.0_wp
     end associate
-    solution%gap(pair) = solution%gap(pair) + matmul(opening, change(:, 1))
+    solution%gap(pair) = solution%gap(pair) + side*matmul(opening, change(:, 1))
   end subroutine choose_neutral
 
   !> Add to a change of the modes what keeps all gaps open. Few of them would close: only those that did so

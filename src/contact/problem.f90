@@ -3,9 +3,10 @@
 !> Of n candidate pairs and m free rigid motions of the bodies, find contact forces R, gaps w and
 !> motions q with (3-2)..(3-5), generalised:
 !>
-!>     w = g0 + gl + F R - A q >= 0,   R >= 0,   R.w = 0,   A'R = P
+!>     w = g0 + gl + F R - A q,   A'R = P,   lower <= R <= upper
+!>     w >= 0 if R = lower,   w = 0 if R is between,   w <= 0 if R = upper
 !>
-!> F is symmetric and semidefinite; it may be singular.
+!> Normal forces are between zero and infinity. F is symmetric and semidefinite; it may be singular.
 module epcont_contact_problem
   use epcont_base_kinds, only: wp
   use epcont_flexibility_motion_matrix, only: motion_matrix
@@ -38,6 +39,10 @@ module epcont_contact_problem
     !! Not allocated: each by itself takes it by the largest gap that it closes [length] [any, m]
     real(wp), allocatable :: travel(:, :)
     integer, allocatable :: body(:)             !! of each motion [m]
+    !> Bounds of the forces; not allocated: zero and infinity, which is huge(1.0_wp) [force] [n]
+    real(wp), allocatable :: lower(:), upper(:)
+  contains
+    procedure :: between
   end type contact_problem
 
   !> One pivot. A variable is an integer: k is the force R_k, -k the gap w_k, 0 the load factor.
@@ -55,6 +60,7 @@ module epcont_contact_problem
     real(wp), allocatable :: gap(:)          !! w [length] [n]
     real(wp), allocatable :: approach(:)     !! q [m]
     logical, allocatable :: touching(:)      !! closed pairs, pressed or not [n]
+    logical, allocatable :: at_upper(:)      !! their force is at its upper bound [n]
     !> y with P'y > 0 and A y <= 0, if there is no equilibrium; if no set passed, with A y hardly more than
     !! zero, where that is the cause [m]
     real(wp), allocatable :: escape(:)
@@ -72,14 +78,24 @@ module epcont_contact_problem
 
 contains
 
+  !> Forces that are between their bounds [n].
+  pure function between(self, force)
+    class(contact_problem), intent(in) :: self
+    real(wp), intent(in) :: force(:)
+    logical :: between(size(force))
+
+    between = force > 0.0_wp
+    if (allocated(self%lower)) between = force > self%lower .and. force < self%upper
+  end function between
+
   !> No contact at all, to be filled in.
   pure type(contact_solution) function new_solution(pairs, motions) result(solution)
     integer, intent(in) :: pairs, motions   !! n, m
 
     allocate (solution%force(pairs), solution%gap(pairs), solution%approach(motions), &
               solution%escape(motions), source=0.0_wp)
-    allocate (solution%touching(pairs), solution%overlapping(pairs), solution%indeterminate(pairs), &
-              solution%motion_free(motions), source=.false.)
+    allocate (solution%touching(pairs), solution%at_upper(pairs), solution%overlapping(pairs), &
+              solution%indeterminate(pairs), solution%motion_free(motions), source=.false.)
     allocate (solution%history(0))
   end function new_solution
 end module epcont_contact_problem

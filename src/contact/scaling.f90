@@ -16,7 +16,13 @@ module epcont_contact_scaling
   use epcont_flexibility_motion_matrix, only: motion_matrix
   implicit none
   private
-  public :: scaled_problem, scale_problem, diagonal_of, drop_motions, measure, gaps_by_forces
+  public :: active_set, scaled_problem, scale_problem, diagonal_of, drop_motions, measure, gaps_by_forces
+
+  !> The state of each pair: closed, or its force at one of its bounds.
+  type :: active_set
+    logical, allocatable :: closed(:)     !! the gap is zero [n]
+    logical, allocatable :: at_upper(:)   !! the force is at its upper bound; else at the lower one [n]
+  end type active_set
 
   !> The problem in its own units, over the motions that are kept.
   type :: scaled_problem
@@ -26,6 +32,8 @@ module epcont_contact_scaling
     type(motion_matrix) :: motion               !! A [n, m]
     real(wp), allocatable :: gap(:)             !! g, gaps under load and known forces [n]
     real(wp), allocatable :: known_force(:)     !! those, 0 where the problem has none [n]
+    !> All forces, the known ones too, are measured from their lower bounds: these, and the upper bounds [n]
+    real(wp), allocatable :: lower(:), upper(:)
     real(wp), allocatable :: gap_terms(:)       !! what g is the sum of [n]
     real(wp), allocatable :: unloaded_gap(:)    !! g^, gaps of the start, >= 0 [n]
     real(wp), allocatable :: resultant(:)       !! P [m]
@@ -41,7 +49,7 @@ module epcont_contact_scaling
     real(wp), allocatable :: softness(:)
     !> A pivot of F_g up to this part of that is rounding: a hundredth of a negligible one, or that of n sums.
     real(wp) :: rank_tolerance = 0.0_wp
-    logical, allocatable :: first_touching(:)   !! pairs that hold every motion [n]
+    type(active_set) :: first                   !! that of rigid bodies: its closed pairs hold every motion
     logical, allocatable :: guess(:)   !! of the pairs in contact; not allocated where there is none [n]
   end type scaled_problem
 
@@ -88,9 +96,22 @@ contains
     scaled%flexibility => problem%flexibility
     scaled%own_flexibility = 0*scaled%gap
     scaled%motion = problem%motion%over(scaled%motion_size)
+    call take_bounds()
     call measure(scaled)
 
   contains
+
+    !> Forces from their lower bounds on, which carry a part of the load.
+    pure subroutine take_bounds()
+      scaled%lower = 0*scaled%gap
+      scaled%upper = spread(huge(1.0_wp), 1, size(scaled%gap))
+      if (.not. allocated(problem%lower)) return
+      scaled%lower = problem%lower/scaled%force_unit
+      where (problem%upper < huge(1.0_wp)) scaled%upper = problem%upper/scaled%force_unit - scaled%lower
+      if (all(scaled%lower == 0.0_wp)) return
+      scaled%known_force = scaled%known_force - scaled%lower
+      scaled%resultant = scaled%resultant - scaled%motion%carried(scaled%lower)
+    end subroutine take_bounds
 
     !> Force that opens a gap; 0 where nothing gives way.
     pure real(wp) function force_over(gap) result(force)

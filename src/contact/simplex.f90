@@ -14,7 +14,7 @@ module epcont_contact_simplex
   use epcont_contact_block_pivoting, only: exchange_blocks
   use epcont_contact_loading, only: follow_load
   use epcont_contact_problem, only: contact_overlap, contact_solution, contact_solved, contact_stalled
-  use epcont_contact_scaling, only: diagonal_of, gaps_by_forces, measure, scaled_problem
+  use epcont_contact_scaling, only: active_set, diagonal_of, gaps_by_forces, measure, scaled_problem
   use epcont_contact_state, only: basic_values, contact_state, guess_tolerance, has_right_signs, &
     renew_state, solve_set
   implicit none
@@ -36,20 +36,20 @@ contains
     type(contact_state), intent(inout) :: state   !! with any basis; the set found, fresh
     real(wp), allocatable, intent(out) :: ray(:)        !! if the state is overlap [n]
     real(wp), allocatable :: lifted(:)   ! basic variable of each pair at t = 0 [n]
-    logical, allocatable :: closed(:)
+    type(active_set) :: set
     integer :: attempt, k
     logical :: complete, found
 
-    closed = scaled%first_touching
-    if (allocated(scaled%guess)) closed = closed .or. scaled%guess
-    call take_set(closed)
+    set = scaled%first
+    if (allocated(scaled%guess)) set%closed = set%closed .or. scaled%guess
+    call take_set(set)
     if (state%sound .and. .not. allocated(scaled%guess)) lifted = unloaded_values()
     do attempt = 0, restart_limit
       if (.not. state%sound) exit   ! the motions are held too badly to be computed
       solution%state = contact_solved
       if (has_right_signs(scaled, state, merge(guess_tolerance, solved_to, attempt == 0))) return
       solution%restarts = attempt
-      call follow_load(scaled, state, lifted, solution, complete, closed, ray)
+      call follow_load(scaled, state, lifted, solution, complete, set, ray)
       if (allocated(ray)) then
         if (is_overlap(ray)) then
           solution%state = contact_overlap
@@ -57,12 +57,13 @@ contains
         end if
       end if
       if (complete .and. mod(attempt, 2) == 0) then
-        call take_set(closed)
+        call take_set(set)
         if (has_right_signs(scaled, state, solved_to)) return
       else
-        call take_set(scaled%first_touching)
+        call take_set(scaled%first)
         ! By values that are all apart from each other, against ties that rounding decides wrongly.
         lifted = lifted + [(1.0_wp + real(k, wp)/size(lifted), k=1, size(lifted))]/2.0_wp**attempt
+        lifted(state%pairs) = min(lifted(state%pairs), scaled%upper(state%pairs))
       end if
       if (attempt > 1) cycle
       call exchange_afresh(found)
@@ -72,13 +73,22 @@ contains
 
   contains
 
-    !> Go on from a set, without what is negative in its solution.
-    subroutine take_set(closed)
-      logical, intent(in) :: closed(:)   !! [n]
+    !> Go on from a set, without what is beyond bounds in its solution.
+    subroutine take_set(set)
+      type(active_set), intent(in) :: set
 
-      call renew_state(state, scaled, closed)
-      lifted = max(basic_values(state), 0.0_wp)
+      call renew_state(state, scaled, set)
+      lifted = bounded_values(state)
     end subroutine take_set
+
+    !> The basic variables of a state, between their bounds.
+    pure function bounded_values(state) result(values)
+      type(contact_state), intent(in) :: state
+      real(wp) :: values(size(scaled%gap))
+
+      values = max(basic_values(state), 0.0_wp)
+      values(state%pairs) = min(values(state%pairs), scaled%upper(state%pairs))
+    end function bounded_values
 
     !> The same before the load: rigid bodies that just touch, with gaps g^.
     pure function unloaded_values() result(values)
@@ -86,9 +96,10 @@ contains
       type(contact_state) :: rest
 
       rest%contact_basis = state%contact_basis
+      rest%at_upper = state%at_upper
       call solve_set(rest, scaled, scaled%unloaded_gap + gaps_by_forces(scaled, scaled%known_force), &
                      0.0_wp*scaled%resultant, refinements=1)
-      values = max(basic_values(rest), 0.0_wp)
+      values = bounded_values(rest)
     end function unloaded_values
 
     !> Block pivoting from nothing, each pair having some flexibility of its own. Nothing is left of it unless
@@ -101,13 +112,13 @@ contains
 
       softer = scaled
       softer%own_flexibility = spread(attempt*own_flexibility*scaled%flexibility_scale &
-                                      *maxval([diagonal_of(scaled%flexibility), 0.0_wp]), 1, size(closed))
+                                      *maxval([diagonal_of(scaled%flexibility), 0.0_wp]), 1, size(scaled%gap))
       call measure(softer)
       exchanged = solution%pivots
-      closed = scaled%first_touching
-      call exchange_blocks(softer, closed, exchanged)
-      closed = closed .or. scaled%first_touching
-      call renew_state(better, scaled, closed)
+      set = scaled%first
+      call exchange_blocks(softer, set, exchanged)
+      set%closed = set%closed .or. scaled%first%closed
+      call renew_state(better, scaled, set)
       found = has_right_signs(scaled, better, solved_to)
       if (.not. found) return
       solution%pivots = exchanged

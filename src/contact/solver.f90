@@ -6,10 +6,11 @@ module epcont_contact_solver
   use epcont_contact_basis, only: contact_basis, move_basis, new_basis, respond
   use epcont_contact_equilibrium, only: find_rigid_start, rigid_start
   use epcont_contact_problem, only: contact_no_equilibrium, contact_overlap, contact_problem, &
-    contact_solution, contact_solved, contact_stalled, new_solution
+    contact_solution, contact_stalled, new_solution
   use epcont_contact_scaling, only: drop_motions, scale_problem, scaled_problem
   use epcont_contact_simplex, only: find_contacts
-  use epcont_contact_state, only: contact_state, gaps_under, solve_set, terms_of_gaps
+  use epcont_contact_state, only: contact_state, gaps_under, inner_forces, signed_gaps, solve_set, &
+    terms_of_gaps
   use epcont_contact_uniqueness, only: find_undetermined_motions, find_indeterminate_forces, share_equally
   use epcont_flexibility_motion_matrix, only: motion_matrix
   use epcont_linalg_dense, only: null_space
@@ -19,7 +20,8 @@ module epcont_contact_solver
 
 contains
 
-  !> Find forces, gaps and motions of a contact problem, or why there are none.
+  !> Find forces, gaps and motions of a contact problem, or why there are none. Of no answer the cause may be
+  !! that pairs hold a motion by so little that rounding of the loads along it is too large a force.
   subroutine solve_contact(problem, solution, start, basis, any_forces)
     type(contact_problem), intent(in), target :: problem   !! in the deck's units
     type(contact_solution), intent(out) :: solution   !! its state says whether there is one
@@ -29,147 +31,156 @@ contains
     logical, intent(in), optional :: any_forces   !! true: it is not asked whether there are other forces
     type(scaled_problem) :: scaled
     type(rigid_start) :: rigid
+    type(contact_state) :: state
     type(motion_matrix) :: motion   ! A of all motions, scaled [n, m]
+    real(wp), allocatable :: loose(:, :), ray(:)
 
     scaled = scale_problem(problem)
     motion = scaled%motion
     if (present(start)) scaled%guess = start
     solution = new_solution(size(scaled%gap), size(scaled%resultant))
     solution%gap = scaled%gap*scaled%gap_unit
-    call find_rigid_start(motion, scaled%resultant, scaled%unloaded_gap, rigid)
+    call find_rigid_start(motion, scaled%resultant, scaled%unloaded_gap, rigid, scaled%upper)
     if (.not. rigid%balanced) then
       solution%state = contact_no_equilibrium
       solution%escape = rigid%escape/scaled%motion_size
       return
     end if
-    scaled%first_touching = rigid%touching
+    scaled%first%closed = rigid%touching
+    scaled%first%at_upper = rigid%at_upper
     call drop_motions(scaled, rigid%redundant)
-    call solve_by_simplex()
-
-  contains
-
-    !> RULE CONRY. Of no answer the cause may be that pairs hold a motion by so little that rounding of the
-    !! loads along it is too large a force.
-    subroutine solve_by_simplex()
-      type(contact_state) :: state
-      real(wp), allocatable :: loose(:, :), ray(:)
-
-      if (present(basis)) call move_basis(basis, state%contact_basis)
-      call find_contacts(scaled, solution, state, ray)
-      select case (solution%state)
-      case (contact_overlap)
-        solution%overlapping = ray > null_component*maxval(ray)
-      case (contact_stalled)
-        loose = null_space(motion%dense(), cancelled/solved_to)
-        if (size(loose, 2) == 0) return
-        solution%escape = loose(:, 1)/scaled%motion_size
-        ray = abs(motion%times(loose(:, 1)))
-        solution%overlapping = ray > 0.5_wp*maxval(ray)
-      case default
-        call settle(state, solution)
-      end select
-    end subroutine solve_by_simplex
-
-    !> The answer in the deck's units, and what the conditions leave open in it.
-    subroutine settle(state, solution)
-      type(contact_state), intent(inout) :: state
-      type(contact_solution), intent(inout) :: solution
-      !> What gaps are the sum of; the motions have the rounding of those that hold them [n]
-      real(wp), allocatable :: terms(:)
-      real(wp) :: zero                    !! force that rounding leaves of none
-
-      zero = negligible*maxval([state%force, 1.0_wp])
-      call cut_rounding(state, terms)
-      solution%approach(scaled%kept) = state%approach
-      call find_touching(state, terms, solution%touching)
-      solution%motion_free = find_undetermined_motions(motion, solution%touching, &
-          state%force > lost_digits*maxval([state%force, 1.0_wp]))
-      if (any(solution%motion_free)) then
-        call open_pairs(state, state%force <= zero)
-        call close_by_motions(state)
-        solution%approach(scaled%kept) = state%approach
-      end if
-      if (.not. present(any_forces)) then
-        solution%indeterminate = find_indeterminate_forces(scaled, solution%touching, state%force > zero)
-        call share_equally(scaled, solution%indeterminate, state%force)
-        where (solution%indeterminate) state%change = state%force - scaled%known_force
+    if (present(basis)) call move_basis(basis, state%contact_basis)
+    call find_contacts(scaled, solution, state, ray)
+    select case (solution%state)
+    case (contact_overlap)
+      solution%overlapping = ray > null_component*maxval(ray)
+    case (contact_stalled)
+      loose = null_space(motion%dense(), cancelled/solved_to)
+      if (size(loose, 2) == 0) return
+      solution%escape = loose(:, 1)/scaled%motion_size
+      ray = abs(motion%times(loose(:, 1)))
+      solution%overlapping = ray > 0.5_wp*maxval(ray)
+    case default
+      call settle(scaled, motion, state, solution, .not. present(any_forces))
+      if (allocated(problem%lower)) then   ! without rounding
+        where (state%force <= 0.0_wp) solution%force = problem%lower
+        where (state%force >= scaled%upper) solution%force = problem%upper
       end if
       if (present(basis)) call move_basis(state%contact_basis, basis)
-      ! In the deck's units.
-      solution%force = state%force*scaled%force_unit
-      solution%change = state%change*scaled%force_unit
-      solution%gap = state%gap*scaled%gap_unit
-      solution%approach = solution%approach*scaled%gap_unit/scaled%motion_size
-    end subroutine settle
-
-    !> Take their force from some pairs.
-    pure subroutine open_pairs(state, chosen)
-      type(contact_state), intent(inout) :: state
-      logical, intent(in) :: chosen(:)        !! [n]
-
-      where (chosen) state%force = 0.0_wp
-      where (chosen) state%change = -scaled%known_force
-    end subroutine open_pairs
-
-    !> Close what forces that were taken from pairs leave of the gaps of others: in a slender body that is
-    !! much. Pairs of the basis hold the motions, those without force as well.
-    pure subroutine close_by_motions(state)
-      type(contact_state), intent(inout) :: state
-      real(wp), allocatable :: approach(:, :), change(:, :), gap(:), before(:)
-
-      if (.not. state%sound) return
-      before = gaps_under(scaled, scaled%gap, state%change, state%approach)
-      call respond(state%contact_basis, reshape(before(state%pairs), [size(state%pairs), 1]), &
-                   reshape(0*state%approach, [size(state%approach), 1]), change, approach)
-      gap = gaps_under(scaled, scaled%gap, state%change, state%approach + approach(:, 1))
-      associate (pressed => state%force > 0.0_wp)
-        if (maxval([abs(gap), 0.0_wp], mask=[pressed, .true.]) >= &
-            maxval([abs(before), 0.0_wp], mask=[pressed, .true.])) return
-      end associate
-      state%approach = state%approach + approach(:, 1)
-      where (abs(state%gap) > 0.0_wp) state%gap = gap
-    end subroutine close_by_motions
-
-    !> Which pairs touch: no gap is left of theirs.
-    pure subroutine find_touching(state, terms, touching)
-      type(contact_state), intent(inout) :: state
-      real(wp), intent(in) :: terms(:)        !! what gaps are the sum of [n]
-      logical, intent(out) :: touching(:)     !! [n]
-
-      where (state%force > 0.0_wp) state%gap = 0.0_wp
-      touching = state%gap <= negligible*max(terms, maxval([terms(state%pairs), 0.0_wp]))
-      where (touching) state%gap = 0.0_wp
-    end subroutine find_touching
-
-    !> Forces and motions without what rounding has left of none. A force that is cut off may have been less
-    !! than none: its pair need not be closed. Where rigid stops take the load, gaps may be far below the size
-    !! that they are measured in, and that force may have held other pairs closed: those are solved for again.
-    subroutine cut_rounding(state, terms)
-      type(contact_state), intent(inout) :: state
-      real(wp), allocatable, intent(out) :: terms(:)   !! what gaps are the sum of [n]
-      type(contact_state) :: fewer
-      logical, allocatable :: moving(:), pressed(:)
-
-      do
-        pressed = state%force > cancelled
-        call open_pairs(state, .not. pressed)
-        terms = terms_of_gaps(scaled, state)
-        moving = abs(state%approach) > cancelled*maxval([terms(state%pairs), cancelled])
-        if (all(moving) .and. all(pressed(state%pairs))) return
-        where (.not. moving) state%approach = 0.0_wp
-        terms = terms_of_gaps(scaled, state)
-        state%gap = gaps_under(scaled, scaled%gap, state%change, state%approach)
-        if (all(abs(state%gap) <= negligible*terms .or. .not. pressed) .or. &
-            all(pressed(state%pairs))) return
-        fewer%contact_basis = new_basis(scaled, pressed)
-        if (.not. fewer%sound) return   ! a motion is held by rounding
-        call solve_set(fewer, scaled, scaled%gap, scaled%resultant, refinements=1)
-        call move_basis(fewer%contact_basis, state%contact_basis)
-        state%force = fewer%force
-        state%change = fewer%change
-        state%gap = fewer%gap
-        state%approach = fewer%approach
-      end do
-    end subroutine cut_rounding
+    end select
   end subroutine solve_contact
+
+  !> The answer in the deck's units, and what the conditions leave open in it.
+  subroutine settle(scaled, motion, state, solution, asks_for_others)
+    type(scaled_problem), intent(in) :: scaled
+    type(motion_matrix), intent(in) :: motion       !! A of all motions, scaled
+    type(contact_state), intent(inout) :: state
+    type(contact_solution), intent(inout) :: solution
+    logical, intent(in) :: asks_for_others          !! whether there are other forces
+    !> What gaps are the sum of; the motions have the rounding of those that hold them [n]
+    real(wp), allocatable :: terms(:)
+    real(wp) :: zero                    ! force that rounding leaves of none
+
+    zero = negligible*maxval([state%force, 1.0_wp])
+    call cut_rounding(scaled, state, terms)
+    solution%approach(scaled%kept) = state%approach
+    call find_touching(scaled, state, terms, solution%touching)
+    solution%motion_free = find_undetermined_motions(motion, solution%touching, &
+      inner_forces(scaled, state%force, lost_digits*maxval([state%force, 1.0_wp])), state%at_upper)
+    if (any(solution%motion_free)) then
+      call take_bounds(scaled, state, .not. inner_forces(scaled, state%force, zero))
+      call close_by_motions(scaled, state)
+      solution%approach(scaled%kept) = state%approach
+    end if
+    if (asks_for_others) then
+      solution%indeterminate = find_indeterminate_forces(scaled, solution%touching, &
+        inner_forces(scaled, state%force, zero), state%at_upper)
+      call share_equally(scaled, solution%indeterminate, state%force)
+      where (solution%indeterminate) state%change = state%force - scaled%known_force
+    end if
+    ! In the deck's units.
+    solution%at_upper = state%at_upper
+    solution%force = (state%force + scaled%lower)*scaled%force_unit
+    solution%change = state%change*scaled%force_unit
+    solution%gap = state%gap*scaled%gap_unit
+    solution%approach = solution%approach*scaled%gap_unit/scaled%motion_size
+  end subroutine settle
+
+  !> Set the force of some pairs to the bound that is nearer.
+  pure subroutine take_bounds(scaled, state, chosen)
+    type(scaled_problem), intent(in) :: scaled
+    type(contact_state), intent(inout) :: state
+    logical, intent(in) :: chosen(:)        !! [n]
+
+    where (chosen)
+      state%at_upper = state%force > 0.5_wp*scaled%upper .or. state%at_upper .and. scaled%upper <= 0.0_wp
+      state%force = merge(scaled%upper, 0.0_wp, state%at_upper)
+      state%change = state%force - scaled%known_force
+    end where
+  end subroutine take_bounds
+
+  !> Close what forces that were taken from pairs leave of the gaps of others: in a slender body that is
+  !! much. Pairs of the basis hold the motions, those without force as well.
+  pure subroutine close_by_motions(scaled, state)
+    type(scaled_problem), intent(in) :: scaled
+    type(contact_state), intent(inout) :: state
+    real(wp), allocatable :: approach(:, :), change(:, :), gap(:), before(:)
+
+    if (.not. state%sound) return
+    before = gaps_under(scaled, scaled%gap, state%change, state%approach)
+    call respond(state%contact_basis, reshape(before(state%pairs), [size(state%pairs), 1]), &
+                 reshape(0*state%approach, [size(state%approach), 1]), change, approach)
+    gap = gaps_under(scaled, scaled%gap, state%change, state%approach + approach(:, 1))
+    associate (pressed => inner_forces(scaled, state%force, 0.0_wp))
+      if (maxval([abs(gap), 0.0_wp], mask=[pressed, .true.]) >= &
+          maxval([abs(before), 0.0_wp], mask=[pressed, .true.])) return
+    end associate
+    state%approach = state%approach + approach(:, 1)
+    where (abs(state%gap) > 0.0_wp) state%gap = gap
+  end subroutine close_by_motions
+
+  !> Find the pairs in contact, that is, with zero gap.
+  pure subroutine find_touching(scaled, state, terms, touching)
+    type(scaled_problem), intent(in) :: scaled
+    type(contact_state), intent(inout) :: state
+    real(wp), intent(in) :: terms(:)        !! what gaps are the sum of [n]
+    logical, intent(out) :: touching(:)     !! [n]
+
+    where (inner_forces(scaled, state%force, 0.0_wp)) state%gap = 0.0_wp
+    touching = signed_gaps(state) <= negligible*max(terms, maxval([terms(state%pairs), 0.0_wp]))
+    where (touching) state%gap = 0.0_wp
+  end subroutine find_touching
+
+  !> Forces and motions without what rounding has left of none. A force that is cut off may have been less
+  !! than none: its pair need not be closed. Where rigid stops take the load, gaps may be far below the size
+  !! that they are measured in, and that force may have held other pairs closed: those are solved for again.
+  subroutine cut_rounding(scaled, state, terms)
+    type(scaled_problem), intent(in) :: scaled
+    type(contact_state), intent(inout) :: state
+    real(wp), allocatable, intent(out) :: terms(:)   !! what gaps are the sum of [n]
+    type(contact_state) :: fewer
+    logical, allocatable :: moving(:), pressed(:)
+
+    do
+      pressed = inner_forces(scaled, state%force, cancelled)
+      call take_bounds(scaled, state, .not. pressed)
+      terms = terms_of_gaps(scaled, state)
+      moving = abs(state%approach) > cancelled*maxval([terms(state%pairs), cancelled])
+      if (all(moving) .and. all(pressed(state%pairs))) return
+      where (.not. moving) state%approach = 0.0_wp
+      terms = terms_of_gaps(scaled, state)
+      state%gap = gaps_under(scaled, scaled%gap, state%change, state%approach)
+      if (all(abs(state%gap) <= negligible*terms .or. .not. pressed) .or. &
+          all(pressed(state%pairs))) return
+      fewer%contact_basis = new_basis(scaled, pressed)
+      if (.not. fewer%sound) return   ! a motion is held by rounding
+      fewer%at_upper = state%at_upper
+      call solve_set(fewer, scaled, scaled%gap, scaled%resultant, refinements=1)
+      call move_basis(fewer%contact_basis, state%contact_basis)
+      state%force = fewer%force
+      state%change = fewer%change
+      state%gap = fewer%gap
+      state%approach = fewer%approach
+    end do
+  end subroutine cut_rounding
 end module epcont_contact_solver

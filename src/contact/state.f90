@@ -1,12 +1,14 @@
-!> The solution of the contact equations for a set of pairs in contact, and the test of its signs.
+!> The solution of the contact equations for a set of pairs in contact, the forces of the others being at one
+!> of their bounds, and the test of its signs.
 module epcont_contact_state
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: cancelled
   use epcont_contact_basis, only: contact_basis, new_basis, renew_basis, respond
-  use epcont_contact_scaling, only: gaps_by_forces, scaled_problem
+  use epcont_contact_scaling, only: active_set, gaps_by_forces, scaled_problem
   implicit none
   private
-  public :: contact_state, renew_state, solve_set, basic_values, gaps_under, has_right_signs, terms_of_gaps
+  public :: contact_state, renew_state, solve_set, basic_values, gaps_under, has_right_signs, inner_forces, &
+    signed_gaps, terms_of_gaps
 
   !> Part of the largest force by which forces and gaps may have the wrong sign, in scaled units: all that can
   !! be asked where the flexibility is badly conditioned (1e10: tests/contact/hard_problem), and what is asked
@@ -15,7 +17,8 @@ module epcont_contact_state
 
   !> A set with its solution at full load; without forces where the basis is not sound.
   type, extends(contact_basis) :: contact_state
-    real(wp), allocatable :: force(:)           !! zero outside the basis [n]
+    logical, allocatable :: at_upper(:)         !! forces outside the basis at their upper bounds [n]
+    real(wp), allocatable :: force(:)           !! at one of its bounds outside the basis [n]
     !> What they are more than the known ones: where these are large, no digits of it are left in the sum [n]
     real(wp), allocatable :: change(:)
     real(wp), allocatable :: gap(:)             !! zero up to rounding in the basis [n]
@@ -26,17 +29,19 @@ contains
 
   !> Forces, gaps and motions of a set of contacts, with the pairs that touch first should they not hold every
   !! motion.
-  subroutine renew_state(state, scaled, closed)
+  subroutine renew_state(state, scaled, set)
     type(contact_state), intent(inout) :: state   !! its basis, if it is of that set, is taken as it is
     type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
-    logical, intent(in) :: closed(:)   !! [n]
+    type(active_set), intent(in) :: set
 
-    call renew_basis(state%contact_basis, scaled, closed)
-    if (.not. state%sound) state%contact_basis = new_basis(scaled, closed .or. scaled%first_touching)
+    call renew_basis(state%contact_basis, scaled, set%closed)
+    if (.not. state%sound) state%contact_basis = new_basis(scaled, set%closed .or. scaled%first%closed)
+    state%at_upper = set%at_upper
+    state%at_upper(state%pairs) = .false.
     call solve_set(state, scaled, scaled%gap, scaled%resultant, refinements=1)
   end subroutine renew_state
 
-  !> Forces, gaps and motions with the pairs of the basis closed and the others free of force.
+  !> Forces, gaps and motions with the pairs of the basis closed and the forces of the others at their bounds.
   pure subroutine solve_set(state, scaled, opening, load, refinements)
     type(contact_state), intent(inout) :: state   !! its basis is solved with
     type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
@@ -47,7 +52,7 @@ contains
     real(wp) :: unbalanced(size(load), 1)         ! what is not carried yet
     integer :: step
 
-    state%change = -scaled%known_force
+    state%change = merge(scaled%upper, 0.0_wp, state%at_upper) - scaled%known_force
     state%approach = spread(0.0_wp, 1, size(load))
     if (state%sound) state%change(state%pairs) = 0.0_wp
     state%force = scaled%known_force + state%change
@@ -85,30 +90,49 @@ contains
     type(contact_state), intent(in) :: state   !! set and solution
     real(wp), allocatable :: values(:)
 
-    values = state%gap
+    values = signed_gaps(state)
     values(state%pairs) = state%force(state%pairs)
   end function basic_values
 
-  !> The test of the fresh solution: its pairs hold every motion; R >= 0 and w >= 0, to the rounding of the
-  !! largest force and gap.
+  !> The gaps, the other way if the force is at its upper bound: those that must not be negative [n].
+  pure function signed_gaps(state) result(gap)
+    type(contact_state), intent(in) :: state
+    real(wp) :: gap(size(state%gap))
+
+    gap = merge(-state%gap, state%gap, state%at_upper)
+  end function signed_gaps
+
+  !> Pairs whose force is between its bounds, and further from them than a part of the force unit [n].
+  pure function inner_forces(scaled, force, away) result(inner)
+    type(scaled_problem), intent(in) :: scaled
+    real(wp), intent(in) :: force(:), away
+    logical :: inner(size(force))
+
+    inner = force > away .and. scaled%upper - force > away
+  end function inner_forces
+
+  !> The test of the fresh solution: its pairs hold every motion; 0 <= R <= u and w of the right sign, to the
+  !! rounding of the largest force and gap.
   pure logical function has_right_signs(scaled, state, tolerance) result(right)
     type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
     type(contact_state), intent(in) :: state   !! set and solution
     real(wp), intent(in) :: tolerance   !! one of the above
-    real(wp), allocatable :: terms(:)
+    real(wp), allocatable :: gap(:), terms(:)
     real(wp) :: force_tolerance, gap_noise, widest
 
     force_tolerance = tolerance*maxval([abs(state%force), 1.0_wp])
     gap_noise = cancelled*maxval([abs(scaled%gap), 0.0_wp])
-    right = state%sound .and. all(state%force >= -force_tolerance)
+    right = state%sound .and. all(state%force >= -force_tolerance) .and. &
+            all(state%force - scaled%upper <= force_tolerance)
     if (.not. right) return
     ! At pairs that hardly give way a gap far below the others' tells of a force that is off.
     terms = terms_of_gaps(scaled, state)
     widest = force_tolerance + gap_noise
-    right = all(state%gap >= -max(scaled%softness*widest, min(widest, cancelled*terms)))
+    gap = signed_gaps(state)
+    right = all(gap >= -max(scaled%softness*widest, min(widest, cancelled*terms)))
     if (.not. right .or. maxval([state%force, 0.0_wp]) <= 1.0_wp) return
     ! The largest force, at a stop that hardly gives way, says nothing of gaps that it has no part in.
-    right = all(state%gap >= -(tolerance*max(terms, 1.0_wp) + gap_noise))
+    right = all(gap >= -(tolerance*max(terms, 1.0_wp) + gap_noise))
   end function has_right_signs
 
   !> The sum of the magnitudes that each gap is the sum of.

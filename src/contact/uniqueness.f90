@@ -19,14 +19,15 @@ module epcont_contact_uniqueness
 contains
 
   !> Pairs whose force can change without any gap or resultant changing: z with F z = 0, A'z = 0, and z >= 0
-  !> where there is no force yet.
+  !> where there is no force yet, z <= 0 where it is at its upper bound.
   !>
   !> With the gaps of the pressed pairs held closed, an idle touching pair j feels the forces z of the idle
   !> ones through the Schur complement M of F_g, and M z = 0 is asked of z.
-  function find_indeterminate_forces(problem, touching, pressed) result(indeterminate)
+  function find_indeterminate_forces(problem, touching, pressed, at_upper) result(indeterminate)
     type(scaled_problem), intent(in) :: problem   !! in its own units
     logical, intent(in) :: touching(:)      !! gap zero [n]
     logical, intent(in) :: pressed(:)       !! force beyond rounding; of a basis, so unique by themselves [n]
+    logical, intent(in) :: at_upper(:)      !! force at its upper bound [n]
     logical, allocatable :: indeterminate(:)
     type(contact_basis) :: basis
     !> M [idle, idle], and what z makes of the forces of the pressed pairs
@@ -46,6 +47,7 @@ contains
     call respond(basis, loose, spread([real(wp) ::], 2, size(idle)), answer, motion)
     call add_product(1.0_wp, transpose(loose), answer, coupling)
     unit = sqrt(problem%softness(idle))
+    where (at_upper(idle)) unit = -unit
     coupling = coupling/(spread(unit, 1, size(idle))*spread(unit, 2, size(idle)))
     answer = answer/spread(unit, 1, size(answer, 1))
 
@@ -90,7 +92,7 @@ contains
     call add_product(1.0_wp, closing, transpose(other), block)
   end function regular_flexibility
 
-  !> Pairs with equal rows in F and A share their force equally.
+  !> Pairs with equal rows in F and A, and equal bounds, share their force equally.
   pure subroutine share_equally(problem, indeterminate, force)
     type(scaled_problem), intent(in) :: problem   !! in its own units
     logical, intent(in) :: indeterminate(:)    !! [n]
@@ -111,6 +113,7 @@ contains
     pure logical function are_alike(i, k) result(alike)
       integer, intent(in) :: i, k
       alike = all(abs(problem%motion%rows([i]) - problem%motion%rows([k])) <= negligible)
+      alike = alike .and. .not. abs(problem%upper(i) - problem%upper(k)) > 0.0_wp
       if (.not. alike) return
       associate (f => problem%flexibility)
         alike = all(abs(f(:, i) - f(:, k)) <= negligible*max(f(i, i), f(k, k)))
@@ -120,18 +123,26 @@ contains
 
   !> Motions that the pressed pairs do not hold, and that idle touching pairs do not block in both directions:
   !! they do where their forces, none of them a pull, would carry a load along the motion either way.
-  function find_undetermined_motions(motion, touching, pressed) result(free)
+  function find_undetermined_motions(motion, touching, pressed, at_upper) result(free)
     type(motion_matrix), intent(in) :: motion   !! A, largest entry of each column one [n, m]
     logical, intent(in) :: touching(:), pressed(:)   !! [n]
+    logical, intent(in), optional :: at_upper(:)     !! forces that can only fall; not given: none [n]
     logical, allocatable :: free(:)                  !! [m]
     type(motion_matrix) :: closing
     real(wp), allocatable :: loose(:, :)
     integer :: j, pair(size(pressed))
+    integer, allocatable :: idle(:)
+    real(wp), allocatable :: rows(:, :)
 
     allocate (free(motion%motions()), source=.false.)
     pair = [(j, j=1, size(pair))]
     loose = loose_motions(motion, pack(pair, pressed), null_component)
-    closing = dense_motions(motion%of_each(loose, pack(pair, touching .and. .not. pressed)))
+    idle = pack(pair, touching .and. .not. pressed)
+    rows = motion%of_each(loose, idle)
+    if (present(at_upper)) then
+      where (spread(at_upper(idle), 2, size(rows, 2))) rows = -rows
+    end if
+    closing = dense_motions(rows)
     do j = 1, size(free)
       if (all(abs(loose(j, :)) <= null_component)) cycle
       if (.not. free(j)) call give_way(loose(j, :))

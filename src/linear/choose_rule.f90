@@ -1,5 +1,6 @@
 !> The contact rule that the plan has chosen.
 module epcont_linear_choose_rule
+  use epcont_base_kinds, only: wp
   use epcont_linear_contact_rule, only: contact_rule
   use epcont_linear_joined_rule, only: joined_rule
   use epcont_linear_simplex_rule, only: simplex_rule
@@ -22,6 +23,12 @@ contains
     rule%explains = .not. plan%joined
     rule%threads = plan%threads
     rule%problem%initial_gap = scene%model%initial_gap
+    rule%problem%lower = 0.0_wp*scene%model%initial_gap
+    rule%problem%upper = spread(huge(1.0_wp), 1, scene%model%pairs)
+    if (allocated(scene%model%force_bound)) then
+      rule%problem%lower = scene%model%force_bound(1, :)
+      rule%problem%upper = scene%model%force_bound(2, :)
+    end if
     rule%problem%travel = scene%motions%travels(scene%model)
     rule%problem%body = scene%motions%body
     call rule%see_case(scene)

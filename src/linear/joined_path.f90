@@ -1,5 +1,7 @@
-!> Interior path to the first set of contacts of joined bodies: all forces and gaps are above zero, and their
-!> products fall together, by Newton steps that are cut before one of them is zero.
+!> Interior path to the first set of contacts of joined bodies: all forces are between their bounds, and the
+!> products of their distances from these with gaps fall together, by Newton steps that are cut before one of
+!> them is zero. A pair has a gap for each finite bound, the second one open the other way; what opens the
+!> pair is their difference.
 !>
 !> Each pair has a spring of stiffness force/gap in a step, so that every system has its solution, also while
 !> contacts open or bodies rock. The stiffest of these springs would cost digits of the factor: a pair that
@@ -34,11 +36,22 @@ module epcont_linear_joined_path
     real(wp), allocatable :: unbalanced(:, :)   !! forces on the nodes [force] [directions, nodes]
     real(wp), allocatable :: gamma(:)           !! springs of Newton steps [force/length] [pairs]
     real(wp), allocatable :: compliance(:)      !! of a half-plane at each pair [length/force] [pairs]
+    real(wp), allocatable :: lower(:), upper(:) !! bounds of the forces [force] [pairs]
     real(wp), allocatable :: force(:)           !! at the end [force] [pairs]
     logical, allocatable :: closed(:)           !! at the end [pairs]
     integer :: steps = 0                        !! taken
+    logical, allocatable, private :: firm(:)    !! whose springs are bounded [pairs]
+    logical, allocatable, private :: two(:)     !! with an upper bound [pairs]
+    !> Distances from the lower and the upper bound, and the gaps that these are multiplied by [pairs, 2]
+    real(wp), allocatable, private :: inside(:, :), open(:, :)
+    !> What a step adds to the force and to the gaps [pairs], [pairs, 2]
+    real(wp), allocatable, private :: force_step(:), open_step(:, :)
   contains
     procedure :: follow
+    procedure, private :: begin
+    procedure, private :: solve_step
+    procedure, private :: length_of_step
+    procedure, private :: over
   end type joined_path
 
 contains
@@ -49,57 +62,116 @@ contains
     type(planned_model), intent(in) :: scene           !! numbered as one system
     integer, intent(in) :: threads                     !! that share the fronts
     class(factored_bodies), intent(inout) :: bodies    !! factored with springs of the path then
-    real(wp), dimension(size(self%gap)) :: force, open, stiffness, force_step, open_step, over
-    logical :: firm(size(self%gap))
-    real(wp) :: begin, length, mean, part
-    integer :: step
+    real(wp) :: first, length, mean, over(size(self%gap), 2), part
+    integer :: k, step
 
-    force = sum(abs(self%unbalanced))/max(1.0_wp, size(force)/real(scene%model%bodies, wp))
-    if (all(force == 0.0_wp)) then   ! nothing presses
+    call self%begin(scene%model%bodies)
+    if (all(self%inside(:, 1) == 0.0_wp)) then   ! nothing presses
       self%closed = self%gap < 0.0_wp
-      self%force = force
       return
     end if
-    open = max(self%gap, self%compliance*force)
-    begin = maxval(force)*maxval([abs(self%gap), self%compliance*force])
+    first = maxval(self%inside(:, 1))*maxval([abs(self%gap), self%compliance*self%inside(:, 1)])
     over = clear
     part = left(1)
     do step = 1, step_limit
-      mean = dot_product(force, open)/size(force)
-      firm = force > firmest*self%gamma*open
-      stiffness = merge(firmest*self%gamma, force/open, firm)
-      call solve_step(force + merge(0.0_wp, part*mean/open, firm))
+      mean = sum([(dot_product(self%inside(:, k), self%open(:, k)), k=1, 2)])/ &
+             (size(over, 1) + count(self%two))
+      call self%solve_step(scene, threads, bodies, part*mean)
       if (.not. bodies%body(1)%is_sound()) exit
-      length = min(1.0_wp, to_the_wall/maxval([-force_step/force, -open_step/open, tiny(part)]))
-      force = force + length*force_step
-      open = open + length*open_step
-      where (firm) open = max(left(1)*mean/force, no_gap*force/self%gamma)
+      length = self%length_of_step()
+      self%force = self%force + length*self%force_step
+      self%inside(:, 1) = self%inside(:, 1) + length*self%force_step
+      where (self%two) self%inside(:, 2) = self%inside(:, 2) - length*self%force_step
+      self%open = self%open + length*self%open_step
+      where (self%firm) self%open(:, 1) = max(left(1)*mean/self%inside(:, 1), &
+                                              no_gap*self%inside(:, 1)/self%gamma)
+      where (self%firm .and. self%two) self%open(:, 2) = max(left(1)*mean/self%inside(:, 2), &
+                                                             no_gap*self%inside(:, 2)/self%gamma)
       part = left(1 + count(length < short))
       self%steps = self%steps + 1
-      over = force*self%compliance/open
+      over = self%over()
       if (length > 0.5_wp .and. all(over > clear .or. over < 1.0_wp/clear) .or. &
-          step > step_limit/2 .and. length > to_the_wall .and. mean < small*begin .or. &
-          mean < smallest*begin) exit
+          step > step_limit/2 .and. length > to_the_wall .and. mean < small*first .or. &
+          mean < smallest*first) exit
     end do
-    self%closed = over > 1.0_wp
-    self%force = merge(force, 0.0_wp, self%closed)
+    self%closed = all(over > 1.0_wp, dim=2)
+    where (.not. self%closed) self%force = merge(self%lower, self%upper, over(:, 1) <= over(:, 2))
+  end subroutine follow
 
-  contains
+  !> Forces, between their bounds, that would balance all others, and gaps that they make.
+  subroutine begin(self, bodies)
+    class(joined_path), intent(inout) :: self
+    integer, intent(in) :: bodies     !! number
+    integer :: n
 
-    !> The step to these forces, less what springs lose as gaps open; gaps of firm pairs follow afterwards.
-    subroutine solve_step(target)
-      real(wp), intent(in) :: target(:)   !! [force] [pairs]
-      type(half_solved_body), allocatable :: half(:)
-      real(wp) :: reached(size(force))      ! gaps
+    n = size(self%gap)
+    self%two = self%upper < huge(1.0_wp)
+    self%inside = spread(spread(sum(abs(self%unbalanced))/max(1.0_wp, n/real(bodies, wp)), 1, n), 2, 2)
+    self%force = self%lower + self%inside(:, 1)
+    self%open = spread(max(self%gap, self%compliance*self%inside(:, 1)), 2, 2)
+    where (.not. self%two) self%open(:, 2) = 0.0_wp
+    where (self%two)   ! a width of zero would have no inside
+      self%inside(:, 1) = max(0.5_wp*(self%upper - self%lower), no_gap*self%inside(:, 1))
+      self%inside(:, 2) = self%inside(:, 1)
+      self%force = 0.5_wp*(self%lower + self%upper)
+      self%open(:, 1) = max(self%gap, self%compliance*self%inside(:, 1))
+      self%open(:, 2) = max(-self%gap, self%compliance*self%inside(:, 1))
+    end where
+  end subroutine begin
 
-      bodies%spring%stiffness(:size(force)) = stiffness
-      bodies%spring%changed(:size(force)) = .true.
+  !> The step to products of this size; gaps of firm pairs follow afterwards.
+  subroutine solve_step(self, scene, threads, bodies, product)
+    class(joined_path), intent(inout) :: self
+    type(planned_model), intent(in) :: scene
+    integer, intent(in) :: threads
+    class(factored_bodies), intent(inout) :: bodies
+    real(wp), intent(in) :: product
+    type(half_solved_body), allocatable :: half(:)
+    real(wp), dimension(size(self%gap)) :: reached, stiffness, target   ! gaps, springs, forces without gaps
+
+    associate (inside => self%inside, open => self%open)
+      stiffness = inside(:, 1)/open(:, 1)
+      where (self%two) stiffness = 1.0_wp/(open(:, 1)/inside(:, 1) + open(:, 2)/inside(:, 2))
+      self%firm = stiffness > firmest*self%gamma
+      where (self%firm) stiffness = firmest*self%gamma
+      target = self%force + merge(0.0_wp, product/open(:, 1), self%firm)
+      where (self%two .and. .not. self%firm) target = self%force + &
+        stiffness*product*(1.0_wp/inside(:, 1) - 1.0_wp/inside(:, 2))
+      bodies%spring%stiffness(:size(target)) = stiffness
+      bodies%spring%changed(:size(target)) = .true.
       call bodies%factor_system(scene, threads)
       call bodies%add_forces(scene, self%unbalanced + &
                              pair_forces(scene%model, target - stiffness*self%gap), 0.0_wp, half)
       reached = self%gap + gap_opening(scene%model, bodies%finish(scene, half, 0.0_wp, at_contact=.true.))
-      force_step = target - stiffness*reached - force
-      open_step = merge(0.0_wp, reached - open, firm)
-    end subroutine solve_step
-  end subroutine follow
+      self%force_step = target - stiffness*reached - self%force
+      self%open_step = spread(merge(0.0_wp, reached - open(:, 1), self%firm), 2, 2)
+      where (.not. self%two) self%open_step(:, 2) = 0.0_wp
+      where (self%two .and. .not. self%firm)
+        self%open_step(:, 1) = (product - open(:, 1)*self%force_step)/inside(:, 1) - open(:, 1)
+        self%open_step(:, 2) = (product + open(:, 2)*self%force_step)/inside(:, 2) - open(:, 2)
+      end where
+    end associate
+  end subroutine solve_step
+
+  !> Part of a step that comes near the first bound or closed gap.
+  pure real(wp) function length_of_step(self) result(length)
+    class(joined_path), intent(in) :: self
+    real(wp) :: fastest
+
+    fastest = maxval([-self%force_step/self%inside(:, 1), -self%open_step(:, 1)/self%open(:, 1), &
+                      tiny(fastest)])
+    if (any(self%two)) fastest = max(fastest, maxval(self%force_step/self%inside(:, 2), mask=self%two), &
+                                     maxval(-self%open_step(:, 2)/self%open(:, 2), mask=self%two))
+    length = min(1.0_wp, to_the_wall/fastest)
+  end function length_of_step
+
+  !> Distances from the bounds over what the gaps would make at a half-plane; infinite without a bound.
+  pure function over(self)
+    class(joined_path), intent(in) :: self
+    real(wp) :: over(size(self%gap), 2)
+
+    over(:, 1) = self%inside(:, 1)*self%compliance/self%open(:, 1)
+    over(:, 2) = huge(1.0_wp)
+    where (self%two) over(:, 2) = self%inside(:, 2)*self%compliance/self%open(:, 2)
+  end function over
 end module epcont_linear_joined_path

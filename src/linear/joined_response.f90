@@ -66,7 +66,7 @@ contains
 
     many = size(loads%motion) + size(loads%share, 2)
     if (allocated(probe%first)) many = 0
-    pressed = pack([(k, k=1, scene%model%pairs)], state%contact%force > 0.0_wp)
+    pressed = pack([(k, k=1, scene%model%pairs)], problem%between(state%contact%force))
     allocate (found%load(scene%motions%count, many + 2), found%opening(scene%model%pairs, many + 2), &
               found%force(scene%model%pairs, many + 2), &
               found%displacement(directions, many + 2, scene%model%nodes), source=0.0_wp)

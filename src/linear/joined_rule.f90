@@ -50,8 +50,11 @@ contains
     call self%line%take_load(scene%model%load)
     if (allocated(self%search%gamma)) redundant = self%rigid%redundant
     associate (motion => self%problem%motion, unit => self%problem%motion%units())
-      call find_rigid_start(motion%over(unit), self%resultant/unit, spread(0.0_wp, 1, motion%pairs), &
-                            self%rigid)
+      self%search%lower = self%problem%lower
+      self%search%upper = self%problem%upper
+      call find_rigid_start(motion%over(unit), (self%resultant - motion%carried(self%problem%lower))/unit, &
+                            spread(0.0_wp, 1, motion%pairs), self%rigid, &
+                            self%problem%upper - self%problem%lower)
     end associate
     if (.not. self%rigid%balanced) return
     if (allocated(redundant)) then
@@ -96,7 +99,8 @@ contains
         state = self%line%next()
         associate (opened => search%fixed_gap + gap_opening(scene%model, state%deformation) - &
                              motion%times(state%contact%approach))
-          if (any(state%contact%force > search%gamma*opened .neqv. search%closed)) state = self%line%last
+          if (any(search%between(state%contact%force - search%gamma*opened, 0.0_wp) .neqv. search%closed)) &
+            state = self%line%last
         end associate
       else
         allocate (state%deformation(directions, scene%model%nodes), source=0.0_wp)
@@ -126,14 +130,19 @@ contains
     real(wp) :: terms(scene%model%pairs)   ! what gaps are the sum of
 
     associate (contact => state%contact, motion => self%problem%motion)
-      where (contact%force <= negligible*maxval([contact%force, 0.0_wp])) contact%force = 0.0_wp
+      contact%at_upper = .false.
+      where (.not. self%search%between(contact%force, negligible))
+        contact%at_upper = contact%force - self%search%lower > self%search%upper - contact%force
+        contact%force = merge(self%search%upper, self%search%lower, contact%at_upper)
+      end where
       where (motion%sizes() <= 0.0_wp) contact%approach = 0.0_wp
       terms = abs(self%search%fixed_gap) + terms_of_openings(scene%model, state%deformation) + &
               motion%times(contact%approach, magnitudes=.true.)
-      contact%touching = contact%force > 0.0_wp .or. contact%gap <= negligible*terms
+      contact%touching = self%search%between(contact%force, 0.0_wp) .or. &
+                         merge(-contact%gap, contact%gap, contact%at_upper) <= negligible*terms
       where (contact%touching) contact%gap = 0.0_wp
       contact%motion_free = find_undetermined_motions(motion%over(motion%units()), contact%touching, &
-          contact%force > lost_digits*maxval([contact%force, 0.0_wp]))
+          self%search%between(contact%force, lost_digits), contact%at_upper)
     end associate
   end subroutine settle
 

@@ -46,6 +46,8 @@ module epcont_linear_joined_search
   type, extends(joined_springs) :: joined_search
     integer :: threads = 1                         !! that share the fronts
     type(motion_matrix) :: motion                  !! A, closing of the gaps by the rigid-body modes
+    real(wp), allocatable :: lower(:), upper(:)    !! bounds of the forces [force] [pairs]
+    real(wp), allocatable, private :: bound(:)     !! the one that a pair which is not closed is at [pairs]
     real(wp) :: load_factor = 0.0_wp               !! of the loads
     real(wp), allocatable :: fixed_gap(:)          !! initial gap and prescribed part of it [length] [pairs]
     real(wp) :: correction = huge(1.0_wp)          !! of forces by the last step, of the largest
@@ -56,7 +58,8 @@ module epcont_linear_joined_search
     real(wp), allocatable, private :: held(:), moved(:)
     !> Residual at the displacements of the state, and a step from there [directions, nodes]
     real(wp), allocatable, private :: unbalanced(:, :), step(:, :)
-    logical, allocatable, private :: wanted(:)     !! the next set [pairs]
+    logical, allocatable, private :: wanted(:)     !! the next set, closed [pairs]
+    real(wp), allocatable, private :: nearer(:)    !! and bounds of the others [pairs]
     real(wp), private :: change(2)                 !! of forces and strains in this step
     integer, private :: taken = 0                  !! steps
     integer, private :: last_held = 0              !! steps until signs are judged again
@@ -66,6 +69,8 @@ module epcont_linear_joined_search
     logical, private :: afresh = .false.
   contains
     procedure :: find_set
+    procedure :: between
+    procedure, private :: forces_of
     procedure, private :: begin
     procedure, private :: begin_set
     procedure, private :: begin_at_state
@@ -140,6 +145,7 @@ contains
     call self%balance(scene, bodies, state)
     call self%begin_at_state(scene, state)
     call self%begin_afresh()
+    if (.not. allocated(self%bound)) self%bound = self%lower
     call self%find_wanted(state%contact%force)
     if (knows_set) call self%choose_set(state)
     if (.not. knows_set) call self%begin_set(redundant)
@@ -203,9 +209,10 @@ contains
 
     call self%begin_at_state(scene, state)
     call self%begin_afresh()
-    path = joined_path(self%gap, self%unbalanced, self%gamma, self%compliance)
+    path = joined_path(self%gap, self%unbalanced, self%gamma, self%compliance, self%lower, self%upper)
     call path%follow(scene, self%threads, bodies)
     state%contact%force = path%force
+    self%bound = path%force
     state%contact%sets = state%contact%sets + path%steps
     self%closed = path%closed
     self%unique = .false.
@@ -213,22 +220,45 @@ contains
     self%pull = state%contact%force - self%gamma*self%gap
   end subroutine lead_to_set
 
-  !> The pairs that press; those that do so by rounding alone keep their state.
+  !> The pairs whose force is between its bounds; if it is at one but for rounding, they keep their state.
   subroutine find_wanted(self, force)
     class(joined_search), intent(inout) :: self
     real(wp), intent(in) :: force(:)     !! so far [pairs]
 
-    self%wanted = self%pull > 0.0_wp
-    where (abs(self%pull) <= negligible*maxval([abs(force), tiny(1.0_wp)])) self%wanted = self%closed
+    self%wanted = self%pull > self%lower .and. self%pull < self%upper
+    self%nearer = merge(self%upper, self%lower, self%pull - self%lower > self%upper - self%pull)
+    where (abs(self%pull - self%nearer) <= negligible*maxval([abs(force), tiny(1.0_wp)])) &
+      self%wanted = self%closed
   end subroutine find_wanted
 
-  !> The next set has the pairs that press.
+  !> Forces of the set: those of closed pairs follow their springs, the others are at their bounds.
+  pure function forces_of(self, pull) result(force)
+    class(joined_search), intent(in) :: self
+    real(wp), intent(in) :: pull(:)      !! of the springs [force] [pairs]
+    real(wp) :: force(size(pull))
+
+    force = merge(pull, self%bound, self%closed)
+  end function forces_of
+
+  !> Pairs whose force is between its bounds, and further from them than a part of the largest [pairs].
+  pure function between(self, force, part)
+    class(joined_search), intent(in) :: self
+    real(wp), intent(in) :: force(:), part
+    logical :: between(size(force))
+
+    associate (away => part*maxval([abs(force), 0.0_wp]))
+      between = force - self%lower > away .and. self%upper - force > away
+    end associate
+  end function between
+
+  !> The next set.
   subroutine choose_set(self, state)
     class(joined_search), intent(inout) :: self
     type(solved_state), intent(inout) :: state
 
     state%contact%pivots = state%contact%pivots + count(self%wanted .neqv. self%closed)
     self%closed = self%wanted
+    self%bound = self%nearer
   end subroutine choose_set
 
   !> What is out of balance is solved for: after a step that of pairs and moved SUPORT freedoms alone.
@@ -240,9 +270,9 @@ contains
     real(wp) :: force(directions, scene%model%nodes)
 
     if (self%whole .or. self%afresh) then
-      force = self%unbalanced + pair_forces(scene%model, merge(self%pull, 0.0_wp, self%closed))
+      force = self%unbalanced + pair_forces(scene%model, self%forces_of(self%pull))
     else
-      force = pair_forces(scene%model, merge(self%pull, 0.0_wp, self%closed) - self%borne)
+      force = pair_forces(scene%model, self%forces_of(self%pull) - self%borne)
     end if
     call add_suport_forces(scene, self%held, force)
     self%afresh = .false.
@@ -260,7 +290,8 @@ contains
     descent = sum(self%held*self%moved) - sum(self%borne*self%opening)
     curvature = descent + sum((self%pull - self%gamma*self%opening)*self%opening, mask=self%closed) - &
                 sum(self%hold*self%moved**2)
-    length = least_at(max(0.0_wp, curvature), descent, self%pull, self%gamma*self%opening, self%opening)
+    length = least_at(max(0.0_wp, curvature), descent, self%pull, self%gamma*self%opening, self%opening, &
+                      self%lower, self%upper)
   end function length_of_step
 
   !> Go along a step; lambda follows a full one with the same set, but the first of all displacements.
@@ -273,16 +304,18 @@ contains
     state%contact%sets = state%contact%sets + 1
     associate (force => state%contact%force)
       self%borne = (1.0_wp - length)*self%borne + &
-                   length*merge(force - self%gamma*(self%gap + self%opening), 0.0_wp, self%closed)
+                   length*self%forces_of(force - self%gamma*(self%gap + self%opening))
       self%held = (1.0_wp - length)*self%held + length*self%hold*self%moved
       self%gap = self%gap + length*self%opening
       self%pull = force - self%gamma*self%gap
       call self%find_wanted(force)
       if (self%taken <= self%last_held) self%wanted = self%closed
-      self%stays = length >= 1.0_wp .and. all(self%wanted .eqv. self%closed)
+      if (self%taken <= self%last_held) self%nearer = self%bound
+      self%stays = length >= 1.0_wp .and. all(self%wanted .eqv. self%closed) .and. &
+                   all(self%closed .or. .not. abs(self%nearer - self%bound) > 0.0_wp)
       if (.not. self%stays .or. self%whole .and. self%change(2) > 1.0_wp) return
-      next = merge(self%pull, 0.0_wp, self%closed)
-      self%change(1) = maxval([abs(next - force), 0.0_wp])/maxval([next, tiny(1.0_wp)])
+      next = self%forces_of(self%pull)
+      self%change(1) = maxval([abs(next - force), 0.0_wp])/maxval([abs(next), tiny(1.0_wp)])
       force = next
       self%pull = force - self%gamma*self%gap
     end associate
@@ -301,8 +334,8 @@ contains
     if (all(has_settled(self%change, before))) then
       self%correction = self%change(1)
       associate (force => state%contact%force)
-        if (self%taken > self%last_held .or. minval(force) >= -valid_to*maxval(force)) &
-          state%contact%state = contact_solved   ! no pair pulls
+        if (self%taken > self%last_held .or. all(self%between(force, -valid_to))) &
+          state%contact%state = contact_solved   ! no force is beyond its bounds
       end associate
       if (state%contact%state == contact_solved) return
       self%last_held = 0

@@ -15,13 +15,14 @@ module epcont_linear_line_search
 contains
 
   !> Part of a step, up to all of it, at which a function of it is about least, by regula falsi and geometric
-  !! means: the energy of bodies, their loads, and springs that press alone.
-  real(wp) function least_at(curvature, descent, pull, loss, opening) result(t)
+  !! means: the energy of bodies, their loads, and springs whose forces have bounds.
+  real(wp) function least_at(curvature, descent, pull, loss, opening, lower, upper) result(t)
     real(wp), intent(in) :: curvature    !! of the energy of all but the springs [energy]
     real(wp), intent(in) :: descent      !! what that and the loads lose where the step begins [energy]
     real(wp), intent(in) :: pull(:)      !! of each spring there [force]
     real(wp), intent(in) :: loss(:)      !! of pull, by the whole step [force]
     real(wp), intent(in) :: opening(:)   !! of the gaps by it [length]
+    real(wp), intent(in) :: lower(:), upper(:)   !! bounds of the forces of springs [force]
     type(bracket) :: zero                ! of the slope
     real(wp) :: begin, now
     integer :: i
@@ -44,7 +45,7 @@ contains
     real(wp) function slope(t)
       real(wp), intent(in) :: t
 
-      slope = t*curvature - descent - sum(max(0.0_wp, pull - t*loss)*opening)
+      slope = t*curvature - descent - sum(min(max(lower, pull - t*loss), upper)*opening)
     end function slope
   end function least_at
 

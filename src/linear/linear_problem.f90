@@ -114,7 +114,7 @@ contains
       gap = problem%initial_gap + (gap_opening(scene%model, state%deformation) + travel) - &
             problem%motion%times(contact%approach)
       if (any(contact%motion_free)) then
-        contact%gap = merge(0.0_wp, gap, contact%force > 0.0_wp)
+        contact%gap = merge(0.0_wp, gap, problem%between(contact%force))
         call choose_neutral(problem, contact)
         gap = contact%gap
       end if
@@ -126,8 +126,8 @@ contains
                              problem%motion%times(contact%approach, magnitudes=.true.) + &
                              terms_of_openings(scene%model, state%deformation)) + &
                  rounding_of_pairs(scene, state)
-      contact%touching = contact%force > 0.0_wp .or. gap <= rounding
-      contact%gap = merge(0.0_wp, max(gap, 0.0_wp), contact%touching)
+      contact%touching = problem%between(contact%force) .or. merge(-gap, gap, contact%at_upper) <= rounding
+      contact%gap = merge(0.0_wp, gap, contact%touching)
     end associate
   end subroutine complete
 

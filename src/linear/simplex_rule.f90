@@ -262,12 +262,12 @@ contains
 
     scaled = scale_problem(self%problem)
     if (any(contact%motion_free)) then
-      pressed = pack([(k, k=1, size(contact%force))], contact%force > 0.0_wp)
+      pressed = pack([(k, k=1, size(contact%force))], self%problem%between(contact%force))
       call find_rigid_start(dense_motions(scaled%motion%rows(pressed)), 0*scaled%resultant, &
                             0*scaled%gap(pressed), start)
       call drop_motions(scaled, start%redundant)
     end if
-    call renew_basis(self%basis, scaled, contact%force > 0.0_wp)
+    call renew_basis(self%basis, scaled, self%problem%between(contact%force))
   end subroutine scale_pressed
 
   !> The diagonal of F.

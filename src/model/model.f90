@@ -80,6 +80,9 @@ module epcont_model_model
     !! row_weight. The weights of a row sum to 0. [pairs + 1], [entries], [entries]
     integer, allocatable :: row_start(:), row_node(:)
     real(wp), allocatable :: row_weight(:)
+    !> Lower and upper bound of the force of each row; not allocated if all are normal to a surface: zero and
+    !! infinity, which is huge(1.0_wp) [force] [2, pairs]
+    real(wp), allocatable :: force_bound(:, :)
     !> Sides of the bodies' outlines, by the same numbers, with normals; where lines are
     type(boundary_line) :: boundary
     type(line_contact), allocatable :: line_contact(:)

@@ -17,9 +17,6 @@ SHUNNED = {"certificate": {"linalg", "assembly", "flexibility", "contact", "line
 VERSION = "src/base/version.f90"
 PAGE = [VERSION, "src/app/help.f90", "src/app/options.f90"]   # what the manual page is made of
 FILE_LINES, PROCEDURE_LINES, ARGUMENTS = 400, 120, 7
-#: Longer procedures that still exist, as file.procedure, and their lines. The table may only shrink.
-LONG = {
-    "equilibrium.find_rigid_start": 174, "loading.follow_load": 190, "solver.solve_contact": 257}
 #: Columns of a line: of the sources, and of tests, whose assertions are long.
 COLUMNS, TEST_COLUMNS = 110, 132
 #: Lines of the procedures of the sources, with their internal procedures: the median, and what 90 % do not exceed.
@@ -58,14 +55,11 @@ def check_size(lines, most=FILE_LINES, columns=TEST_COLUMNS):
             yield n, f"longer than {columns} columns"
 
 
-def check_lengths(file, lines):
-    """Procedures, with their internal procedures, have few lines, except those of LONG."""
+def check_lengths(lines):
+    """Procedures, with their internal procedures, have few lines."""
     for name, first, last in procedures(lines):
-        most = LONG.get(f"{file}.{name}", PROCEDURE_LINES)
-        if last - first > most:
-            yield first + 1, f"{name} has {last - first} lines: at most {most} would be right"
-        elif most > PROCEDURE_LINES >= last - first:
-            yield first + 1, f"{name} has {last - first} lines: remove {file}.{name} from LONG"
+        if last - first > PROCEDURE_LINES:
+            yield first + 1, f"{name} has {last - first} lines: at most {PROCEDURE_LINES} would be right"
 
 
 def check_arguments(lines):
@@ -202,7 +196,7 @@ def check(root):
     for path in sources:
         lines = path.read_text().splitlines()
         for checks in (check_size(lines, columns=COLUMNS), check_habits(lines), check_module(path, root / "src", lines),
-                       check_lengths(path.stem, lines),
+                       check_lengths(lines),
                        () if path == root / LAPACK else check_arguments(lines)):
             yield from ((path, n, text) for n, text in checks)
     yield from ((root / "src", 1, text) for text in check_shape(path.read_text().splitlines() for path in sources))
@@ -210,12 +204,12 @@ def check(root):
     yield from check_public([(path, path.read_text().splitlines()) for path in sources])
     for path in sorted((root / "tests").rglob("*.f90")):
         lines = path.read_text().splitlines()
-        yield from ((path, n, text) for checks in (check_size(lines), check_lengths(path.stem, lines), check_habits(lines))
+        yield from ((path, n, text) for checks in (check_size(lines), check_lengths(lines), check_habits(lines))
                     for n, text in checks)
     for path in sorted((root / "tests").rglob("test_*.pf")):
         lines = path.read_text().splitlines()
         # A list of cases may be long.
-        yield from ((path, n, text) for checks in (check_size(lines, 2 * FILE_LINES), check_lengths(path.stem, lines), check_asserts(lines))
+        yield from ((path, n, text) for checks in (check_size(lines, 2 * FILE_LINES), check_lengths(lines), check_asserts(lines))
                     for n, text in checks)
     yield from ((root / "CMakeLists.txt", n, text) for n, text in check_version(root))
     yield from ((root / VERSION, n, text) for n, text in check_date(root))
