@@ -1,6 +1,6 @@
-!> What the figures of an answer are worth: the error of the mesh in the energy norm, in the approach, in the
-!> total contact force and what of it each body bears, in the largest pressure and the half-width of each
-!> zone; what rounding may have done to the contact forces; pairs that may as well be open.
+!> Error estimates of an answer: mesh error in the energy norm, in the approaches, in the total contact force
+!> and its resultant on each body, and in the largest pressure and half-width of each zone. Also the effect of
+!> rounding on contact forces, and the pairs with uncertain contact state.
 module epcont_accuracy_accuracy
   use epcont_accuracy_error_fields, only: body_fields, compare_fields, error_fields
   use epcont_accuracy_error_sums, only: shift_errors, sum_errors, with_waves
@@ -23,29 +23,29 @@ module epcont_accuracy_accuracy
   private
   public :: accuracy_type, assess, kept_estimates
 
-  !> Elements that are named as the worst.
+  !> Number of elements named as the worst.
   integer, parameter :: worst_count = 5
 
   type :: accuracy_type
-    !> Error of the mesh over the size of the answer, in the energy norm
+    !> Mesh error relative to the size of the answer, in the energy norm
     real(wp) :: energy_norm = 0.0_wp
     real(wp), allocatable :: element(:)            !! square of each element's error [energy] [elements]
     integer, allocatable :: worst(:)               !! elements with the largest errors
     type(zone_error), allocatable :: zone(:)
-    !> The zone with the largest pressure of all; of those equal but for rounding the one of which least is
-    !! known, or the first. 0: there is no zone
+    !> Zone with the largest pressure; 0 if there is no zone. Of pressures equal up to rounding, the zone with
+    !! the worst estimate is taken, then the first.
     integer :: leading = 0
-    !> Error of that pressure; negative: unknown [stress]
+    !> Error of this pressure; negative: unknown [stress]
     real(wp) :: max_pressure = -1.0_wp
-    real(wp), allocatable :: approach(:)           !! negative: unknown [motions]
-    logical, allocatable :: approach_unbounded(:)  !! it grows with every finer mesh [motions]
+    real(wp), allocatable :: approach(:)           !! errors; negative: unknown [motions]
+    logical, allocatable :: approach_unbounded(:)  !! singular: diverges with mesh refinement [motions]
     !> Error of the total contact force; negative: unknown [force]
     real(wp) :: total_force = -1.0_wp
-    !> Of its resultants on bodies; negative: unknown [force] [directions, answer's bodies]
+    !> Errors of its resultants on bodies; negative: unknown [force] [directions, answer's bodies]
     real(wp), allocatable :: body_force(:, :)
     type(contact_sensitivity) :: sensitivity
-    logical, allocatable :: weak(:)                !! pairs that errors may open, or close [pairs]
-    !> The motion's SUPORT freedom bears one [motions]
+    logical, allocatable :: weak(:)                !! pairs with uncertain contact state [pairs]
+    !> The SUPORT DOF of the mode carries a point load [motions]
     logical, allocatable, private :: point_load(:)
   contains
     procedure, private :: assess_mesh
@@ -55,33 +55,33 @@ module epcont_accuracy_accuracy
     procedure, private :: find_weak
   end type accuracy_type
 
-  !> What estimates of one load case leave to those of the next.
+  !> Data that the estimates of the next load case reuse.
   type :: kept_estimates
     type(patch_table) :: table
-    type(surface_line) :: surface                !! but for its pressures
+    type(surface_line) :: surface                !! except its pressures
     type(unit_loads) :: loads
-    type(body_fields), allocatable :: field(:)   !! of these loads [bodies]
+    type(body_fields), allocatable :: field(:)   !! adjoint fields of these loads [bodies]
   end type kept_estimates
 
 contains
 
-  !> What the figures of an answer are worth.
+  !> Estimate the errors of an answer.
   subroutine assess(scene, linear, line, kept, answer, accuracy)
-    type(planned_model), intent(in) :: scene       !! that was solved
+    type(planned_model), intent(in) :: scene       !! solved model
     type(linear_problem), intent(inout) :: linear  !! of the last solve
     type(contact_line), intent(in) :: line         !! of the pairs
-    type(kept_estimates), intent(inout) :: kept    !! of the load case before, if any; of this
-    !> With its pressures and zones; the condition is added to it
+    type(kept_estimates), intent(inout) :: kept    !! in: of the previous load case, if any; out: of this one
+    !> With its pressures and zones; the condition number is added
     type(answer_type), intent(inout) :: answer
-    type(accuracy_type), intent(out) :: accuracy   !! of its figures
+    type(accuracy_type), intent(out) :: accuracy   !! its error estimates
     type(kept_estimates) :: none
     type(error_fields) :: field
     logical :: carried, pressed
-    logical :: same   ! unit loads as before
+    logical :: same   ! adjoint loads as before
     integer :: motions
 
     pressed = any(answer%contact%force > 0.0_wp)
-    ! Else the scene is that of a load that was not carried, or nothing tells what its stiffness is.
+    ! Otherwise the load is not carried, or the stiffness is unknown.
     carried = pressed .and. answer%converged .and. answer%condition < huge(1.0_wp)
     same = .false.
     if (carried) then
@@ -108,9 +108,9 @@ contains
     if (accuracy%leading > 0) accuracy%max_pressure = accuracy%zone(accuracy%leading)%pressure
   end subroutine assess
 
-  !> As `leading` has it: unbounded comes before not resolved, and that before the largest error.
+  !> Choose the leading zone: singular comes before unresolved, and unresolved before the largest error.
   pure integer function leading_zone(pressure, zone) result(leading)
-    real(wp), intent(in) :: pressure(:)            !! largest one of each zone [stress]
+    real(wp), intent(in) :: pressure(:)            !! largest pressure of each zone [stress]
     type(zone_error), intent(in) :: zone(:)        !! errors of each
     logical :: worst(size(zone))
 
@@ -121,18 +121,18 @@ contains
       if (any(worst .and. zone%unbounded)) worst = worst .and. zone%unbounded
       if (any(worst .and. .not. zone%resolved)) worst = worst .and. .not. zone%resolved
       leading = findloc(worst .and. off >= maxval(off, mask=worst)*(1.0_wp - no_effect), .true., dim=1)
-      if (leading == 0) leading = findloc(worst, .true., dim=1)   ! of none the error is known
+      if (leading == 0) leading = findloc(worst, .true., dim=1)   ! all errors are unknown
     end associate
   end function leading_zone
 
   !> Estimate the mesh error in the energy norm, and find the elements with the largest part of it.
   subroutine assess_mesh(self, scene, linear, kept, answer, field)
     class(accuracy_type), intent(inout) :: self
-    type(planned_model), intent(in) :: scene       !! that was solved
+    type(planned_model), intent(in) :: scene       !! solved model
     type(linear_problem), intent(inout) :: linear  !! of its last solve
     type(kept_estimates), intent(inout) :: kept    !! of this load case
     type(answer_type), intent(in) :: answer        !! of the last solve
-    type(error_fields), intent(out) :: field       !! errors of strains
+    type(error_fields), intent(out) :: field       !! strain errors
     if (kept%table%places == 0) kept%table = new_patch_table(scene%model)
     call compare_fields(scene, linear, answer, kept%table, kept%loads%contact, kept%field, field)
     self%element = field%element
@@ -150,12 +150,12 @@ contains
     end if
   end subroutine assess_mesh
 
-  !> What the energy would be, about, if nothing gave way to the temperatures: where bodies expand freely,
-  !! rounding of that is all there is.
+  !> Approximate strain energy if all thermal expansion were fixed. If bodies expand freely, the remaining
+  !! strain energy is rounding of this value.
   pure real(wp) function held_energy(scene, linear, load_factor) result(energy)
-    type(planned_model), intent(in) :: scene       !! that was solved
+    type(planned_model), intent(in) :: scene       !! solved model
     type(linear_problem), intent(in) :: linear     !! of its last solve
-    real(wp), intent(in) :: load_factor            !! of the temperatures
+    real(wp), intent(in) :: load_factor            !! factor of the temperatures
 
     energy = 0.0_wp
     if (allocated(scene%model%free_strain)) &
@@ -163,16 +163,16 @@ contains
                    (load_factor*scene%model%free_strain)**2)
   end function held_energy
 
-  !> Largest pressures and half-widths.
+  !> Estimate the errors of the largest pressures and half-widths.
   subroutine assess_zones(self, scene, linear, line, kept, answer, field)
     class(accuracy_type), intent(inout) :: self
-    type(planned_model), intent(in) :: scene       !! that was solved
+    type(planned_model), intent(in) :: scene       !! solved model
     type(linear_problem), intent(in) :: linear     !! of its last solve
     type(contact_line), intent(in) :: line         !! of its pairs
     type(kept_estimates), intent(inout) :: kept    !! of this load case
     type(answer_type), intent(in) :: answer        !! of the last solve
-    type(error_fields), intent(in) :: field        !! errors of strains
-    real(wp) :: energy   !! error of the mesh over all of it, but for that of point loads
+    type(error_fields), intent(in) :: field        !! strain errors
+    real(wp) :: energy   !! mesh error of the whole model, except that of point loads
     logical :: yielded
     integer :: z
 
@@ -193,21 +193,21 @@ contains
     end do
   end subroutine assess_zones
 
-  !> Approaches and forces, and what errors may do to pairs.
+  !> Estimate the errors of approaches and forces, and find the pairs with uncertain state.
   subroutine assess_sums(self, scene, linear, line, kept, answer, field)
     class(accuracy_type), intent(inout) :: self
-    type(planned_model), intent(in) :: scene       !! that was solved
+    type(planned_model), intent(in) :: scene       !! solved model
     type(linear_problem), intent(inout) :: linear  !! of its last solve
     type(contact_line), intent(in) :: line         !! of its pairs
     type(kept_estimates), intent(in) :: kept       !! of this load case
     type(answer_type), intent(in) :: answer        !! of the last solve
-    type(error_fields), intent(in) :: field        !! errors of strains
-    !> Error of each assessed approach, of the total contact force, and of the forces on bodies
+    type(error_fields), intent(in) :: field        !! strain errors
+    !> Errors of the assessed approaches, of the total contact force, and of the forces on bodies
     real(wp) :: off(size(kept%loads%contact%unit))
     integer :: j
 
     self%sensitivity = linear%rule%sensitivity(answer, answer%condition)
-    ! What the last step of refinement has not changed is right.
+    ! A change by the last refinement step bounds the rounding error from above.
     self%sensitivity%rounding = min(self%sensitivity%rounding, answer%last_correction)
     off = sum_errors(kept%loads%contact, kept%surface, answer, self%zone, field, self%energy_norm)
     off(size(kept%loads%contact%motion) + 1:) = off(size(kept%loads%contact%motion) + 1:) + &
@@ -220,22 +220,23 @@ contains
       end do
       call self%assess_forces(scene, line, kept%loads, answer, off(size(motion) + 1:))
     end associate
-    ! Pressures are as much off as the total force, where that is not given by loads: of uniform ones
-    ! nothing else tells.
+    ! If loads do not determine the total force, pressures are at least as wrong as this force. Uniform
+    ! pressures show no other error.
     where (self%zone%pressure >= 0.0_wp) self%zone%pressure = &
       max(self%zone%pressure, &
           self%total_force/sum(answer%contact%force)*answer%zones%max_pressure)
     self%weak = self%find_weak(scene, linear, line, answer)
   end subroutine assess_sums
 
-  !> The total contact force, and what of it each body bears: nothing is off where loads alone make it.
+  !> Estimate errors of the total contact force and its resultants on bodies. Zero if loads alone determine
+  !! them.
   subroutine assess_forces(self, scene, line, loads, answer, off)
     class(accuracy_type), intent(inout) :: self
-    type(planned_model), intent(in) :: scene       !! that was solved
+    type(planned_model), intent(in) :: scene       !! solved model
     type(contact_line), intent(in) :: line         !! of its pairs
     type(unit_loads), intent(in) :: loads          !! of this load case
     type(answer_type), intent(in) :: answer        !! of the last solve
-    real(wp), intent(in) :: off(:)   !! errors of sums that come from errors of gaps [force] [any]
+    real(wp), intent(in) :: off(:)   !! errors of sums, from errors of gaps [force] [any]
     real(wp) :: turned, turned_on(directions, scene%model%bodies)
     logical :: given(directions, scene%model%bodies)
     integer :: c, i
@@ -256,9 +257,9 @@ contains
     end do
   end subroutine assess_forces
 
-  !> Is the SUPORT freedom of a motion the one node of its body's mesh that bears a load? [motions]
+  !> Is the SUPORT DOF of a mode at the only loaded mesh node of its body? [motions]
   pure function find_point_loads(scene) result(is_one)
-    type(planned_model), intent(in) :: scene       !! that was solved
+    type(planned_model), intent(in) :: scene       !! solved model
     logical :: is_one(scene%motions%count)
     real(wp) :: on_body(directions, scene%model%bodies), own(directions, scene%model%nodes)
     integer :: c, followers(directions, scene%model%nodes), i, j
@@ -267,7 +268,7 @@ contains
     followers = 0
     associate (model => scene%model)
       own = model%load
-      if (allocated(model%body_force)) own = own - model%body_force   ! those act on no node alone
+      if (allocated(model%body_force)) own = own - model%body_force   ! mass forces do not act on single nodes
       do i = 1, model%nodes
         on_body(:, model%body(i)) = on_body(:, model%body(i)) + abs(model%load(:, i))
         do c = 1, directions
@@ -285,10 +286,10 @@ contains
     end associate
   end function find_point_loads
 
-  !> Elements at a load on one node, and around these: there no mesh is fine enough, and the contact does
-  !! not feel it [elements].
+  !> Find the elements at a point load, and their neighbours [elements]. No mesh is fine enough there, and the
+  !! contact does not depend on it.
   pure function beside_point_loads(scene, table, point_load) result(beside)
-    type(planned_model), intent(in) :: scene       !! that was solved
+    type(planned_model), intent(in) :: scene       !! solved model
     type(patch_table), intent(in) :: table         !! of its elements
     logical, intent(in) :: point_load(:)           !! [motions]
     logical :: beside(scene%model%elements)
@@ -303,10 +304,10 @@ contains
     end do
   end function beside_point_loads
 
-  !> Pairs pressed less than the error of their force, or open less than such a force would close [pairs].
+  !> Find pairs with a force below its error, and open pairs that such a force would close [pairs].
   pure function find_weak(self, scene, linear, line, answer) result(weak)
     class(accuracy_type), intent(in) :: self
-    type(planned_model), intent(in) :: scene       !! that was solved
+    type(planned_model), intent(in) :: scene       !! solved model
     type(linear_problem), intent(in) :: linear     !! of its last solve
     type(contact_line), intent(in) :: line         !! of its pairs
     type(answer_type), intent(in) :: answer        !! of the last solve
@@ -325,15 +326,15 @@ contains
         end do
       end associate
     end do
-    ! From here on the error of the force. The smallest error of the gap is the compliance times that.
+    ! From here on `off` is the error of the force. The smallest gap error is the compliance times this error.
     off = off*line%tributary + self%sensitivity%rounding*maxval(answer%contact%force)
     weak = merge(answer%contact%force <= off, &
                  answer%contact%gap <= compliance*off, &
                  answer%contact%touching)
   end function find_weak
 
-  !> Elements with the largest errors, largest first; of equal ones, but for rounding, the first. None where
-  !! there is no error.
+  !> Find the elements with the largest errors, largest first; of equal ones (up to rounding), the first.
+  !! Empty if there are no elements.
   pure function worst_of(energy) result(worst)
     real(wp), intent(in) :: energy(:)
     integer, allocatable :: worst(:)
@@ -344,7 +345,7 @@ contains
     allocate (worst(0))
     left = .true.
     do k = 1, min(worst_count, size(energy))
-      largest = maxval(energy, mask=left)   ! by rounding it may be below zero
+      largest = maxval(energy, mask=left)   ! rounding may make it negative
       worst = [worst, findloc(left .and. energy >= largest - no_effect*abs(largest), .true., dim=1)]
       left(worst(k)) = .false.
     end do

@@ -1,8 +1,7 @@
-!> Unit loads, the forces that they cause at the pairs in contact, and displacements of one body under them.
-!>
-!> Contact frozen, a unit load on one body presses on others down to the ground. But far from it they feel its
-!> resultants only, and no body feels more than its pairs can tell apart: of all loads few are solved for, and
-!> the others are sums of these.
+!> Adjoint loads, the contact forces that they cause, and the displacements of one body under them. With the
+!> contact state frozen, an adjoint load on one body presses on others down to the ground. Distant bodies feel
+!> only its resultants, and the pairs of a body cannot distinguish more loads than they are. So few loads are
+!> solved; the others are linear combinations of these.
 module epcont_accuracy_body_loads
   use epcont_accuracy_element_errors, only: most_fields
   use epcont_assembly_bodies, only: force_fields
@@ -17,33 +16,33 @@ module epcont_accuracy_body_loads
   private
   public :: body_loads, choose_fields, find_displacements, load_batch, new_body_loads
 
-  !> A load that others make up for, but for this part of its largest force on any body, is a sum of these:
-  !! with ten times as much the error of an approach could be twice what all loads tell (blocks that tilt),
-  !! and a stack of 30 bodies took a twentieth less.
+  !> A load that differs from a linear combination of fields by at most this part of its largest force on any
+  !! body is replaced by the combination. With ten times as much, the error of an approach could double
+  !! (tilting blocks), and a stack of 30 bodies took only 5 % less time.
   real(wp), parameter :: made_up_for = 1.0e-3_wp
 
-  !> Of unit loads those that a body feels, and that no batch of fields has told of yet.
+  !> Adjoint loads that act on a body and are not yet part of a batch of adjoint fields.
   type :: body_loads
-    integer, allocatable :: pair(:)        !! those in contact with a node in the body [its pairs]
-    integer, allocatable :: load(:)        !! which unit loads these are [loads]
+    integer, allocatable :: pair(:)        !! pairs in contact with a node in the body [its pairs]
+    integer, allocatable :: load(:)        !! numbers of the adjoint loads [loads]
     !> Contact forces, in the unit of each load [loads, its pairs]
     real(wp), allocatable :: force(:, :)
   end type body_loads
 
-  !> Some loads, and the few of them that make up for all.
+  !> Some loads, and the few fields whose linear combinations represent them.
   type :: load_batch
     integer, allocatable :: load(:)        !! as in `body_loads` [loads]
-    integer, allocatable :: field(:)       !! those that are solved for [fields]
-    real(wp), allocatable :: force(:, :)   !! under these [body's pairs, fields]
-    real(wp), allocatable :: share(:, :)   !! of each field in each load [fields, loads]
+    integer, allocatable :: field(:)       !! loads that are solved [fields]
+    real(wp), allocatable :: force(:, :)   !! contact forces under these [body's pairs, fields]
+    real(wp), allocatable :: share(:, :)   !! factor of each field in each load [fields, loads]
   end type load_batch
 
 contains
 
-  !> The loads that a body feels, of those that are asked for.
+  !> Select the loads that act on a body.
   pure function new_body_loads(pair, unit_loads) result(loads)
-    integer, intent(in) :: pair(:)                   !! those of the body
-    type(contact_loads), intent(in) :: unit_loads    !! forces there
+    integer, intent(in) :: pair(:)                   !! pairs of the body
+    type(contact_loads), intent(in) :: unit_loads    !! forces at the pairs
     type(body_loads) :: loads
     integer :: j
 
@@ -57,15 +56,15 @@ contains
     end do
   end function new_body_loads
 
-  !> Take the loads that a few fields make up for out of those that are left: Gram and Schmidt's way, next the
-  !! load of which most is left; of loads that are as much, but for rounding, the first.
+  !> Move loads that a few fields can represent to a batch (Gram-Schmidt orthogonalization). The next field is
+  !! the load with the largest remainder; if remainders are equal up to rounding, the first.
   pure subroutine choose_fields(loads, batch)
-    type(body_loads), intent(inout) :: loads   !! those that are left
-    type(load_batch), intent(out) :: batch     !! fields and what they make up for
-    real(wp), allocatable :: rest(:, :)        !! of each load [loads, its pairs]
-    real(wp), allocatable :: share(:, :)       !! of each direction in each load [loads, fields]
+    type(body_loads), intent(inout) :: loads   !! loads that are not in a batch yet
+    type(load_batch), intent(out) :: batch     !! fields, and the loads that they represent
+    real(wp), allocatable :: rest(:, :)        !! remainder of each load [loads, its pairs]
+    real(wp), allocatable :: share(:, :)       !! factor of each direction in each load [loads, fields]
     real(wp) :: along(size(loads%pair))        !! a direction
-    real(wp) :: left(size(loads%load))         !! square of what is left of each load
+    real(wp) :: left(size(loads%load))         !! square of the remainder of each load
     integer :: chosen(min(most_fields, size(loads%pair), size(loads%load)))
     integer :: fields, k
 
@@ -97,10 +96,11 @@ contains
     call divide(loads, left <= made_up_for**2, chosen(:fields), share, batch)
   end subroutine choose_fields
 
-  !> From sums of directions to sums of the fields that gave them.
+  !> Convert factors of directions to factors of the fields that gave these directions.
   pure subroutine from_directions(chosen, share)
     integer, intent(in) :: chosen(:)            !! the load of each field
-    real(wp), intent(inout) :: share(:, :)      !! of each direction, then field, in each load [loads, any]
+    real(wp), intent(inout) :: share(:, :)      !! factor of each direction, then field, in each load [loads,
+                                                !! any]
     integer :: i, j
 
     do i = size(chosen), 1, -1
@@ -111,13 +111,13 @@ contains
     end do
   end subroutine from_directions
 
-  !> Hand loads over to a batch.
+  !> Move loads to a batch.
   pure subroutine divide(loads, is_told, chosen, share, batch)
     type(body_loads), intent(inout) :: loads   !! the others remain
-    logical, intent(in) :: is_told(:)          !! the fields make up for it [loads]
+    logical, intent(in) :: is_told(:)          !! the fields represent the load [loads]
     integer, intent(in) :: chosen(:)           !! the load of each field
-    real(wp), intent(in) :: share(:, :)        !! of each field in each load [loads, any]
-    type(load_batch), intent(out) :: batch     !! fields and what they make up for
+    real(wp), intent(in) :: share(:, :)        !! factor of each field in each load [loads, any]
+    type(load_batch), intent(out) :: batch     !! fields, and the loads that they represent
     integer :: j
 
     associate (told => pack([(j, j=1, size(is_told))], is_told), &
@@ -131,15 +131,15 @@ contains
     end associate
   end subroutine divide
 
-  !> Displacements of nodes of a body under the fields of a batch.
+  !> Find the displacements of nodes of a body under the fields of a batch.
   subroutine find_displacements(scene, linear, b, pair, batch, node, u)
-    type(planned_model), intent(in) :: scene     !! that was solved
+    type(planned_model), intent(in) :: scene     !! solved model
     type(linear_problem), intent(inout) :: linear   !! of the last solve
     integer, intent(in) :: b                     !! the body
     integer, intent(in) :: pair(:)               !! its pairs
     type(load_batch), intent(in) :: batch        !! forces on it
-    integer, intent(in) :: node(:)               !! that are asked for
-    real(wp), allocatable, intent(out) :: u(:, :, :)   !! [length] [directions, fields, nodes asked for]
+    integer, intent(in) :: node(:)               !! requested nodes
+    real(wp), allocatable, intent(out) :: u(:, :, :)   !! [length] [directions, fields, requested nodes]
     type(force_fields) :: loads
 
     allocate (u(directions, size(batch%force, 2), size(node)))
@@ -148,9 +148,9 @@ contains
     call linear%body_displacements(scene, b, loads, node, u)
   end subroutine find_displacements
 
-  !> What pairs exert on the nodes of a body, one entry of its rows after the other.
+  !> Find the forces of pairs on the nodes of a body, one entry of its gap rows after the other.
   pure subroutine put_forces(model, b, pair, batch, loads)
-    type(model_type), intent(in) :: model        !! the scene
+    type(model_type), intent(in) :: model        !! model
     integer, intent(in) :: b, pair(:)            !! the body, its pairs
     type(load_batch), intent(in) :: batch        !! forces on it
     type(force_fields), intent(out) :: loads
@@ -169,6 +169,6 @@ contains
         end do
       end do
     end do
-    loads%node = loads%node(:n)   ! so many of the forces count
+    loads%node = loads%node(:n)   ! drop unused entries
   end subroutine put_forces
 end module epcont_accuracy_body_loads

@@ -1,10 +1,10 @@
-!> One element: its own strains where they are compared, what smooth ones are beyond them, in several fields
-!> at once, and what the stress of the answer, the first of them, is off by.
+!> Errors of one element: differences between its own strains and the recovered strains, for the answer and
+!> several fields at once, and the stress error of the answer.
 !>
-!> With s the stress and e the strain of an element, and * for the smooth ones, the square of the error is the
-!> integral of (s* - s).(e* - e), s* being the stress on the material's curve at e*. Of elastic elements that
-!> is the energy norm. Of yielding ones it lies between those of the tangent and of the secant, and vanishes
-!> only with the error, whatever the curve.
+!> With s the stress and e the strain of an element, and * for recovered values, the square of the error is
+!> the integral of (s* - s).(e* - e); s* is the stress on the material's curve at e*. For elastic elements
+!> this is the energy norm. For yielded elements it lies between the norms of the tangent and of the secant.
+!> For any curve it is zero only if the error is zero.
 module epcont_accuracy_element_errors
   use epcont_base_kinds, only: wp
   use epcont_element_element_kind, only: element_kind, most_places
@@ -17,19 +17,19 @@ module epcont_accuracy_element_errors
   private
   public :: element_errors, new_element_errors
 
-  !> Fields that are compared at once, besides the answer.
+  !> Number of fields that are compared at once, besides the answer.
   integer, parameter, public :: most_fields = loads_at_once
   integer, parameter :: most_width = components*(1 + most_fields)
 
   type :: element_errors
-    integer :: fields = 0                    !! besides the answer
+    integer :: fields = 0                    !! number of fields besides the answer
     integer :: width = components            !! components of all fields, those of the answer first
-    integer :: places = 0                    !! of comparison
-    integer :: own_places = 0                !! at which own strains are told: one where all are the same
-    real(wp) :: part(most_places) = 0.0_wp   !! of the volume, at each place
+    integer :: places = 0                    !! number of points of comparison
+    integer :: own_places = 0                !! number of points with own strains; 1 if all strains are equal
+    real(wp) :: part(most_places) = 0.0_wp   !! part of the volume of each point
     real(wp) :: own(most_width, most_places)      !! strains
-    real(wp) :: error(most_width, most_places)    !! smooth ones less these
-    !> Of the answer: smooth less own, times the part of the volume [components, places]
+    real(wp) :: error(most_width, most_places)    !! recovered strains minus own strains
+    !> Stress error of the answer (recovered minus own), times the part of the volume [components, places]
     real(wp) :: stress(components, most_places)
   contains
     procedure :: compare
@@ -39,23 +39,23 @@ module epcont_accuracy_element_errors
 
 contains
 
-  !> For so many fields besides the answer.
+  !> Start a comparison of the answer and some other fields.
   pure function new_element_errors(fields) result(errors)
-    integer, intent(in) :: fields   !! how many
+    integer, intent(in) :: fields   !! number of fields besides the answer
     type(element_errors) :: errors
 
     errors%fields = fields
     errors%width = components*(1 + fields)
   end function new_element_errors
 
-  !> An element's own strains at its places, and what the smooth ones are beyond them.
+  !> Find an element's own strains at its points of comparison, and their errors.
   pure subroutine compare(self, kind, volume, strain, place, smooth)
     class(element_errors), intent(inout) :: self
     type(element_kind), intent(in) :: kind                 !! of the element
     real(wp), intent(in) :: volume(kind%points)            !! of its points
     real(wp), intent(in) :: strain(self%width, *)          !! at its points
-    integer, intent(in) :: place(kind%nodes)               !! where its nodes are in `smooth`
-    real(wp), intent(in) :: smooth(self%width, *)          !! smooth strains [width, any]
+    integer, intent(in) :: place(kind%nodes)               !! positions of its nodes in `smooth`
+    real(wp), intent(in) :: smooth(self%width, *)          !! recovered strains [width, any]
     real(wp) :: middle
     integer :: i, k, v
 
@@ -70,7 +70,7 @@ contains
     do k = 1, self%own_places
       call own_strain(k, self%own(:, k))
     end do
-    if (kind%nodes == 3) then   ! what follows below, for most of all elements
+    if (kind%nodes == 3) then   ! the loop below, unrolled for the most frequent element
       do v = 1, self%width
         middle = 0.5_wp*(smooth(v, place(1)) + smooth(v, place(2)) + smooth(v, place(3))) - strain(v, 1)
         self%error(v, 1) = middle - 0.5_wp*smooth(v, place(1))
@@ -83,7 +83,7 @@ contains
       do v = 1, self%width
         self%error(v, k) = -self%own(v, min(k, self%own_places))
       end do
-      do i = 1, kind%nodes, 2   ! all others have an even number: half as many passes
+      do i = 1, kind%nodes, 2   ! all other types have an even number of nodes: half as many passes
         do v = 1, self%width
           self%error(v, k) = self%error(v, k) + (kind%n(i, k)*smooth(v, place(i)) + &
                                                  kind%n(i + 1, k)*smooth(v, place(i + 1)))
@@ -114,13 +114,14 @@ contains
     end subroutine own_strain
   end subroutine compare
 
-  !> What the stress of the answer is off by, on the material's curve.
+  !> Find the stress error of the answer, on the material's curve.
   pure subroutine find_stress(self, kind, materials, first, state)
     class(element_errors), intent(inout) :: self
     type(element_kind), intent(in) :: kind            !! of the element
     type(model_materials), intent(in) :: materials
-    integer, intent(in) :: first                      !! its first point
-    type(point_state), allocatable, intent(in) :: state(:)   !! of the answer, where anything yields [points]
+    integer, intent(in) :: first                      !! its first integration point
+    type(point_state), allocatable, intent(in) :: state(:)   !! of the answer; not allocated if nothing yields
+                                                             !! [points]
     type(point_state) :: after, before
     real(wp) :: cross
     integer :: k
@@ -149,8 +150,8 @@ contains
     end associate
   end subroutine find_stress
 
-  !> What the stress of the answer is off by, times what the strain of a field is off by: of the answer itself
-  !! the square of its error [energy].
+  !> Product of the stress error of the answer and the strain error of a field. For the answer itself: the
+  !! square of its error [energy].
   pure real(wp) function energy(self, field)
     class(element_errors), intent(in) :: self
     integer, intent(in) :: field   !! 0: the answer
@@ -165,7 +166,7 @@ contains
     end do
   end function energy
 
-  !> The stress of a strain, elastic; in a sheet the component zz of both is none.
+  !> Find the elastic stress of a strain; the component zz of both is zero in plane stress.
   pure subroutine put_elastic_stress(cross, shear, strain, stress)
     real(wp), intent(in) :: cross, shear          !! K - 2/3 G, G [stress]
     real(wp), intent(in) :: strain(components)    !! xx, yy, zz, xy

@@ -1,6 +1,6 @@
-!> The strains of the answer and of unit loads against smooth ones: how far they are from these, as an energy
-!> (Zienkiewicz and Zhu 1987), and what their errors have in common. Body by body, since of all loads a body
-!> feels few that it tells apart (`body_loads.f90`).
+!> Errors of strains of the answer and of adjoint fields: differences from recovered strains, their energies
+!> (Zienkiewicz and Zhu 1987), and their products. The comparison runs body by body, since only few loads
+!> differ on one body (`body_loads.f90`).
 module epcont_accuracy_error_fields
   use epcont_accuracy_body_loads, only: body_loads, choose_fields, find_displacements, load_batch, &
     new_body_loads
@@ -21,63 +21,69 @@ module epcont_accuracy_error_fields
   private
   public :: body_fields, compare_fields, error_fields
 
-  !> Elements that a thread takes at once.
+  !> Number of elements that a thread takes at once.
   integer, parameter :: at_once = 8192
 
-  !> What load cases keep takes such a part of the memory that is forecast, at most.
+  !> Data kept for the next load case take at most this part of the forecast memory.
   real(wp), parameter :: part_of_memory = 0.1_wp
   integer, parameter :: real_bytes = 8
 
-  !> The fields of a batch of loads on a body; where it tells of all loads, for the next load case.
+  !> Adjoint fields of a batch of loads on a body. If the batch represents all loads, they are kept for the
+  !! next load case.
   type :: body_fields
     type(load_batch) :: batch
     real(wp), allocatable :: u(:, :, :)   !! displacements under them [length] [directions, fields, places]
-    !> Strains of the answer and of all fields, at the samples, and smooth ones; not allocated: not known
-    !! [components, 0:fields, samples], [components, 0:fields, places]
+    !> Strains of the answer and of all fields at the sampling points, and recovered strains; not allocated if
+    !! unknown [components, 0:fields, samples], [components, 0:fields, places]
     real(wp), allocatable :: sample(:, :, :), smooth(:, :, :)
-    real(wp), allocatable :: energy(:, :)   !! of each load, as `field_sums` has it [energy] [2, loads]
+    real(wp), allocatable :: energy(:, :)   !! of each load, as in `field_sums` [energy] [2, loads]
   contains
     procedure :: hand_over
   end type body_fields
 
-  !> Strains less smooth ones are errors: their energies, and their products with those of unit loads.
+  !> Errors are strains minus recovered strains: their energies, and their products with errors of adjoint
+  !! fields.
   type :: error_fields
-    real(wp), allocatable :: smooth(:, :)   !! strains of the answer [components, places of the patches]
+    real(wp), allocatable :: smooth(:, :)   !! recovered strains of the answer [components, places of the
+                                            !! patches]
     real(wp), allocatable :: element(:)     !! [energy] [elements]
     real(wp) :: energy = 0.0_wp             !! of the answer
-    real(wp), allocatable :: along(:, :)    !! of all elements, of each without its sign [energy] [2, loads]
-    real(wp), allocatable :: missing(:)     !! part of the energy of each unit load [loads]
+    real(wp), allocatable :: along(:, :)    !! sum over elements: with signs, of absolute values [energy] [2,
+                                            !! loads]
+    real(wp), allocatable :: missing(:)     !! error energy, as a part of the energy of each adjoint load
+                                            !! [loads]
   end type error_fields
 
-  !> A comparison of fields, body by body.
+  !> State of the comparison, body by body.
   type :: comparison
     type(planned_model), pointer :: scene => null()
     type(linear_problem), pointer :: linear => null()          !! of its last solve
     class(solved_state), pointer :: answer => null()
     type(patch_table), pointer :: table => null()              !! of its elements
-    type(contact_loads), pointer :: unit_loads => null()       !! contact forces under these
+    type(contact_loads), pointer :: unit_loads => null()       !! contact forces under adjoint loads
     integer :: b = 0                         !! the body
     integer, allocatable :: element(:)       !! its elements
     type(body_loads) :: loads
     type(body_fields) :: now                 !! of these loads
     type(body_samples) :: samples            !! of its strains
-    real(wp), allocatable :: total(:, :)     !! what `field_sums` has of all bodies [4, loads]
+    real(wp), allocatable :: total(:, :)     !! sums of `field_sums` over all bodies [4, loads]
   end type comparison
 
 contains
 
-  !> Errors of the answer's strains, and what they have in common with those of unit loads.
+  !> Find the errors of the answer's strains, and their products with the errors of adjoint fields.
   subroutine compare_fields(scene, linear, answer, table, unit_loads, known, field)
-    type(planned_model), target, intent(in) :: scene     !! that was solved
+    type(planned_model), target, intent(in) :: scene     !! solved model
     type(linear_problem), target, intent(inout) :: linear   !! of the last solve
-    class(solved_state), target, intent(in) :: answer     !! to it
+    class(solved_state), target, intent(in) :: answer     !! solution of the model
     type(patch_table), target, intent(in) :: table       !! of its elements
-    type(contact_loads), target, intent(in) :: unit_loads   !! contact forces under these
-    type(body_fields), intent(inout) :: known(:) !! of the load case before, if the same; of these [bodies]
-    type(error_fields), intent(out) :: field     !! what is off
+    type(contact_loads), target, intent(in) :: unit_loads   !! contact forces under adjoint loads
+    type(body_fields), intent(inout) :: known(:) !! in: of the previous load case, if its loads are the same;
+                                                 !! out: of this one [bodies]
+    type(error_fields), intent(out) :: field     !! errors
     type(incidence) :: elements, pairs           ! of each body
     type(comparison) :: work
-    real(wp) :: kept                             ! for the next load case [bytes]
+    real(wp) :: kept                             ! memory for the next load case [bytes]
     integer :: b, k
 
     work%scene => scene
@@ -117,20 +123,20 @@ contains
     field%energy = sum(linear%operator%volume*sum(answer%strain*answer%point_stress, dim=1))
   end subroutine compare_fields
 
-  !> The next batch of loads, and displacements under its fields, if these are not known.
+  !> Choose the next batch of loads, and find displacements under its fields, if they are unknown.
   subroutine find_fields(work, place)
     type(comparison), intent(inout) :: work
     integer, intent(in) :: place(:)   !! of the body
     integer :: f
 
-    if (allocated(work%now%smooth)) deallocate (work%now%sample, work%now%smooth)   ! of the batch before
+    if (allocated(work%now%smooth)) deallocate (work%now%sample, work%now%smooth)   ! of the previous batch
     call choose_fields(work%loads, work%now%batch)
     if (.not. allocated(work%unit_loads%displacement)) then
       call find_displacements(work%scene, work%linear, work%b, work%loads%pair, work%now%batch, &
           work%table%node(place), work%now%u)
       return
     end if
-    if (size(work%now%batch%field) == 0) then   ! of no loads there are no displacements
+    if (size(work%now%batch%field) == 0) then   ! the solver needs at least one load
       work%now%u = reshape([real(wp) ::], [directions, 0, size(place)])
       return
     end if
@@ -140,15 +146,15 @@ contains
     end do
   end subroutine find_fields
 
-  !> What the elements of a body add, under a batch of loads. Threads share them by parts, always the same,
-  !! whose sums are added in their order.
+  !> Add the contribution of a body's elements under a batch of loads. Threads share the elements in fixed
+  !! parts, whose sums are added in order, so that results do not depend on the number of threads.
   subroutine compare_on_body(work, field, place)
     type(comparison), intent(inout) :: work
     type(error_fields), intent(inout) :: field      !! errors are added
     integer, intent(in) :: place(:)   !! those of the body
     type(field_sums) :: part, sums
     integer :: fields, first, width
-    logical :: told   ! all but what is of the answer is known
+    logical :: told   ! all fields are known, except the answer
 
     fields = size(work%now%u, 2)
     width = components*(1 + fields)
@@ -191,7 +197,7 @@ contains
   subroutine sample_elements(work, element, fields, width, sample)
     type(comparison), intent(in) :: work
     integer, intent(in) :: element(:)   !! numbers of the elements
-    integer, intent(in) :: fields       !! how many fields: none or all; strains of others are kept
+    integer, intent(in) :: fields       !! number of fields: zero or all; strains of other fields are kept
     integer, intent(in) :: width        !! components of all fields
     real(wp), intent(inout) :: sample(width, *)   !! of the body
     real(wp) :: strain(width, most_points)
@@ -211,15 +217,15 @@ contains
     end do
   end subroutine sample_elements
 
-  !> The errors of some elements. Strains are found again: kept at all points they would be the largest
-  !! array of all.
+  !> Find the errors of some elements. The strains are computed again; if they were stored for all points,
+  !! they would be the largest array.
   subroutine compare_elements(work, field, element, width, sample, smooth, sums)
     type(comparison), intent(in) :: work
     type(error_fields), intent(inout) :: field      !! errors are added
-    integer, intent(in) :: element(:)            !! these
+    integer, intent(in) :: element(:)            !! numbers of the elements
     integer, intent(in) :: width                 !! components of all fields
     real(wp), intent(in) :: sample(width, *), smooth(width, *)   !! of the body
-    type(field_sums), intent(inout) :: sums      !! they are added
+    type(field_sums), intent(inout) :: sums      !! sums, to which their errors are added
     type(element_errors) :: errors
     real(wp) :: strain(width, most_points)
     integer :: i
@@ -283,7 +289,7 @@ contains
     call work%linear%operator%add_means(work%scene%model, e, places_of(work, e), fields, work%now%u, strain)
   end subroutine find_means
 
-  !> Give all that is known to another.
+  !> Move the known fields to another object.
   subroutine hand_over(self, to)
     class(body_fields), intent(inout) :: self
     type(body_fields), intent(inout) :: to

@@ -1,8 +1,9 @@
-!> Sums over the elements of a body, for loads that are each a sum of few fields: products of the errors of
-!> the answer and of the load, signed and not, and energies of the load's error and of its own strain.
+!> Sums over the elements of a body, for loads that are linear combinations of few fields: products of the
+!> errors of the answer and of the load (signed, and absolute values), and energies of the load's error and
+!> strain.
 !>
-!> The energy of a sum of fields is a sum over each two of them, so those of the fields are found; what is
-!> summed without signs is not, and is found for each load and element from the products of the fields.
+!> The energy of a combination of fields is a double sum over fields, so only energies of pairs of fields are
+!> found. Sums of absolute values are found for each load and element from the products of the fields.
 module epcont_accuracy_field_sums
   use epcont_accuracy_element_errors, only: element_errors, most_fields
   use epcont_base_kinds, only: wp
@@ -15,21 +16,23 @@ module epcont_accuracy_field_sums
   private
   public :: field_sums, new_field_sums
 
-  !> Elements that are summed at once, at most.
+  !> Maximum number of elements that are summed at once.
   integer, parameter :: most_at_once = 64
 
   type :: field_sums
-    real(wp), allocatable :: along(:, :)    !! products: their sum, that without signs [energy] [2, loads]
-    real(wp), allocatable :: energy(:, :)   !! of each load's error, and of its own strain [2, loads]
-    logical :: finds_energies = .true.      !! else these are known
-    real(wp), allocatable, private :: share(:, :)          !! of each field in each load [fields, loads]
-    !> Energies of each two fields: of their errors, of their own strains [fields, fields, 2]
+    real(wp), allocatable :: along(:, :)    !! products: signed sum, sum of absolute values [energy] [2,
+                                            !! loads]
+    real(wp), allocatable :: energy(:, :)   !! of each load's error, and of its strain [2, loads]
+    logical :: finds_energies = .true.      !! false: energies are already known
+    real(wp), allocatable, private :: share(:, :)          !! factor of each field in each load [fields,
+                                                           !! loads]
+    !> Energies of each two fields: of their errors, of their strains [fields, fields, 2]
     real(wp), allocatable, private :: together(:, :, :)
-    ! Of elements that wait to be summed:
-    integer, private :: elements = 0                       !! how many
-    integer, private :: rows(2) = 0                        !! components of strains, of errors and own ones
+    ! Elements that are not summed yet:
+    integer, private :: elements = 0                       !! their number
+    integer, private :: rows(2) = 0                        !! components of errors and of strains
     real(wp), allocatable, private :: product(:, :)        !! [elements, fields]
-    !> Errors and own strains, their stresses times the part of the volume [rows, fields, 2]
+    !> Errors and strains, their stresses times the part of the volume [rows, fields, 2]
     real(wp), allocatable, private :: strain(:, :, :), stress(:, :, :)
   contains
     procedure :: add
@@ -40,10 +43,10 @@ module epcont_accuracy_field_sums
 
 contains
 
-  !> Sums without any elements.
+  !> Start sums without elements.
   pure function new_field_sums(share, elements) result(sums)
-    real(wp), intent(in) :: share(:, :)   !! of each field in each load [fields, loads]
-    integer, intent(in) :: elements       !! how many will be added
+    real(wp), intent(in) :: share(:, :)   !! factor of each field in each load [fields, loads]
+    integer, intent(in) :: elements       !! number of elements that will be added
     type(field_sums) :: sums
     integer :: at_once
 
@@ -80,11 +83,11 @@ contains
 
   contains
 
-    !> Put the strains of all fields at some places behind those that wait, and their stresses.
+    !> Append the strains of all fields at some points, and their stresses.
     subroutine put(i, places, found, strain, stress)
-      integer, intent(in) :: i        !! 1: errors, 2: own strains
-      integer, intent(in) :: places   !! how many
-      real(wp), intent(in) :: found(components, 0:most_fields, places)   !! first that of the answer
+      integer, intent(in) :: i        !! 1: errors, 2: strains
+      integer, intent(in) :: places   !! number of points
+      real(wp), intent(in) :: found(components, 0:most_fields, places)   !! the answer first
       real(wp), dimension(size(self%strain, 1), errors%fields), intent(inout) :: strain, stress
       real(wp) :: volumetric, double, e(components)
       integer :: f, k, row
@@ -107,17 +110,17 @@ contains
     end subroutine put
   end subroutine add
 
-  !> Add the sums of other elements, for the same loads.
+  !> Add the sums of other elements for the same loads.
   pure subroutine include(self, others)
     class(field_sums), intent(inout) :: self
-    type(field_sums), intent(inout) :: others   !! none of them waits any more
+    type(field_sums), intent(inout) :: others   !! their pending elements are summed up
 
     call others%sum_up()
     self%along = self%along + others%along
     self%together = self%together + others%together
   end subroutine include
 
-  !> Sum up the elements that wait.
+  !> Sum up the pending elements.
   pure subroutine sum_up(self)
     class(field_sums), intent(inout) :: self
     real(wp) :: of_load(size(self%product, 1), size(self%share, 2))
@@ -137,7 +140,7 @@ contains
     self%rows = 0
   end subroutine sum_up
 
-  !> All has been added: the energies of the loads.
+  !> Sum up the last elements, and find the energies of the loads.
   pure subroutine finish(self)
     class(field_sums), intent(inout) :: self
     real(wp) :: part(size(self%share, 1), size(self%share, 2))

@@ -1,9 +1,9 @@
-!> Where the pressure of a zone has no limit: at a tip inside it, or at an edge, where one body ends and the
-!> other goes on.
+!> Singular pressures: at a tip (sharp corner) inside a zone, or at an edge, where one body ends and the other
+!> continues.
 !>
-!> Both are told by the geometry, not by the pressures, of which each kind of element has others. A tip is a
-!> bend of the gap, or of the other body's outline, at one node alone: arcs and fillets bend at each of their
-!> nodes. At an edge the contact reaches the last of its pairs and the pressure does not fall towards it.
+!> The geometry decides, not the pressures, which depend on the element type. A tip is a bend of the gap, or
+!> of the other body's outline, at one node alone; arcs and fillets bend at each of their nodes. At an edge
+!> the contact reaches the last of its pairs, and the pressure does not fall towards it.
 module epcont_accuracy_limits
   use epcont_accuracy_surface_line, only: corner, surface_line
   use epcont_accuracy_weights, only: tip_matters, tip_stands_out
@@ -18,35 +18,37 @@ module epcont_accuracy_limits
   public :: edge_pairs, has_tip
 
   real(wp), parameter :: pi = acos(-1.0_wp)
-  !> Bodies that end together in corners of so much in all, or one alone on what is rigid, have no edge: what
-  !! the quarter plane on a frictionless floor is a half of [rad].
+  !> If the angles of two bodies that end together, or of one body on a rigid face, sum to at most this angle,
+  !! there is no edge: the pressure is bounded, as of a quarter plane on a frictionless floor (half of a
+  !! half-plane) [rad].
   real(wp), parameter :: straight = pi*(1.0_wp + 1.0e-3_wp)
-  !> Corners of two bodies are at one place within this part of a side.
+  !> Corners of two bodies coincide if their distance is at most this part of an edge.
   real(wp), parameter :: flush = 1.0e-2_wp
-  !> Where there is no line of symmetry.
+  !> Position of a line of symmetry that does not exist.
   real(wp), parameter :: nowhere(2, 2) = huge(1.0_wp)
-  !> Part of a row's weights that says where a side is.
+  !> Smallest weight of a gap row that locates an edge.
   real(wp), parameter :: least_weight = 1.0e-3_wp
 
-  !> How an outline goes on at a node.
+  !> Outline at a node.
   type :: turn_type
-    integer :: beside(2) = 0            !! nodes before and behind it, the body on their left; 0: none
-    real(wp) :: reach = 0.0_wp          !! from the one to the other [length]
-    real(wp) :: angle = 0.0_wp          !! by which it turns there, outward positive [rad]
-    real(wp) :: curvature = 0.0_wp      !! that over the length that the node stands for [1/length]
+    integer :: beside(2) = 0            !! nodes before and after it, the body on their left; 0 if there is no
+                                        !! such node
+    real(wp) :: reach = 0.0_wp          !! distance between these nodes [length]
+    real(wp) :: angle = 0.0_wp          !! rotation of the outline, positive outward [rad]
+    real(wp) :: curvature = 0.0_wp      !! angle divided by the node's part of the outline [1/length]
   end type turn_type
 
 contains
 
   !> Is there a tip in a zone?
   pure logical function has_tip(model, line, zone, largest)
-    type(model_type), intent(in) :: model    !! the scene
+    type(model_type), intent(in) :: model    !! model
     type(surface_line), intent(in) :: line   !! of its pairs
     type(contact_zone), intent(in) :: zone   !! of these pairs
-    real(wp), intent(in) :: largest          !! pressure there [stress]
+    real(wp), intent(in) :: largest          !! largest pressure of the zone [stress]
     integer, allocatable :: within(:)
     integer :: across, ends(2), i, k
-    real(wp) :: mirror(2, 2)   !! places of lines of symmetry at the ends, across x and across y [length]
+    real(wp) :: mirror(2, 2)   !! positions of lines of symmetry at the ends, across x and across y [length]
 
     has_tip = .true.
     mirror = nowhere
@@ -55,13 +57,13 @@ contains
       across = merge(1, 2, abs(model%normal(2, ends(k))) > abs(model%normal(1, ends(k))))
       if (line%mirrored(ends(k))) mirror(across, k) = line%x(across, ends(k))
     end do
-    ! a corner on the axis bears nothing by itself
+    ! a corner on the axis carries no force by itself
     within = [zone%pairs, pack(zone%beyond, line%tributary(zone%beyond) == 0.0_wp)]
     do k = 1, size(within)
       associate (pair => within(k), least => tip_matters*largest*line%compliance(within(k)))
         if (least <= 0.0_wp) cycle
         if (gap_bends(pair, least)) return
-        if (pair <= model%single_pairs()) cycle   ! whose gap tells all of it
+        if (pair <= model%single_pairs()) cycle   ! their gap shows any bend
         do i = model%row_start(pair) + 1, model%row_start(pair + 1) - 1
           if (abs(model%row_weight(i)) < least_weight) cycle
           if (outline_bends(model%row_node(i), least) .and. .not. is_flush(model%row_node(i))) return
@@ -72,7 +74,7 @@ contains
 
   contains
 
-    !> Does the gap bend open at a pair alone?
+    !> Does the gap bend open at this pair alone?
     pure logical function gap_bends(pair, least)
       integer, intent(in) :: pair
       real(wp), intent(in) :: least   !! angle [rad]
@@ -84,7 +86,7 @@ contains
       around = 0.0_wp
       do k = 1, 2
         near = line%neighbour(k, pair)
-        do step = 1, 2   ! the neighbour, then the one behind it
+        do step = 1, 2   ! the neighbour, then the next one
           if (near == 0) exit
           around = max(around, abs(line%curvature(near)))
           near = line%beyond(near, pair)
@@ -93,7 +95,7 @@ contains
       gap_bends = line%curvature(pair) >= tip_stands_out*around
     end function gap_bends
 
-    !> Does the outline turn at a node alone?
+    !> Does the outline bend at this node alone?
     pure logical function outline_bends(node, least)
       integer, intent(in) :: node
       real(wp), intent(in) :: least   !! angle [rad]
@@ -107,7 +109,7 @@ contains
       around = 0.0_wp
       do k = 1, 2
         near = here
-        do step = 1, 2   ! the node beside it, then the one behind that
+        do step = 1, 2   ! the neighbour, then the next one
           if (near%beside(k) == 0) exit
           near = turn_at(model, near%beside(k), mirror)
           around = max(around, abs(near%curvature))
@@ -116,7 +118,7 @@ contains
       outline_bends = here%curvature >= tip_stands_out*around
     end function outline_bends
 
-    !> Is a node a corner at which the zone's own outline ends in a corner too?
+    !> Is a node a corner close to a corner of the zone's own outline?
     pure logical function is_flush(node)
       integer, intent(in) :: node
       type(turn_type) :: here
@@ -129,13 +131,13 @@ contains
     end function is_flush
   end function has_tip
 
-  !> How the outline of a body goes on at a node. On a line of symmetry it does as mirrored there.
+  !> Find the outline of a body at a node; a line of symmetry mirrors it.
   pure function turn_at(model, node, mirror) result(turn)
     type(model_type), intent(in) :: model
     integer, intent(in) :: node
-    real(wp), intent(in) :: mirror(2, 2)     !! places of lines of symmetry, across x and across y
+    real(wp), intent(in) :: mirror(2, 2)     !! positions of lines of symmetry, across x and across y
     type(turn_type) :: turn
-    real(wp) :: piece(2, 2)   !! from the node before it, to the one behind it
+    real(wp) :: piece(2, 2)   !! vectors from the node before it, and to the node after it
     integer, allocatable :: sides(:, :)
     integer :: c, i, k
 
@@ -164,10 +166,10 @@ contains
 
   contains
 
-    !> Does a side lie on a line of symmetry that is known, or on one along which its nodes alone are free, or
-    !! on the axis of rings?
+    !> Does an edge lie on a known line of symmetry, on a line along which alone its nodes can move, or on the
+    !! axis of symmetry of an axisymmetric model?
     pure logical function along_symmetry(c, other)
-      integer, intent(in) :: c   !! the direction across
+      integer, intent(in) :: c   !! direction normal to the line
       integer, intent(in) :: other
 
       associate (x => model%x(c, [node, other]), held => model%held(:, [node, other]), &
@@ -180,14 +182,15 @@ contains
     end function along_symmetry
   end function turn_at
 
-  !> How many pairs at the end of a zone tell by their pressures whether the last candidate is at an edge: 0:
-  !! it is at none, since both bodies end there; 1: the last, where no more than the candidates end; 2: also
-  !! the one before it, where a body ends in a corner, which may bear little by itself.
+  !> Number of pairs at the end of a zone whose pressures show whether the last candidate is at an edge. 0:
+  !! not at an edge, since both bodies end there; 1: the last, if only the candidates end; 2: also the pair
+  !! before it, if a body ends in a corner, which may carry little force.
   pure integer function edge_pairs(model, line, pair)
-    type(model_type), intent(in) :: model     !! the scene
+    type(model_type), intent(in) :: model     !! model
     class(contact_line), intent(in) :: line   !! of its pairs
     integer, intent(in) :: pair               !! the last candidate
-    real(wp) :: inside(2)   !! angles of corners, of the pair's own node and on the other side; 0: no corner
+    real(wp) :: inside(2)   !! angles of the corners at the pair's node and on the other body; 0 if there is
+                            !! no corner
     logical :: rigid
     integer :: i, side
 
@@ -209,7 +212,7 @@ contains
     end if
   end function edge_pairs
 
-  !> The angle of the body at a corner; 0: the outline goes on [rad].
+  !> Find the angle of the body at a corner; 0 if the outline continues [rad].
   pure real(wp) function corner_inside(model, node) result(inside)
     type(model_type), intent(in) :: model
     integer, intent(in) :: node

@@ -1,5 +1,5 @@
-!> What contact on one pair or two tells too little of: where it begins, how near the bodies come, and which
-!> way it presses; and which way pairs beside a corner, and wide zones as a whole, may press.
+!> Errors of narrow zones, with contact at one or two pairs: unknown start of the contact, overclosure, and
+!> direction of the force. Also unknown force directions of pairs beside a corner and of wide zones.
 module epcont_accuracy_narrow_zone
   use epcont_accuracy_surface_line, only: corner, first_element, surface_line
   use epcont_accuracy_weights, only: askew, bears_on, finer
@@ -17,32 +17,32 @@ module epcont_accuracy_narrow_zone
   private
   public :: find_turned, shifted_loads, too_near
 
-  !> Pairs up to which a zone is too narrow to tell where its contact begins.
+  !> A zone of at most this number of pairs does not show where its contact begins.
   integer, parameter :: narrow = 2
 
 contains
 
-  !> What contact on few pairs says too little: how much nearer the bodies come on a three times finer mesh,
-  !! and how high a smooth gap may bulge between one pair and the next, where contact truly begins; of two
-  !! pairs, half of that between them [length].
+  !> Estimate the overclosure of a zone with few pairs: how much nearer the bodies come on a three times finer
+  !! mesh, and the bulge of a smooth gap between neighbouring pairs, where contact begins in truth. For two
+  !! pairs the bulge counts by half [length].
   pure real(wp) function too_near(model, line, force, zone, pairs)
-    type(model_type), intent(in) :: model     !! the scene
+    type(model_type), intent(in) :: model     !! model
     type(surface_line), intent(in) :: line    !! of its pairs
-    real(wp), intent(in) :: force(:)          !! of all [force] [pairs]
-    type(zone_error), intent(in) :: zone      !! what is known of it
+    real(wp), intent(in) :: force(:)          !! of all pairs [force] [pairs]
+    type(zone_error), intent(in) :: zone      !! its known errors
     integer, intent(in) :: pairs(:)           !! of the zone
     integer :: bearing
 
     too_near = 0.0_wp
     bearing = bearing_pairs(model, force(pairs))
     if (bearing > narrow) return
-    if (.not. zone%unbounded) too_near = bulge()/bearing   ! a tip is where contact begins
+    if (.not. zone%unbounded) too_near = bulge()/bearing   ! contact begins at the tip
     if (bearing == 1) too_near = too_near + finer*line%compliance(zone%peak)*force_of_depth()
 
   contains
 
-    !> How far a smooth gap may fall below its values at the peak and beside it, by the most that it bends at
-    !! one of them [length].
+    !> Find the largest bulge of a smooth gap below its values at the peak and its neighbours, from the bends
+    !! there [length].
     pure real(wp) function bulge()
       integer :: k, near(3)
 
@@ -50,14 +50,14 @@ contains
       near = [zone%peak, line%neighbour(:, zone%peak)]
       do k = 1, 3
         if (near(k) == 0) cycle
-        ! beyond, one pair faces a step, or another side
+        ! beyond a corner, a pair projects onto a step or another edge
         if (line%curvature(near(k)) <= 0.0_wp .or. line%bend(near(k)) > corner) cycle
         ! an eighth of angle times spacing
         bulge = max(bulge, line%bend(near(k))**2/line%curvature(near(k))/8.0_wp)
       end do
     end function bulge
 
-    !> Force of the peak over the depth of its elements [force/length].
+    !> Find the force of the peak divided by the depth of its elements [force/length].
     pure real(wp) function force_of_depth()
       real(wp) :: depth
       integer :: element, k, node
@@ -73,8 +73,8 @@ contains
     end function force_of_depth
   end function too_near
 
-  !> How many pairs bear the force of a zone: as many as would if all bore the same. (In rings forces grow
-  !! with the radius: there those that bear any.)
+  !> Count the pairs that carry the force of a zone: the number of equal forces with the same sum and sum of
+  !! squares. In axisymmetric models forces grow with the radius; there all pairs with a force count.
   pure integer function bearing_pairs(model, force)
     type(model_type), intent(in) :: model
     real(wp), intent(in) :: force(:)
@@ -84,32 +84,33 @@ contains
     bearing_pairs = max(bearing_pairs, 1)
   end function bearing_pairs
 
-  !> What the force of a narrow zone does along each motion, more or less, where it is half a side aside, of
-  !! two pairs a quarter: where in its sides contact is, nothing tells [force*length or force] [motions,
-  !! narrow zones].
+  !> Find the load along each rigid-body mode if the force of a narrow zone is shifted by half an edge (a
+  !! quarter of an edge for two pairs), since the position of the contact within its edges is unknown
+  !! [force*length or force] [motions, narrow zones].
   pure function shifted_loads(model, line, motions, answer) result(load)
-    type(model_type), intent(in) :: model        !! the scene
+    type(model_type), intent(in) :: model        !! model
     class(contact_line), intent(in) :: line      !! of its pairs
     type(free_motions), intent(in) :: motions    !! of its bodies
     type(answer_type), intent(in) :: answer      !! with forces and zones
     real(wp), allocatable :: load(:, :)
     real(wp) :: aside
     integer, allocatable :: beside(:), zones(:)
-    integer :: bearing(size(answer%zones)), body, i, k, m, z   ! the first: pairs of each zone
+    integer :: bearing(size(answer%zones)), body, i, k, m, z   ! the first: number of loaded pairs of each
+                                                               ! zone
 
     bearing = [(bearing_pairs(model, answer%contact%force(answer%zones(z)%pairs)), z=1, size(bearing))]
     zones = pack([(z, z=1, size(bearing))], bearing <= narrow)
     allocate (load(motions%count, size(zones)), source=0.0_wp)
     do z = 1, size(zones)
       associate (pairs => answer%zones(zones(z))%pairs, force => answer%contact%force)
-        k = pairs(maxloc(line%tributary(pairs), dim=1, &   ! of equal ones the widest
+        k = pairs(maxloc(line%tributary(pairs), dim=1, &   ! of equal forces the widest pair
                          mask=force(pairs) >= (1.0_wp - no_effect)*maxval(force(pairs))))
         beside = pack(line%neighbour(:, k), line%neighbour(:, k) > 0)
         aside = maxval([0.0_wp, (0.5_wp*line%distance(k, beside(i))/bearing(zones(z)), i=1, size(beside))])
         do i = 1, 2   ! A is pushed against the normal, B along it
           body = model%body(model%pair_node(i, k))
           do m = motions%first(body), motions%first(body + 1) - 1
-            if (answer%contact%motion_free(m)) cycle   ! nothing resists it
+            if (answer%contact%motion_free(m)) cycle   ! undetermined mode
             load(m, z) = load(m, z) + (2*i - 3)*sum(force(pairs))*aside/motions%parts%extent(body) &
                          *motions%turn(model%pair_node(i, k), m)
           end do
@@ -118,19 +119,19 @@ contains
     end do
   end function shifted_loads
 
-  !> How much more or less force there would be if pairs pressed another way that may be the right one.
+  !> Find the change of forces if pairs push along another direction that may be the right one.
   !!
-  !! Pairs may press along the node's own normal instead of that of what it faces: of smooth boundaries these
-  !! are the same only where the bodies touch. In narrow zones each pair by itself; in wide ones all normals
-  !! of the one body, or of the other.
+  !! A pair may push along the normal of its own node instead of the normal of the opposite edge. On smooth
+  !! boundaries the two are equal only where the bodies touch. In narrow zones each pair counts by itself; in
+  !! wide zones all normals of one body, or of the other, count together.
   subroutine find_turned(model, line, answer, given, total, of_body)
-    type(model_type), intent(in) :: model               !! the scene
+    type(model_type), intent(in) :: model               !! model
     class(contact_line), intent(in) :: line             !! of its pairs
     type(answer_type), intent(in) :: answer             !! with forces and zones
-    !> Loads make that component of the resultant [directions, bodies]
+    !> Loads determine this component of the resultant [directions, bodies]
     logical, intent(in) :: given(:, :)
-    real(wp), intent(out) :: total                      !! of the total contact force [force]
-    !> Of the resultant on each body [force]
+    real(wp), intent(out) :: total                      !! change of the total contact force [force]
+    !> Change of the resultant on each body [force]
     real(wp), intent(out) :: of_body(directions, model%bodies)
     real(wp) :: along, least, more
     real(wp), dimension(directions) :: change, own, on
@@ -154,11 +155,12 @@ contains
           body = model%body(model%pair_node(:, k))
           own = -smooth_normal(:, k)
           on = kept(resultant(:, body), given(:, body) .and. abs(resultant(:, body)) > least)
-          ! Of a ring that is free along its axis contacts may balance each other: each bears its part.
+          ! The contacts of an axisymmetric body that can move along its axis may balance each other: each
+          ! pair keeps its axial force.
           if (model%has_rings() .and. any(given(2, body)) .and. force(k)*abs(model%normal(2, k)) > least) &
             on = [0.0_wp, force(k)*model%normal(2, k)]
           if (all(own == 0.0_wp) .or. norm2(on) <= least) cycle
-          ! The pair bears the same along `on`, if it bears anything there.
+          ! The pair keeps its force along `on`, if it has any.
           along = 0.0_wp
           if (is_narrow .or. abs(dot_product(on, own)) >= bears_on*norm2(on)) &
             along = excess(dot_product(on, model%normal(:, k)), dot_product(on, own), no_effect*norm2(on))
@@ -176,18 +178,18 @@ contains
       end associate
       total = total + abs(more)
     end do
-    where (abs(lean) > least) of_body = of_body + abs(lean)   ! less is what sums leave
+    where (abs(lean) > least) of_body = of_body + abs(lean)   ! smaller values are rounding
     call turn_shared_places()
 
   contains
 
-    !> Pairs at one place, beside a corner, divide a force between them by chance: each may press as the
-    !! strongest there does, and on what that presses on.
+    !> Rounding divides a force between pairs at one point beside a corner: each pair may push as the
+    !! strongest pair there does, on the same body.
     subroutine turn_shared_places()
       real(wp) :: way
       integer, allocatable :: pairs(:)
-      integer :: bodies(4)                !! of the pair and of the strongest
-      integer :: strongest(model%pairs)   !! at the place of each
+      integer :: bodies(4)                !! of the pair and of the strongest pair
+      integer :: strongest(model%pairs)   !! strongest pair at the point of each pair
 
       associate (force => answer%contact%force)
         do k = 1, size(line%at_place%start) - 1
@@ -197,7 +199,7 @@ contains
         do k = 1, model%pairs
           if (force(k) <= 0.0_wp .or. strongest(k) == k) cycle
           body = model%body(model%pair_node(:, k))
-          ! The normal is the other way round where what stands on the other line there stood on it here.
+          ! The normal is opposite if the pairs stand on different lines.
           way = merge(1.0_wp, -1.0_wp, any(model%body(model%pair_node(:, strongest(k))) == body))
           change = force(k)*abs(model%normal(:, k) - way*model%normal(:, strongest(k)))
           total = total + norm2(change)
@@ -210,8 +212,8 @@ contains
     end subroutine turn_shared_places
   end subroutine find_turned
 
-  !> What stays the same of the resultants on two bodies where their contact turns: what loads make, else the
-  !! larger one.
+  !> Find the resultant on two bodies that stays if their contact direction changes: the part that loads
+  !! determine, else the larger resultant.
   pure function kept(resultant, given) result(on)
     real(wp), intent(in) :: resultant(directions, 2)
     logical, intent(in) :: given(directions, 2)
@@ -222,21 +224,22 @@ contains
     on = of_loads(:, merge(1, 2, norm2(of_loads(:, 1)) > (1.0_wp + no_effect)*norm2(of_loads(:, 2))))
   end function kept
 
-  !> a/b - 1, between -1 and 1; of equal ones 0, and 1 where b alone is nothing.
+  !> a/b - 1, limited to [-1, 1]; 0 if a and b are equal, and 1 if b alone is zero.
   pure real(wp) function excess(a, b, least)
     real(wp), intent(in) :: a, b
-    real(wp), intent(in) :: least   !! up to which there is nothing
+    real(wp), intent(in) :: least   !! smaller differences are zero
 
     excess = merge(1.0_wp, 0.0_wp, abs(a - b) > least)
     if (abs(b) > least) excess = max(-1.0_wp, min(1.0_wp, (a - b)/b))
   end function excess
 
-  !> Normals of lines in contact at the nodes of pairs that stand on the other line; none at a corner, or
+  !> Find the normals of lines in contact at the nodes of pairs on the opposite line; zero at a corner, or
   !! without lines [directions, pairs].
   function smooth_normals(model) result(normal)
     type(model_type), intent(in) :: model
     real(wp) :: normal(directions, model%pairs)
-    integer :: place(2, model%nodes)   ! of a node in the line that is looked at: which of which side; 0: none
+    integer :: place(2, model%nodes)   ! of a node in the current line: as end of which edge; 0 if it is not
+                                       ! there
     integer :: c
 
     normal = 0.0_wp
@@ -250,7 +253,7 @@ contains
 
   contains
 
-    !> Those of one line, at some pairs.
+    !> Find the normals of one line at some pairs.
     subroutine take_normals(line, first, last)
       class(boundary_line), intent(in) :: line
       integer, intent(in) :: first, last

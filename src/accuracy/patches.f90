@@ -1,7 +1,7 @@
-!> Which elements tell of the strain at a node: those around it of one section, since strains jump where
-!> materials change. A node where sections meet has a place in each of them. A place at the boundary of its
-!> section has elements on one side only, too few to tell how the strain changes: the elements around its
-!> neighbours are added there.
+!> Patches of elements for the recovery of strains at a node. A patch is the elements of one section around
+!> the node, since strains jump at material boundaries. A node between sections has one recovery point in each
+!> of them. At the boundary of a section the elements around the neighbours are added, since elements on one
+!> side only do not determine the gradient.
 module epcont_accuracy_patches
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_model_model, only: model_type
@@ -9,25 +9,25 @@ module epcont_accuracy_patches
   private
   public :: new_patch_table, patch_table, wide_patch
 
-  !> Elements that a patch has room for at first.
+  !> Initial size of the list of elements in a patch.
   integer, parameter :: most_at_first = 64
 
   type :: patch_table
     integer :: places = 0
-    integer, allocatable :: node(:)        !! of each place [places]
-    !> Of each node of an element, 0 where it has no more [most_nodes, elements]
+    integer, allocatable :: node(:)        !! of each recovery point [places]
+    !> Recovery points of the nodes of an element, then 0 [most_nodes, elements]
     integer, allocatable :: place(:, :)
-    type(incidence) :: around              !! elements at each place
-    logical, allocatable :: inside(:)      !! elements go all around the place [places]
-    type(incidence) :: of_body             !! places of each body
-    integer, allocatable :: own(:)         !! number of each place among those of its body [places]
+    type(incidence) :: around              !! elements at each recovery point
+    logical, allocatable :: inside(:)      !! elements surround the point [places]
+    type(incidence) :: of_body             !! recovery points of each body
+    integer, allocatable :: own(:)         !! number of each point among those of its body [places]
   end type patch_table
 
 contains
 
-  !> The places of a scene.
+  !> Number the recovery points of a model.
   function new_patch_table(model) result(table)
-    type(model_type), intent(in) :: model   !! the scene
+    type(model_type), intent(in) :: model   !! model
     type(patch_table) :: table
     logical :: free(0:model%nodes)   ! on an outline
     integer :: p
@@ -50,7 +50,7 @@ contains
 
   contains
 
-    !> Number the places of each body.
+    !> Number the recovery points of each body.
     subroutine number_own()
       integer :: b, k
 
@@ -64,11 +64,11 @@ contains
       end do
     end subroutine number_own
 
-    !> A node has one place for each section that it belongs to; that of the first section is the node's own
+    !> Split nodes into one recovery point for each section; the point in the first section has the node's
     !! number.
     subroutine split_places(place, node)
-      integer, allocatable, intent(out) :: place(:, :), node(:)   !! of each element, of each place
-      integer, allocatable :: next(:), section(:)   !! of each place the next place of its node, its section
+      integer, allocatable, intent(out) :: place(:, :), node(:)   !! of each element, of each recovery point
+      integer, allocatable :: next(:), section(:)   !! of each point: next point of its node, its section
       integer :: at, e, k, places
 
       place = model%connectivity
@@ -97,11 +97,11 @@ contains
     end subroutine split_places
   end function new_patch_table
 
-  !> The elements around a place and around the corners of these.
+  !> Find the elements around a recovery point and around the corners of these elements.
   pure subroutine wide_patch(model, table, place, patch)
-    type(model_type), intent(in) :: model             !! the scene
+    type(model_type), intent(in) :: model             !! model
     type(patch_table), intent(in) :: table            !! of its elements
-    integer, intent(in) :: place                      !! which place
+    integer, intent(in) :: place                      !! number of the point
     integer, allocatable, intent(out) :: patch(:)     !! elements
     integer, allocatable :: found(:)
     integer :: count, i, j, k

@@ -1,4 +1,4 @@
-!> The peak of a zone: what its pressures alone tell of its error.
+!> The peak of a zone: error estimates from its pressures alone.
 module epcont_accuracy_peak
   use epcont_accuracy_weights, only: estimate_weights
   use epcont_base_kinds, only: wp
@@ -8,69 +8,71 @@ module epcont_accuracy_peak
   private
   public :: off_parabola, oscillation, peak_type, zone_end, zone_error
 
-  !> Pairs that the parabola goes through.
+  !> Number of pairs for the parabola.
   integer, parameter :: around_peak = 7
-  !> Pairs on either side of the peak at which the pressures on the two lines are compared; sides on either
-  !! side of it on which oscillations count.
+  !> Number of pairs on either side of the peak at which the pressures on the two lines are compared; number
+  !! of edges on either side at which oscillations count.
   integer, parameter, public :: beside_peak = 3
 
   type :: zone_error
     integer :: peak = 0                  !! pair of the largest pressure
-    logical :: unbounded = .false.       !! the pressure grows with every finer mesh: a tip, a sharp edge
-    logical :: resolved = .true.         !! there are pairs enough to see where it is largest
-    !> Of the largest pressure; negative: unbounded, or not resolved [stress]
+    logical :: unbounded = .false.       !! singular: the pressure diverges with mesh refinement (tip or sharp
+                                         !! edge)
+    logical :: resolved = .true.         !! there are enough pairs to locate the largest pressure
+    !> Error of the largest pressure; negative: singular, or mesh too coarse [stress]
     real(wp) :: pressure = -1.0_wp
-    real(wp) :: half_width = -1.0_wp     !! negative: unknown [length]
-    real(wp) :: resolution = 1.0_wp      !! spacing of the pairs over half of the zone's length
-    real(wp) :: end_resolution = 1.0_wp  !! the same of the larger spacing at its ends
-    real(wp) :: half_length = 0.0_wp     !! of the zone, to where the pressure vanishes [length]
-    real(wp) :: wave_height = 0.0_wp     !! of waves of its gap [length]
-    real(wp) :: waviness = 0.0_wp        !! what flattens these waves, of the largest pressure
-    !> What contact on few pairs leaves open of how near the bodies come [length]
+    real(wp) :: half_width = -1.0_wp     !! error of the half-width; negative: unknown [length]
+    real(wp) :: resolution = 1.0_wp      !! spacing of the pairs divided by half the length of the zone
+    real(wp) :: end_resolution = 1.0_wp  !! the same with the larger spacing at its ends
+    real(wp) :: half_length = 0.0_wp     !! half length of the zone, to the points of zero pressure [length]
+    real(wp) :: wave_height = 0.0_wp     !! amplitude of its gap oscillation [length]
+    real(wp) :: waviness = 0.0_wp        !! pressure that flattens the oscillation, divided by the largest
+                                         !! pressure
+    !> Overclosure that contact on few pairs leaves unknown [length]
     real(wp) :: too_near = 0.0_wp
-    type(estimate_weights) :: weights    !! of the elements there
+    type(estimate_weights) :: weights    !! of its element types
   end type zone_error
 
-  !> What is seen at an end of a zone that is no line of symmetry.
+  !> End of a zone that is not on a line of symmetry.
   type :: zone_end
-    !> To the first open pair, or between the last two, if that is more [length]
+    !> Distance to the first open pair, or between the last two, the larger [length]
     real(wp) :: step = 0.0_wp
-    !> The same, or nearly as much as the longest side there, of either body; at most the zone [length]
+    !> The same, or most of the longest edge there, of either body; at most the zone's length [length]
     real(wp) :: unknown = 0.0_wp
-    !> What a mean over the last side is short of the pressure at its end [stress]
+    !> Pressure at the end minus its mean over the last edge [stress]
     real(wp) :: short = 0.0_wp
-    logical :: edge = .false.       !! the candidates do, and the pressure does not fall towards it
-    logical :: cut_off = .false.    !! the pressure is largest at the last pair, though contact ends there
+    logical :: edge = .false.       !! the geometry allows an edge, and the pressure does not fall towards it
+    logical :: cut_off = .false.    !! the pressure is largest at the last pair, although contact ends there
   end type zone_end
 
-  !> A zone and its peak, as its errors see them.
+  !> A zone and its peak, as input of the error estimates.
   type :: peak_type
-    integer :: peak = 0               !! which of its pairs
-    integer :: n = 0                  !! how many these are
-    integer :: kind = 1               !! of the elements at the peak
-    real(wp) :: largest = 0.0_wp      !! pressure there [stress]
-    real(wp) :: energy = 0.0_wp       !! error of the mesh over all of it
-    real(wp) :: flattening = 0.0_wp   !! pressure that flattens waves of the gap [stress]
-    real(wp) :: spacing = 0.0_wp      !! of the pairs at the peak [length]
-    !> Length of all of it, but for a mean side of one that goes all around; of that the whole way, else 0
+    integer :: peak = 0               !! position of its pair in the zone
+    integer :: n = 0                  !! number of pairs
+    integer :: kind = 1               !! element type at the peak
+    real(wp) :: largest = 0.0_wp      !! pressure at the peak [stress]
+    real(wp) :: energy = 0.0_wp       !! mesh error of the whole model
+    real(wp) :: flattening = 0.0_wp   !! pressure that flattens the gap oscillation [stress]
+    real(wp) :: spacing = 0.0_wp      !! distance of pairs at the peak [length]
+    !> Length of the zone (of a closed zone without a mean edge); length of a closed zone, else 0
     real(wp) :: long = 0.0_wp, around = 0.0_wp
     logical :: mirrored(2) = .false.  !! at its ends
     type(zone_end) :: ends(2)
     real(wp), allocatable :: p(:)     !! pressures of its pairs [stress]
-    !> Distance from the peak and pressure of the pairs in their order, with those beyond a line of symmetry;
-    !! of a closed zone half of it on either side of the peak [length], [stress] [2, any]
+    !> Distance from the peak, and pressure, of the pairs in order, with mirrored pairs. A closed zone has
+    !! half of its pairs on either side of the peak [length], [stress] [2, any]
     real(wp), allocatable :: row(:, :)
   end type peak_type
 
 contains
 
-  !> How much the pressure oscillates near the peak: of two pairs a side apart, one above the straight line
-  !! between the pairs a side before and after it, the other below its own, the smaller of both distances;
-  !! the largest of all. At the last pair of the zone, where contact ends within a side, it says nothing.
-  !! [stress]
+  !> Find the oscillation of the pressure near the peak [stress]. For two pairs an edge apart, one above the
+  !! straight line between the pairs an edge before and after it, the other below its own line, it is the
+  !! smaller distance; the result is the largest of all. The last pair of a zone does not count if contact
+  !! ends within its edge.
   pure real(wp) function oscillation(model, seen)
-    type(model_type), intent(in) :: model        !! the model
-    type(peak_type), intent(in) :: seen          !! its peak
+    type(model_type), intent(in) :: model        !! model
+    type(peak_type), intent(in) :: seen          !! of the zone
     real(wp) :: above(lbound(seen%row, 2):ubound(seen%row, 2))
     integer :: k, side
 
@@ -89,12 +91,12 @@ contains
     end associate
   end function oscillation
 
-  !> How far the peak is off the least-squares parabola of p**2 through the pairs nearest to it, or short of
-  !! its top, if that is more; mirrored ones and those the other way around too; of those that are as near
-  !! all. Of too few pairs for one: what Hertz's pressure falls by over half a spacing [stress].
+  !> Find the distance of the peak from the least-squares parabola of p**2 through the nearest pairs (with
+  !! mirrored pairs, and all of equal distance), or from its top, if that is larger. With too few pairs: the
+  !! decrease of Hertz's pressure over half a spacing [stress].
   pure real(wp) function off_parabola(seen, error) result(off)
-    type(peak_type), intent(in) :: seen          !! its peak
-    type(zone_error), intent(in) :: error        !! as far as known
+    type(peak_type), intent(in) :: seen          !! of the zone
+    type(zone_error), intent(in) :: error        !! errors found so far
     real(wp) :: m(0:4), reach, right(0:2), square, unit
     real(wp), dimension(size(seen%row, 2)) :: x, y
     logical :: left(size(seen%row, 2))
@@ -125,12 +127,13 @@ contains
     end associate
   end function off_parabola
 
-  !> What the root of a parabola rises by from the peak to its top, if that is no farther than a spacing.
+  !> Find the rise of the square root of a parabola from the peak to its top, if its top is within one
+  !! spacing.
   pure real(wp) function rise(m, right, here)
     real(wp), intent(in) :: m(0:4)       !! moments
     real(wp), intent(in) :: right(0:2)   !! right-hand side of its normal equations
     real(wp), intent(in) :: here         !! its value at the peak
-    real(wp) :: bend, slope              !! times a determinant above 0
+    real(wp) :: bend, slope              !! times a positive determinant
 
     slope = (right(1) - m(1)*here)*m(4) - (right(2) - m(2)*here)*m(3)
     bend = (right(2) - m(2)*here)*m(2) - (right(1) - m(1)*here)*m(3)
@@ -139,7 +142,7 @@ contains
       rise = sqrt(here - slope**2/(4.0_wp*bend*(m(2)*m(4) - m(3)**2))) - sqrt(here)
   end function rise
 
-  !> Of the normal equations of a parabola, with this first column.
+  !> Determinant of the normal equations of a parabola, with this first column.
   pure real(wp) function determinant(m, column)
     real(wp), intent(in) :: m(0:4)        !! moments
     real(wp), intent(in) :: column(0:2)

@@ -1,9 +1,9 @@
-!> Smooth strains from those of the elements (Zienkiewicz and Zhu 1992, superconvergent patch recovery).
+!> Recovered (smooth) strains from element strains: superconvergent patch recovery (Zienkiewicz and Zhu 1992).
 !>
-!> At each corner a polynomial is fitted by least squares to the strains of the elements around it
-!> (`patches.f90`), at the points where they are best, the samples: the middles of three- and four-node
-!> elements (linear), places within those with nodes between corners (quadratic). Nodes between corners take
-!> the mean of the polynomials of both.
+!> At each corner node, a polynomial is fitted by least squares to the strains of the elements around it
+!> (`patches.f90`) at their sampling points: the centres of three- and four-node elements (linear), interior
+!> points of elements with mid-side nodes (quadratic). Mid-side nodes take the mean of the polynomials of both
+!> corners.
 module epcont_accuracy_recovery
   use epcont_accuracy_patches, only: patch_table, wide_patch
   use epcont_base_kinds, only: wp
@@ -16,38 +16,38 @@ module epcont_accuracy_recovery
   private
   public :: body_samples, place_samples, recover
 
-  !> Where the strains of one body's elements are best.
+  !> Sampling points of one body's elements.
   type :: body_samples
     integer, allocatable :: element(:)     !! the elements
-    !> Before those of each element [elements of the scene; of others nothing is said]
+    !> Number of samples before those of each element of the body [elements of the model]
     integer, allocatable :: before(:)
     real(wp), allocatable :: x(:, :)       !! [length] [2, samples]
   contains
     procedure :: take
   end type body_samples
 
-  !> Smooth strains of one body, in the making.
+  !> State of the recovery in one body.
   type :: recovery_type
     type(model_type), pointer :: model => null()
     type(patch_table), pointer :: table => null()   !! of its elements
-    integer :: fields = 0                           !! how many, besides the answer's
-    integer, allocatable :: fits(:)   !! of a node between corners: polynomials that reach it; of others -1
-    integer, allocatable :: places(:)   !! those of the body
-    logical :: any_curved = .false.   !! elements of the body have nodes between their corners
+    integer :: fields = 0                           !! number of fields besides the answer
+    integer, allocatable :: fits(:)   !! mid-side node: number of polynomials that reach it; corner node: -1
+    integer, allocatable :: places(:)   !! recovery points of the body
+    logical :: any_curved = .false.   !! elements of the body have mid-side nodes
   end type recovery_type
 
   !> Terms of a quadratic polynomial: 1, x, y, x**2, xy, y**2.
   integer, parameter :: quadratic = 6
-  !> Samples that a patch must have for each number of terms, or it is widened.
+  !> Number of samples that a patch must have; with fewer it is widened.
   integer, parameter :: least_linear = 4, least_quadratic = 9
 
 contains
 
-  !> The samples of a body.
+  !> Place the sampling points of a body.
   subroutine place_samples(model, element, samples)
-    type(model_type), intent(in) :: model    !! the scene
+    type(model_type), intent(in) :: model    !! model
     integer, intent(in) :: element(:)        !! those of the body
-    type(body_samples), intent(inout) :: samples   !! none yet, or those of another body
+    type(body_samples), intent(inout) :: samples   !! empty, or of another body
     integer :: i, last
 
     samples%element = element
@@ -67,7 +67,7 @@ contains
 
   contains
 
-    !> The samples of an element.
+    !> Place the sampling points of an element.
     subroutine place_element(e)
       integer, intent(in) :: e
       integer :: k
@@ -80,7 +80,7 @@ contains
           end do
         else
           samples%x(:, before + 1) = 0.0_wp
-          do k = 1, kind%nodes   ! `sum` copies them: several times as long
+          do k = 1, kind%nodes   ! intrinsic `sum` copies the sections: several times as long
             samples%x(:, before + 1) = samples%x(:, before + 1) + model%x(:, node(k))
           end do
           samples%x(:, before + 1) = samples%x(:, before + 1)/kind%nodes
@@ -89,13 +89,13 @@ contains
     end subroutine place_element
   end subroutine place_samples
 
-  !> What strains of an element with nodes between its corners are at its samples.
+  !> Find the strains of an element with mid-side nodes at its sampling points.
   pure subroutine take(self, kind, element, width, strain, sample)
     class(body_samples), intent(in) :: self
     type(element_kind), intent(in) :: kind                !! of the element
-    integer, intent(in) :: element                        !! which
+    integer, intent(in) :: element                        !! its number
     integer, intent(in) :: width                          !! components of all fields
-    real(wp), intent(in) :: strain(width, kind%points)    !! at its points
+    real(wp), intent(in) :: strain(width, kind%points)    !! at its integration points
     real(wp), intent(inout) :: sample(width, *)           !! of the body [width, samples]
     integer :: k, p, s, v
 
@@ -110,13 +110,13 @@ contains
     end do
   end subroutine take
 
-  !> Smooth strains at the places of a body, of the answer and some fields at once.
+  !> Recover strains at the recovery points of a body, for the answer and some fields at once.
   subroutine recover(model, table, b, samples, fields, strain, smooth)
-    type(model_type), target, intent(in) :: model        !! the scene
+    type(model_type), target, intent(in) :: model        !! model
     type(patch_table), target, intent(in) :: table       !! of its elements
     integer, intent(in) :: b                     !! the body
     type(body_samples), intent(in) :: samples   !! of its elements
-    integer, intent(in) :: fields                !! how many, besides the answer's: others stay as they are
+    integer, intent(in) :: fields                !! number of fields besides the answer; others are unchanged
     real(wp), contiguous, intent(in) :: strain(:, 0:, :)        !! [components, fields or more, samples]
     real(wp), contiguous, intent(inout) :: smooth(:, 0:, :)     !! [components, fields or more, its places]
     type(recovery_type) :: work
@@ -130,7 +130,7 @@ contains
     allocate (work%fits(size(smooth, 3)), source=-1)
     call find_middles(work, samples)
     associate (places => work%places)
-      ! What is about a corner adds to the nodes between it and others: one thread.
+      ! Corners add to the mid-side nodes next to them, so elements with such nodes use one thread.
       !$omp parallel do num_threads(merge(1, threads_over(size(places)), work%any_curved))
       do i = 1, size(places)
         if (work%fits(i) < 0) call recover_place(work, samples, strain, smooth, i)
@@ -142,7 +142,7 @@ contains
     end do
   end subroutine recover
 
-  !> The nodes between corners.
+  !> Find the mid-side nodes.
   subroutine find_middles(work, samples)
     type(recovery_type), intent(inout) :: work
     type(body_samples), intent(in) :: samples   !! of the body
@@ -158,7 +158,7 @@ contains
     end do
   end subroutine find_middles
 
-  !> Is any of these elements one with nodes between its corners?
+  !> Has any of these elements mid-side nodes?
   pure logical function has_curved(work, elements)
     type(recovery_type), intent(in) :: work
     integer, intent(in) :: elements(:)
@@ -170,7 +170,7 @@ contains
     end do
   end function has_curved
 
-  !> The polynomials about a place, the i-th of the body.
+  !> Fit the polynomials at a recovery point, the i-th of the body.
   subroutine recover_place(work, samples, strain, smooth, i)
     type(recovery_type), intent(inout) :: work
     type(body_samples), intent(in) :: samples   !! of the body
@@ -196,14 +196,14 @@ contains
     end associate
   end subroutine recover_place
 
-  !> The polynomials about the i-th place, by the samples of a patch.
+  !> Fit the polynomials at the i-th point with the samples of a patch.
   subroutine fit(work, samples, strain, smooth, i, curved, patch)
     type(recovery_type), intent(inout) :: work
     type(body_samples), intent(in) :: samples   !! of the body
     real(wp), contiguous, intent(in) :: strain(:, 0:, :)        !! at these
     real(wp), contiguous, intent(inout) :: smooth(:, 0:, :)     !! at its places
     integer, intent(in) :: i, patch(:)
-    logical, intent(in) :: curved   !! elements of the patch have nodes between their corners
+    logical, intent(in) :: curved   !! elements of the patch have mid-side nodes
 
     if (curved) then
       call fit_quadratic(work, samples, strain, smooth, i, patch)
@@ -214,17 +214,17 @@ contains
     end if
   end subroutine fit
 
-  !> The value at a place of the linear polynomials of one sample an element: a sum of the samples. A
-  !! direction in which they do not spread is constant.
+  !> Find the value of the linear polynomials at a point, as a weighted sum of one sample for each element. In
+  !! a direction in which the samples do not spread, the polynomial is constant.
   subroutine fit_linear(work, samples, strain, patch, x, y, here)
     type(recovery_type), intent(inout) :: work
     type(body_samples), intent(in) :: samples   !! of the body
     real(wp), contiguous, intent(in) :: strain(:, 0:, :)        !! at these
     integer, intent(in) :: patch(:)   !! elements
     real(wp), intent(in) :: x, y
-    real(wp), intent(inout) :: here(components, 0:work%fields)   !! zero before
+    real(wp), intent(inout) :: here(components, 0:work%fields)   !! zero on entry
     real(wp) :: determinant, dx, dy, slope(2), weight
-    real(wp) :: mx, my, xx, xy, yy   !! moments of the samples about the place, then about their middle
+    real(wp) :: mx, my, xx, xy, yy   !! moments of the samples about the point, then about their centre
     integer :: f, k, n
 
     n = size(patch)
@@ -260,8 +260,8 @@ contains
     end do
   end subroutine fit_linear
 
-  !> The quadratic polynomials about a corner: their values there, and added at the nodes on the sides that
-  !! meet there.
+  !> Fit the quadratic polynomials at a corner. Find their values there, and add their values at the nodes on
+  !! the edges that meet there.
   subroutine fit_quadratic(work, samples, strain, smooth, i, patch)
     type(recovery_type), intent(inout) :: work
     type(body_samples), intent(in) :: samples   !! of the body
@@ -277,7 +277,8 @@ contains
     centre = work%model%x(:, work%table%node(p))
     reach = 0.0_wp
     n = 0
-    do k = 1, size(patch)   ! in any direction, all samples alike: scenes and elements may be turned
+    do k = 1, size(patch)   ! treat all samples and directions alike, so that rotated models give rotated
+                            ! results
       do s = samples%before(patch(k)) + 1, samples%before(patch(k)) + samples_of(work, patch(k))
         reach = reach + sum((samples%x(:, s) - centre)**2)
         n = n + 1
@@ -316,7 +317,7 @@ contains
     end do
   end subroutine fit_quadratic
 
-  !> How many samples an element has.
+  !> Count the sampling points of an element.
   pure integer function samples_of(work, element)
     type(recovery_type), intent(in) :: work
     integer, intent(in) :: element
@@ -324,7 +325,7 @@ contains
     samples_of = work%model%kinds(work%model%kind(element))%samples
   end function samples_of
 
-  !> Terms of a quadratic polynomial at a place.
+  !> Terms of a quadratic polynomial at a point.
   pure function terms(x) result(term)
     real(wp), intent(in) :: x(2)
     real(wp) :: term(quadratic)
@@ -332,7 +333,7 @@ contains
     term = [1.0_wp, x(1), x(2), x(1)**2, x(1)*x(2), x(2)**2]
   end function terms
 
-  !> Solve the normal equations; a term that depends on those before is left out.
+  !> Solve the normal equations; terms that depend linearly on earlier terms are left out.
   pure subroutine solve(matrix, sides, unknown)
     real(wp), intent(inout) :: matrix(:, :)                        !! symmetric
     integer, intent(in) :: sides

@@ -1,10 +1,10 @@
-!> What the estimates want to know at each pair of the line: how much the surfaces there give way, how the gap
-!> bends, and what pressure the smooth strains say.
+!> Quantities at each pair that the estimates need: surface compliance, bend of the gap, and pressure from
+!> recovered strains.
 !>
-!> Waves are gaps whose bend alternates from node to node: sides of a curve drawn as chords, middle nodes
-!> between their corners instead of on it, polygons of unlike divisions in each other. They are no part of the
-!> scene that is meant. Nodes that stand a above and a below the gap that is meant, by turns, a distance d
-!> apart, bend it by r = 8 a/d more at the one than at the other.
+!> Gap oscillation means that the bend of the gap alternates from node to node. Its sources are curves meshed
+!> with chords, mid-side nodes between their corners instead of on the curve, and nested polygons with
+!> non-matching meshes. It is not part of the intended model. Nodes at a distance d that stand alternately a
+!> above and a below the intended gap bend it by r = 8 a/d more at one than at the next.
 module epcont_accuracy_surface_line
   use epcont_accuracy_weights, only: waves_are_common, waves_flattened
   use epcont_base_kinds, only: wp
@@ -19,28 +19,30 @@ module epcont_accuracy_surface_line
   public :: elements_behind, find_waves, first_element, new_surface_line, smooth_pressures, &
             surface_compliance, surface_line
 
-  !> An outline that turns by more than this ends [rad].
+  !> An outline that turns by more than this has a corner [rad].
   real(wp), parameter, public :: corner = 35.0_wp*acos(-1.0_wp)/180.0_wp
-  !> Of a side's nodes that share in a gap, those with stresses must have this part.
+  !> Of the nodes with weights in a gap row, those with stresses must have this part.
   real(wp), parameter :: least_weight = 0.5_wp
 
   type, extends(contact_line) :: surface_line
-    real(wp), allocatable :: compliance(:)        !! `surface_compliance` [1/stress] [pairs]
-    real(wp), allocatable :: bend(:)              !! by how much the gap bends open [rad] [pairs]
-    !> That over the length that the pair stands for [1/length] [pairs]
+    real(wp), allocatable :: compliance(:)        !! of both bodies, see `surface_compliance` [1/stress]
+                                                  !! [pairs]
+    real(wp), allocatable :: bend(:)              !! angle by which the gap bends open [rad] [pairs]
+    !> Bend divided by the pair's part of the line [1/length] [pairs]
     real(wp), allocatable :: curvature(:)
-    real(wp), allocatable :: smooth_pressure(:)   !! `smooth_pressures` [stress] [pairs]
+    real(wp), allocatable :: smooth_pressure(:)   !! from recovered strains, see `smooth_pressures` [stress]
+                                                  !! [pairs]
   contains
     procedure :: beyond
   end type surface_line
 
 contains
 
-  !> A line with all that.
+  !> Extend a contact line by these quantities.
   pure function new_surface_line(model, line, smooth_pressure) result(surface)
-    type(model_type), intent(in) :: model           !! the scene
+    type(model_type), intent(in) :: model           !! model
     type(contact_line), intent(in) :: line          !! of its pairs
-    real(wp), intent(in) :: smooth_pressure(:)      !! `smooth_pressures` [stress] [pairs]
+    real(wp), intent(in) :: smooth_pressure(:)      !! from recovered strains [stress] [pairs]
     type(surface_line) :: surface
     integer :: k
 
@@ -54,7 +56,7 @@ contains
 
   contains
 
-    !> Bend and curvature; a pair without neighbours on both sides does not bend.
+    !> Find bend and curvature; a pair without neighbours on both sides does not bend.
     pure function bend_at(pair) result(bend)
       integer, intent(in) :: pair
       real(wp) :: bend(2), long(2), slope(2)
@@ -66,7 +68,7 @@ contains
         associate (other => line%neighbour(k, pair))
           if (other == 0) cycle
           long(k) = line%distance(other, pair)
-          if (long(k) == 0.0_wp) cycle   ! at a joint two pairs have one place
+          if (long(k) == 0.0_wp) cycle   ! two pairs at a joint have one point
           slope(k) = (model%initial_gap(other) - model%initial_gap(pair))/long(k)
         end associate
       end do
@@ -80,20 +82,20 @@ contains
     end function bend_at
   end function new_surface_line
 
-  !> The pair behind one, seen from its neighbour; 0: none.
+  !> Find the pair beyond this one, as seen from its neighbour; 0 if it does not exist.
   pure integer function beyond(self, pair, from)
     class(surface_line), intent(in) :: self
-    integer, intent(in) :: pair, from   !! one, and its neighbour
+    integer, intent(in) :: pair, from   !! the pair, and its neighbour
 
-    associate (next => self%neighbour(:, pair))   ! round a corner it may be another pair of that node
+    associate (next => self%neighbour(:, pair))   ! beyond a corner it may be another pair of this node
       beyond = maxval(merge(next, 0, self%node(max(next, 1)) /= self%node(from)))
     end associate
   end function beyond
 
-  !> An element at a node: of the first section there, and of the first kind in it; 0: none.
+  !> Find an element at a node: of the first section there, and of the first type in it; 0 if it does not exist.
   pure integer function first_element(model, node) result(element)
-    type(model_type), intent(in) :: model   !! the scene
-    integer, intent(in) :: node             !! any
+    type(model_type), intent(in) :: model   !! model
+    integer, intent(in) :: node             !! any node
     integer, allocatable :: there(:)
 
     element = 0
@@ -102,11 +104,11 @@ contains
       element = there(minloc(model%section(there)*size(model%kinds) + model%kind(there), dim=1))
   end function first_element
 
-  !> The elements at a node that tell how it gives way: those of the section of the first; none where it is
-  !! held all over, or none of them can be strained.
+  !> Find the elements that determine the compliance at a node: those with the section of the first. Empty if
+  !! the node is fixed, or no element can deform.
   pure function elements_behind(model, node) result(elements)
-    type(model_type), intent(in) :: model   !! the scene
-    integer, intent(in) :: node             !! any
+    type(model_type), intent(in) :: model   !! model
+    integer, intent(in) :: node             !! any node
     integer, allocatable :: elements(:)
     integer :: i
 
@@ -121,12 +123,13 @@ contains
     elements = [integer ::]
   end function elements_behind
 
-  !> The normal stress at each pair, as a pressure: the mean of both sides', of which each has errors of its
-  !! own; 0 where neither gives way [stress] [pairs].
+  !> Find the pressure at each pair from the normal stresses of both bodies (their mean, since each has its
+  !! own error); 0 if neither body deforms [stress] [pairs].
   pure function smooth_pressures(model, materials, smooth) result(pressure)
-    type(model_type), intent(in) :: model              !! the scene
+    type(model_type), intent(in) :: model              !! model
     type(model_materials), intent(in) :: materials     !! of its sections
-    real(wp), intent(in) :: smooth(:, :)               !! strains [components, places: first the nodes']
+    real(wp), intent(in) :: smooth(:, :)               !! recovered strains [components, places: first the
+                                                       !! nodes']
     real(wp) :: pressure(model%pairs)
     type(point_state) :: state
     real(wp) :: side(2), weight(2)
@@ -142,7 +145,7 @@ contains
         elements = elements_behind(model, model%row_node(i))
         if (size(elements) == 0) cycle
         state = materials%state_at(model%first_point(elements(1)), smooth(:, model%row_node(i)))
-        ! the row's first node is one side, the others share the other
+        ! the first node of the row is on one body, the others share the other
         n = merge(1, 2, i == model%row_start(k))
         associate (normal => model%normal(:, k), stress => state%stress)
           side(n) = side(n) - model%row_weight(i)*(stress(1)*normal(1)**2 + stress(2)*normal(2)**2 + &
@@ -155,11 +158,11 @@ contains
     end do
   end function smooth_pressures
 
-  !> 1/E*, of both sides of a pair: (1 - nu**2)/E, 1/E of sheets, 0 of nodes that give way nowhere; of the
-  !! nodes that share the other side the largest [1/stress].
+  !> Surface compliance 1/E* of both bodies at a pair: (1 - nu**2)/E, in plane stress 1/E, 0 if rigid; of the
+  !! nodes with weights on the opposite edge the largest [1/stress].
   pure real(wp) function surface_compliance(model, pair) result(compliance)
-    type(model_type), intent(in) :: model   !! the scene
-    integer, intent(in) :: pair             !! which pair
+    type(model_type), intent(in) :: model   !! model
+    integer, intent(in) :: pair             !! number of the pair
     real(wp) :: nu, side(2)
     integer, allocatable :: elements(:)
     integer :: i, k, section
@@ -176,17 +179,17 @@ contains
     compliance = sum(side)
   end function surface_compliance
 
-  !> Of the pairs of a zone: the pressure that flattens all uneven bends, the largest; whether these are
-  !! waves; how high they are then, the mean. A tip bends the gap once, where a fillet begins its curvature
-  !! steps: these are uneven bends, and no waves.
+  !> Find the gap oscillation of a zone: the largest pressure that flattens an uneven bend, whether the bends
+  !! alternate, and their mean amplitude. A tip bends the gap once, and at the start of a fillet its curvature
+  !! jumps: these bends are uneven but do not alternate.
   pure subroutine find_waves(line, pairs, pressure, are_waves, height)
     type(surface_line), intent(in) :: line    !! of all pairs
     integer, intent(in) :: pairs(:)           !! of the zone
     real(wp), intent(out) :: pressure         !! [stress]
-    logical, intent(out) :: are_waves         !! where the gap bends by turns at enough pairs
-    real(wp), intent(out) :: height           !! 0 where there are none [length]
+    logical, intent(out) :: are_waves         !! the bend alternates at enough pairs
+    real(wp), intent(out) :: height           !! 0 if there is no oscillation [length]
     real(wp) :: angle, spacing
-    real(wp) :: least   !! curvature that rounding makes of straight sides beside a tip [1/length]
+    real(wp) :: least   !! curvature of straight edges beside a tip, by rounding [1/length]
     logical :: alternates(size(pairs))
     integer :: k
 
@@ -204,16 +207,16 @@ contains
 
   contains
 
-    !> How much more, or less, the gap bends at a pair than beside it: by its curvature there, since sides may
-    !! grow along a line. Does it so by turns? Of four pairs in a row the first and the third bend it by more
-    !! than the others, or by less.
+    !> Find the difference between the bend at a pair and at its neighbours, by curvatures, since edges may
+    !! grow along a line. It alternates if, of four pairs in a row, the first and third bend the gap more than
+    !! the others, or less.
     pure subroutine uneven_bend(pair, angle, spacing, alternates)
       integer, intent(in) :: pair
       real(wp), intent(out) :: angle     !! [rad]
       real(wp), intent(out) :: spacing   !! [length]
       logical, intent(out) :: alternates
       real(wp) :: curvature(5)
-      integer :: k, run(5)   !! the pair in the middle of four others; 0: none
+      integer :: k, run(5)   !! the pair in the middle of four others; 0 if it does not exist
       logical :: known(5)
 
       angle = 0.0_wp
@@ -227,7 +230,7 @@ contains
       run([1, 5]) = [behind(run(2), pair), behind(run(4), pair)]
       known = [(goes_on(run(k)), k=1, 5)]
       curvature = line%curvature(max(run, 1))
-      do k = 1, 5   ! beyond a corner a pair faces a step, or another side
+      do k = 1, 5   ! beyond a corner, a pair projects onto a step or another edge
         if (k /= 3) known(k) = known(k) .and. abs(line%bend(max(run(k), 1))) <= corner
       end do
       associate (beside => pack(curvature([2, 4]), known([2, 4])))
@@ -238,7 +241,8 @@ contains
       end do
     end subroutine uneven_bend
 
-    !> The pair behind one, seen from its neighbour, as mirrored at a line of symmetry; 0: none.
+    !> Find the pair beyond this one, as seen from its neighbour, mirrored at a line of symmetry; 0 if it
+    !! does not exist.
     pure integer function behind(pair, from)
       integer, intent(in) :: pair, from
 
@@ -246,15 +250,15 @@ contains
       if (.not. line%mirrored(pair)) behind = line%beyond(pair, from)
     end function behind
 
-    !> Does the line go on to both sides of a pair? Else nothing is known of its bend.
+    !> Does the line continue on both sides of a pair? Otherwise its bend is unknown.
     pure logical function goes_on(pair)
-      integer, intent(in) :: pair   !! 0: none
+      integer, intent(in) :: pair   !! 0 if it does not exist
 
       goes_on = .false.
       if (pair > 0) goes_on = all(line%neighbour(:, pair) > 0) .or. line%mirrored(pair)
     end function goes_on
 
-    !> Are the first and the third of four curvatures above the others, or below?
+    !> Are the first and third of four curvatures both above the others, or both below?
     pure logical function by_turns(x)
       real(wp), intent(in) :: x(4)
 

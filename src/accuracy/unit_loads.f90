@@ -1,6 +1,6 @@
-!> What the scene does, the pairs in contact held closed, under a unit load along each free motion, and when
-!> their gaps shrink: what tells of an error anywhere how much of it arrives at the approach, and at sums of
-!> contact forces.
+!> Adjoint fields: response of the model, with the active set fixed, to a unit load along each rigid-body mode
+!> and to unit changes of gaps. They show how much of a local error reaches an approach or a sum of contact
+!> forces.
 module epcont_accuracy_unit_loads
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: least_difference, no_effect
@@ -15,19 +15,20 @@ module epcont_accuracy_unit_loads
   private
   public :: choose_motions, find_unit_loads, unit_loads
 
-  !> Bodies up to which errors are estimated of what each bears: one costs as much as two load cases.
+  !> Maximum number of bodies with error estimates of their contact resultants: one takes as long as two load
+  !! cases.
   integer, parameter, public :: most_bodies = 12
 
-  !> A unit load along each free motion, of which those of a few are looked at, then gaps that shrink by what
-  !! each pair counts in a sum of forces.
+  !> Adjoint loads: first unit loads along the assessed rigid-body modes, then gap changes by the factor of
+  !! each pair in a sum of forces.
   type :: unit_loads
-    !> Sums of forces are that of all, then each resultant on a body that may be off by itself; what two
-    !! bodies exert on each other is one
+    !> Sums: the total contact force, then each independent resultant on a body. The forces that two bodies
+    !! exert on each other are one sum.
     type(contact_loads) :: contact
-    !> Among these sums, of each component of what contact exerts on each body; 0: loads alone make it;
-    !! negative: not known [directions, bodies]
+    !> Number of the sum for each component of the contact resultant on each body; 0 if loads alone determine
+    !! it, negative if unknown [directions, bodies]
     integer, allocatable :: column(:, :)
-    !> The contacts that they are of
+    !> Active set of these fields
     logical, allocatable, private :: pressed(:), touching(:), motion_free(:)
   contains
     procedure, private :: are_of
@@ -35,16 +36,16 @@ module epcont_accuracy_unit_loads
 
 contains
 
-  !> Unit loads on a scene whose contact has been found. Those of the load case before are kept where it had
-  !> the same contacts, and nothing yields.
+  !> Find the adjoint fields of a model with known active set. Fields of the previous load case are kept if
+  !> its active set is the same and nothing yields.
   subroutine find_unit_loads(scene, linear, answer, loads, kept)
-    type(planned_model), intent(in) :: scene     !! that was solved
+    type(planned_model), intent(in) :: scene     !! solved model
     type(linear_problem), intent(inout) :: linear   !! of the last solve
-    type(answer_type), intent(in) :: answer      !! with some contact
-    type(unit_loads), intent(inout) :: loads     !! of the load case before; and what they do
-    logical, intent(out) :: kept                 !! they are those of the case before
+    type(answer_type), intent(in) :: answer      !! some pairs are in contact
+    type(unit_loads), intent(inout) :: loads     !! in: of the previous load case; out: with their response
+    logical, intent(out) :: kept                 !! they are those of the previous load case
     type(unit_loads) :: none
-    integer, allocatable :: motion(:)            ! assessed ones
+    integer, allocatable :: motion(:)            ! assessed modes
 
     motion = choose_motions(scene, abs(answer%contact%approach)*linear%rule%problem%motion%sizes(), &
                             answer%contact%motion_free)
@@ -64,9 +65,10 @@ contains
 
   contains
 
-    !> Shares of pairs in sums of forces. Of bodies that no pair touches, though some might, nothing is known.
+    !> Find the factors of pairs in sums of forces. If no pair of a body is in contact, although some could
+    !! be, its sums are unknown.
     subroutine find_shares()
-      real(wp), dimension(scene%model%pairs) :: one, other   !! of one component, of the other
+      real(wp), dimension(scene%model%pairs) :: one, other   !! of one component, and of the other
       integer :: body, c, i, k
 
       allocate (loads%contact%share(scene%model%pairs, 1), source=1.0_wp)
@@ -95,11 +97,12 @@ contains
       end do
     end subroutine find_shares
 
-    !> Is a body free to move along a component? Then contact bears its loads that way. Motions are one at
-    !! their own SUPORT freedom and zero at the others: it is the sum of those measured along it that does so.
+    !> Can a body translate along a component? Then contact carries its loads in this direction. A mode is one
+    !! at its own SUPORT DOF and zero at the others, so the translation is the sum of the modes with SUPORT
+    !! DOFs along it.
     pure logical function is_free(body, c)
       integer, intent(in) :: body, c
-      real(wp) :: rest(directions)   !! of the movement of a node
+      real(wp) :: rest(directions)   !! difference from the displacement of a node
       integer :: i, m
 
       is_free = .true.
@@ -115,8 +118,8 @@ contains
     end function is_free
   end subroutine find_unit_loads
 
-  !> The rigid-body modes with the largest motions, in ascending order. Of equal ones the mode with the least
-  !> coordinates of its SUPORT node is taken first, so that the choice does not depend on numbers.
+  !> Choose the rigid-body modes with the largest gap changes, in ascending order. Of equal modes the one with
+  !> the least coordinates of its SUPORT node is first, so that the choice does not depend on numbers.
   pure function choose_motions(scene, extent, free) result(chosen)
     type(planned_model), intent(in) :: scene
     real(wp), intent(in) :: extent(:)   !! largest change of a gap by each mode [length] [modes]
@@ -141,7 +144,7 @@ contains
     chosen = pack([(j, j=1, size(left))], .not. left)
   end function choose_motions
 
-  !> Are these the contacts of an answer, and its assessed modes?
+  !> Do these fields have the active set and the assessed modes of an answer?
   pure logical function are_of(self, answer, motion)
     class(unit_loads), intent(in) :: self
     type(answer_type), intent(in) :: answer

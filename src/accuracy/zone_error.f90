@@ -1,11 +1,11 @@
 !> Errors of a zone's largest pressure and of its half-width.
 !>
-!> Of the pressure six things tell: how far the peak is off a parabola through the nearest pairs, off the
-!> normal stress that the smooth strains of both sides give there, how many pairs the zone has, what part of
-!> the energy the mesh is off by, how far the pressures on the two lines differ, and how much the pressure
-!> oscillates from pair to pair; of the half-width the spacing at its ends, and the energy. What each counts
-!> is measured (tests/accuracy). Where the pressure has no limit, or the zone too few pairs, nothing is said
-!> of it.
+!> The estimate of the pressure uses six quantities: the distance of the peak from a parabola through the
+!> nearest pairs, its distance from the normal stress of the recovered strains of both bodies, the number of
+!> pairs, the relative mesh error of the energy, the difference between the pressures on the two lines, and
+!> the oscillation from pair to pair. The estimate of the half-width uses the spacing at its ends and the
+!> energy. Their weights are fitted (tests/accuracy). There is no estimate if the pressure is singular or the
+!> zone has too few pairs.
 module epcont_accuracy_zone_error
   use epcont_accuracy_limits, only: edge_pairs, has_tip
   use epcont_accuracy_peak, only: beside_peak, off_parabola, oscillation, peak_type, zone_end, zone_error
@@ -24,22 +24,23 @@ module epcont_accuracy_zone_error
   public :: zone_error, estimate_zone
 
   integer, parameter :: &
-    !> Pairs, with those beyond a line of symmetry, that a zone must have for its pressure to be resolved.
+    !> Number of pairs (mirrored ones included) that a zone needs; with fewer the mesh is too coarse.
     few = 3, &
-    !> Pairs of a side with a middle node: a zone on one, mirrored or not, follows the pressure no better than
-    !! one parabola.
+    !> Number of pairs on an edge with a mid-side node: a zone on one such edge, mirrored or not, represents
+    !! the pressure no better than one parabola.
     one_side = 3
 
 contains
 
-  !> What the figures of a zone are worth. Of equal largest pressures, but for rounding, those on the largest
-  !! area count (a corner on the axis may have its neighbour's), the first and the last: whichever is worse.
+  !> Estimate the errors of a zone. Of pressures equal up to rounding, those on the largest area are
+  !! candidates (a corner on the axis may have its neighbour's); the result is the worse of the first and the
+  !! last.
   pure function estimate_zone(model, line, answer, yielded, energy, zone) result(error)
-    type(model_type), intent(in) :: model        !! the scene
+    type(model_type), intent(in) :: model        !! model
     type(surface_line), intent(in) :: line       !! of its pairs
     type(answer_type), intent(in) :: answer      !! with their pressures
-    logical, intent(in) :: yielded               !! something is beyond yield
-    real(wp), intent(in) :: energy               !! error of the mesh over all of it
+    logical, intent(in) :: yielded               !! the model yields somewhere
+    real(wp), intent(in) :: energy               !! mesh error of the whole model
     type(contact_zone), intent(in) :: zone       !! of these pairs
     type(zone_error) :: error, other
     logical :: largest(size(zone%pairs))
@@ -54,12 +55,12 @@ contains
         other%pressure > (1.0_wp + least_difference)*error%pressure) error = other
   end function estimate_zone
 
-  !> The kinds of elements that a pair's figures are judged by: its own, and of the other side what has no
-  !! middle nodes where its own have some.
+  !> Choose the element types whose weights apply to a pair: its own, and the opposite one if this has a lower
+  !! degree.
   pure function kinds_at(model, pair, own) result(kinds)
     type(model_type), intent(in) :: model
     integer, intent(in) :: pair
-    integer, intent(in) :: own              !! kind of the elements at the pair's node
+    integer, intent(in) :: own              !! element type at the pair's node
     integer, allocatable :: elements(:), kinds(:)
     integer :: k
 
@@ -73,8 +74,8 @@ contains
     end do
   end function kinds_at
 
-  !> The longest side at a pair, of either body that can be strained, along the contact; of those with a
-  !! middle node half [length].
+  !> Find the longest edge at a pair, of either body that deforms, along the contact; an edge with a mid-side
+  !! node counts by half [length].
   pure real(wp) function longest_side(model, pair)
     type(model_type), intent(in) :: model
     integer, intent(in) :: pair
@@ -94,7 +95,7 @@ contains
     end do
   end function longest_side
 
-  !> Of those of some values that count, the largest, but for rounding.
+  !> Which of the values that count are the largest, up to rounding?
   pure function are_largest(values, counts)
     real(wp), intent(in) :: values(:)
     logical, intent(in) :: counts(:)
@@ -105,15 +106,15 @@ contains
     are_largest = counts .and. values >= largest - no_effect*abs(largest)
   end function are_largest
 
-  !> The same, where one of its pairs has the largest pressure.
+  !> Estimate the errors of a zone if this pair has the largest pressure.
   pure function estimate_at(model, line, answer, yielded, energy, zone, peak) result(error)
-    type(model_type), intent(in) :: model        !! the scene
+    type(model_type), intent(in) :: model        !! model
     type(surface_line), intent(in) :: line       !! of its pairs
     type(answer_type), intent(in) :: answer      !! with their pressures
-    logical, intent(in) :: yielded               !! something is beyond yield
-    real(wp), intent(in) :: energy               !! error of the mesh over all of it
+    logical, intent(in) :: yielded               !! the model yields somewhere
+    real(wp), intent(in) :: energy               !! mesh error of the whole model
     type(contact_zone), intent(in) :: zone       !! of these pairs
-    integer, intent(in) :: peak                  !! which of these
+    integer, intent(in) :: peak                  !! position of this pair in the zone
     type(zone_error) :: error
     type(peak_type) :: seen
     logical :: waves
@@ -147,7 +148,7 @@ contains
       error%half_width = sum(error%weights%step*seen%ends%unknown)*merge(1.0_wp, 0.5_wp, any(seen%mirrored)) &
                          + error%weights%width_energy*seen%energy*zone%half_width &
                          + seen%flattening/seen%largest*zone%half_width   ! the load is given
-    ! two pairs may stand at one place
+    ! two pairs may stand at one point
     at = [max(1, count(zone%along < zone%along(seen%peak))), min(seen%n, 1 + &
         count(zone%along <= zone%along(seen%peak)))]
     seen%spacing = (zone%along(at(2)) - zone%along(at(1)))/max(1, &
@@ -159,7 +160,7 @@ contains
         minval(seen%p) <= no_effect*seen%largest) then
       error%resolution = 0.0_wp
     else
-      ! of a single pair it stays 1
+      ! for a single pair it stays 1
       if (error%half_length > seen%spacing .and. seen%n > 1) error%resolution = seen%spacing/error%half_length
       error%unbounded = any(seen%ends%edge)
       if (.not. error%unbounded) error%unbounded = has_tip(model, line, zone, seen%largest)
@@ -219,7 +220,7 @@ contains
     if (seen%around > 0.0_wp) near = modulo(near - 1, seen%n) + 1
     near = min(max(near, 1), seen%n)
     apart = maxval(abs(answer%apart(zone%pairs(near))))
-    coarse = 0.0_wp   ! of an even pressure any spacing tells
+    coarse = 0.0_wp   ! a uniform pressure needs no spacing
     if (error%resolution > 0.0_wp) &
       coarse = max(seen%long/max(1, seen%n - 1), depth_behind(model, error))/max(seen%spacing, &
           error%half_length)

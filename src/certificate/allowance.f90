@@ -131,7 +131,7 @@ contains
 
   !> For all sides of the outlines.
   pure function new_allowance(model, drawn, now) result(allowance)
-    type(model_type), intent(in) :: model           !! the scene
+    type(model_type), intent(in) :: model           !! model
     type(outline_shape), intent(in) :: drawn, now   !! the outlines as drawn, and displaced
     type(allowance_type) :: allowance
     real(wp), dimension(drawn%outline%sides) :: length, sag, bend, arch, turn, change, curvature

@@ -90,7 +90,7 @@ contains
   !> Of an answer the certificate takes the displacements, with rigid motions and without, the reactions, the
   !! stresses at the points, the contact forces and the part of the loads.
   subroutine certify(model, answer, curve_tolerance, found)
-    type(model_type), intent(in) :: model   !! the scene
+    type(model_type), intent(in) :: model   !! model
     type(answer_type), intent(in) :: answer   !! what is to be checked
     real(wp), intent(in) :: curve_tolerance   !! how far off its curve the iteration may leave a stress
     type(certificate_type), intent(out) :: found   !! the certificate, without its scene

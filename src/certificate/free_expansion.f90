@@ -28,7 +28,7 @@ contains
   !> What a part of the temperatures strains the integration places of an element by, along each axis, where
   !! it is free to.
   pure subroutine free_strains(model, element, load_factor, volume, strain)
-    type(model_type), intent(in) :: model        !! the scene
+    type(model_type), intent(in) :: model        !! model
     integer, intent(in) :: element               !! which of its elements
     real(wp), intent(in) :: load_factor          !! of the temperatures
     real(wp), intent(in) :: volume(most_points)  !! that belong to the places [length**3]
@@ -53,7 +53,7 @@ contains
 
   !> The largest stress along one axis if nothing gave way to the temperatures [stress].
   pure real(wp) function held_stress(model, load_factor) result(stress)
-    type(model_type), intent(in) :: model   !! the scene
+    type(model_type), intent(in) :: model   !! model
     real(wp), intent(in) :: load_factor     !! of the temperatures
     integer :: e
 

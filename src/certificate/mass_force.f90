@@ -132,7 +132,7 @@ contains
 
   !> The loads of a scene, body forces by the sum above instead of those that were solved for.
   pure function given_load(model) result(load)
-    type(model_type), intent(in) :: model   !! the scene
+    type(model_type), intent(in) :: model   !! model
     real(wp) :: load(directions, model%nodes), own(directions, model%nodes)
 
     load = model%load

@@ -55,7 +55,7 @@ contains
 
   !> For a scene that has outlines.
   pure function new_search(model, displacement) result(search)
-    type(model_type), intent(in) :: model        !! the scene
+    type(model_type), intent(in) :: model        !! model
     real(wp), intent(in) :: displacement(:, :)   !! [length] [directions, nodes]
     type(search_type) :: search
     integer :: k, side

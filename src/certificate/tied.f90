@@ -14,7 +14,7 @@ contains
 
   !> Springs pull at their ends, by how far these move apart.
   pure subroutine check_springs(model, displacement, residual, sizes, stored)
-    type(model_type), intent(in) :: model         !! the scene
+    type(model_type), intent(in) :: model         !! model
     real(wp), intent(in) :: displacement(:, :)    !! [length] [directions, nodes]
     real(wp), intent(inout) :: residual(:, :)     !! forces on the nodes are added [force] [directions, nodes]
     real(wp), intent(inout) :: sizes(:)           !! their sizes are, except of rounding [force] [nodes]
@@ -42,7 +42,7 @@ contains
 
   !> A tied freedom hands its forces to those that it follows, which may follow others.
   pure subroutine gather_ties(model, residual, torque)
-    type(model_type), intent(in) :: model         !! the scene
+    type(model_type), intent(in) :: model         !! model
     real(wp), intent(inout) :: residual(:, :)     !! [force] [directions, nodes]
     real(wp), intent(out) :: torque(:)            !! on platens that turn [force*length] [platens]
     integer :: c, k, leader, node
@@ -111,7 +111,7 @@ contains
   !> Whether followers are where their leader and one angle take them, that of the farthest of them, and
   !! whether equations hold.
   pure subroutine check_ties(model, displacement, turn, apart)
-    type(model_type), intent(in) :: model         !! the scene
+    type(model_type), intent(in) :: model         !! model
     real(wp), intent(in) :: displacement(:, :)    !! [length] [directions, nodes]
     real(wp), intent(out) :: turn(:)              !! the angles [radian] [platens]
     real(wp), intent(out) :: apart                !! the most that any is off by, of the largest displacement
@@ -150,7 +150,7 @@ contains
 
   !> The longest arm of each platen that turns [length] [platens].
   pure function longest_arms(model) result(length)
-    type(model_type), intent(in) :: model         !! the scene
+    type(model_type), intent(in) :: model         !! model
     real(wp) :: length(size(model%platen))
     integer :: i, k
 

@@ -46,7 +46,7 @@ contains
   !> Strains xx, yy, zz, xy (engineering) that a unit displacement of each freedom gives at the integration
   !! places of an element, and the volumes that belong to them.
   pure subroutine unit_strains(model, element, slope, strain, volume)
-    type(model_type), intent(in) :: model        !! the scene
+    type(model_type), intent(in) :: model        !! model
     integer, intent(in) :: element               !! which of its elements
     real(wp), intent(in) :: slope(directions, most_nodes, most_points)   !! of its kind, from `find_slopes`
     !> [1/length] [components, directions, nodes, points]

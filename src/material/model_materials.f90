@@ -31,7 +31,7 @@ contains
 
   !> The law of each section, as the deck has it.
   pure subroutine find_materials(model, materials)
-    type(model_type), intent(in) :: model             !! the scene
+    type(model_type), intent(in) :: model             !! model
     type(model_materials), intent(out) :: materials   !! of its sections and points
     logical :: yields(size(model%young))
     integer :: s
@@ -104,7 +104,7 @@ contains
   !> How far stresses are from those of the materials, by `distance`, at most, and how many elements yield.
   subroutine measure(self, model, state, stress, farthest, yielded)
     class(model_materials), intent(in) :: self
-    type(model_type), intent(in) :: model        !! the scene
+    type(model_type), intent(in) :: model        !! model
     type(point_state), intent(in) :: state(:)    !! [points]
     real(wp), intent(in) :: stress(:, :)         !! xx, yy, zz, xy [stress] [components, points]
     real(wp), intent(out) :: farthest            !! 0 where nothing can yield

@@ -40,7 +40,7 @@ contains
   !> The next x, when the last one was `about` and g(about) is `found`.
   subroutine mix(self, model, volume, found, about)
     class(anderson_mixer), intent(inout) :: self
-    type(model_type), intent(in) :: model        !! the scene
+    type(model_type), intent(in) :: model        !! model
     real(wp), intent(in) :: volume(:)            !! of each point [length**3]
     type(solved_state), intent(in) :: found       !! displacement and strain
     type(solved_state), intent(inout) :: about    !! the same

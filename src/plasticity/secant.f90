@@ -46,8 +46,8 @@ contains
   !> The state to linearise about next, when the law about `about` has led to `found`.
   subroutine advance(self, model, linear, load_factor, found, about)
     class(secant_method), intent(inout) :: self
-    type(model_type), intent(in) :: model            !! the scene
-    type(linear_problem), intent(in) :: linear       !! that was solved
+    type(model_type), intent(in) :: model            !! model
+    type(linear_problem), intent(in) :: linear       !! solved model
     real(wp), intent(in) :: load_factor              !! of the loads
     type(solved_state), intent(in) :: found           !! with its points
     type(solved_state), intent(inout) :: about        !! displacement, strain and points

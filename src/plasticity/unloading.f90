@@ -14,7 +14,7 @@ contains
 
   !> Elements beyond yield whose strain has fallen since the last load step, as the load grew.
   pure subroutine find_unloaded(model, point, tolerance, strained, unloaded, first)
-    type(model_type), intent(in) :: model          !! the scene
+    type(model_type), intent(in) :: model          !! model
     type(point_state), intent(in) :: point(:)      !! at this load [points]
     real(wp), intent(in) :: tolerance              !! of the iteration: part of a strain that says nothing
     !> e of points that yielded at the last load, else 0; then at this one [points]

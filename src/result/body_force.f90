@@ -21,7 +21,7 @@ contains
 
   !> Those of all bodies that have elements.
   pure function find_body_forces(model, force) result(found)
-    type(model_type), intent(in) :: model   !! the scene
+    type(model_type), intent(in) :: model   !! model
     real(wp), intent(in) :: force(:)        !! [force] [pairs]
     type(body_force), allocatable :: found(:)
     real(wp) :: sums(directions, model%bodies)
@@ -44,7 +44,7 @@ contains
 
   !> Of forces at the pairs on each body [force] [2, bodies].
   pure function resultants(model, force) result(sums)
-    type(model_type), intent(in) :: model   !! the scene
+    type(model_type), intent(in) :: model   !! model
     real(wp), intent(in) :: force(:)        !! [force] [pairs]
     real(wp) :: sums(directions, model%bodies)
     real(wp), allocatable :: nodal(:, :)
@@ -59,7 +59,7 @@ contains
 
   !> What a unit force at each pair adds to one component of the resultant on a body [pairs].
   pure function shares_of_pairs(model, body, c) result(share)
-    type(model_type), intent(in) :: model   !! the scene
+    type(model_type), intent(in) :: model   !! model
     integer, intent(in) :: body, c          !! the body, the component
     real(wp) :: share(model%pairs)
     integer :: first, k, last

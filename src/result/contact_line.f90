@@ -306,7 +306,7 @@ contains
   !> The sides of the outline at a node: nodes at their start, their end, and between or 0, and whose they are
   !! [4, any].
   pure function outer_sides(model, node) result(sides)
-    type(model_type), intent(in) :: model   !! the scene
+    type(model_type), intent(in) :: model   !! model
     integer, intent(in) :: node             !! any
     integer, allocatable :: sides(:, :)
     integer :: i, k, side(3)
@@ -344,7 +344,7 @@ contains
   !> What a uniform pressure on a side gives to each of its nodes, along a normal or in all, over that
   !! pressure: their parts of its area [length**2].
   pure function shares_of_nodes(model, element, side, normal) result(share)
-    type(model_type), intent(in) :: model          !! the scene
+    type(model_type), intent(in) :: model          !! model
     integer, intent(in) :: element, side(3)        !! the side's, and its nodes
     real(wp), intent(in), optional :: normal(directions)    !! from where it is seen
     real(wp) :: share(3)

@@ -23,7 +23,7 @@ contains
 
   !> Where gradients are large, and how large the largest is.
   pure function find_gradients(model, volume, displacement) result(found)
-    type(model_type), intent(in) :: model       !! the scene
+    type(model_type), intent(in) :: model       !! model
     real(wp), intent(in) :: volume(:)           !! of the integration points [points]
     real(wp), intent(in) :: displacement(:, :)  !! [length] [2, nodes]
     type(gradient_type) :: found

@@ -24,7 +24,7 @@ contains
 
   !> Compare both sides of each line contact.
   pure subroutine compare_sides(model, touching, force, pressure, found, apart)
-    type(model_type), intent(in) :: model           !! the scene
+    type(model_type), intent(in) :: model           !! model
     logical, intent(in) :: touching(:)              !! [pairs]
     real(wp), intent(in) :: force(:), pressure(:)   !! [force], [stress] [pairs]
     type(line_pressure), allocatable, intent(out) :: found(:)

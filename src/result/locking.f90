@@ -22,7 +22,7 @@ contains
 
   !> How many such elements there are, and how much their mean stress scatters.
   pure function find_locking(model, volume, stress, equivalent_stress, secant_modulus) result(locking)
-    type(model_type), intent(in) :: model           !! the scene
+    type(model_type), intent(in) :: model           !! model
     real(wp), intent(in) :: volume(:)               !! of the integration points [points]
     real(wp), intent(in) :: stress(:, :)            !! xx, yy, zz, xy [4, elements]
     real(wp), intent(in) :: equivalent_stress(:)    !! [elements]

@@ -23,7 +23,7 @@ contains
 
   !> Fill in stresses, strains, moduli and reactions.
   subroutine recover_stresses(model, linear, applied, answer)
-    type(model_type), intent(in) :: model        !! the scene
+    type(model_type), intent(in) :: model        !! model
     type(linear_problem), intent(in) :: linear     !! of the last solve
     real(wp), intent(in) :: applied(:, :)        !! nodal forces of loads and pairs [force] [2, nodes]
     type(answer_type), intent(inout) :: answer   !! its state is given
@@ -149,7 +149,7 @@ contains
 
   !> Coordinates of an integration point [length].
   pure function place_of_point(model, point) result(x)
-    type(model_type), intent(in) :: model   !! the scene
+    type(model_type), intent(in) :: model   !! model
     integer, intent(in) :: point            !! by its number
     real(wp) :: x(directions)
 
