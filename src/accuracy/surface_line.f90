@@ -92,7 +92,8 @@ contains
     end associate
   end function beyond
 
-  !> Find an element at a node: of the first section there, and of the first type in it; 0 if it does not exist.
+  !> Find an element at a node: of the first section there, and of the first type in it; 0 if there are no
+  !! elements.
   pure integer function first_element(model, node) result(element)
     type(model_type), intent(in) :: model   !! model
     integer, intent(in) :: node             !! any node
