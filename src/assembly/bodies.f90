@@ -15,7 +15,7 @@ module epcont_assembly_bodies
   private
   public :: factored_bodies, force_fields, half_solved_body, new_bodies, prescribe, weak_pivot
 
-  !> The pivot that lost most digits to rounding.
+  !> Pivot that lost most digits by rounding.
   type :: weak_pivot
     real(wp) :: ratio = 1.0_wp    !! to its diagonal entry
     integer :: body = 0           !! 0 if all bodies are rigid
@@ -55,7 +55,7 @@ module epcont_assembly_bodies
 
 contains
 
-  !> Make bodies without factors and law.
+  !> Make bodies without factors and material law.
   function new_bodies(scene) result(bodies)
     type(planned_model), intent(in) :: scene   !! with equation numbers
     type(factored_bodies) :: bodies
@@ -83,7 +83,7 @@ contains
     self%spring%changed = .false.
   end subroutine factor_system
 
-  !> Compute the forces of the prescribed displacements: -K_fp u_p on the free DOFs.
+  !> Compute the forces of the prescribed displacements on the free DOFs: -K_fp u_p.
   subroutine settle(self, scene)
     class(factored_bodies), intent(inout) :: self
     type(planned_model), intent(in) :: scene
@@ -156,8 +156,8 @@ contains
     if (allocated(self%spring%stiffness)) condition = condition*self%spring%norm/self%body(1)%matrix%norm
   end subroutine estimate_condition
 
-  !> Find the weakest pivot of all bodies. Joined bodies have none: springs make pivots small, and refinement
-  !! follows.
+  !> Find the weakest pivot of all bodies. Joined bodies are skipped: their springs make pivots small, and
+  !! iterative refinement follows.
   pure type(weak_pivot) function weakest(self)
     class(factored_bodies), intent(in) :: self
     integer :: b
@@ -187,7 +187,7 @@ contains
     type(planned_model), intent(in) :: scene     !! with equation numbers
     real(wp), intent(in) :: force(:, :)          !! [directions, nodes]
     real(wp), intent(in) :: load_factor          !! of the prescribed displacements, with their forces
-    !> Forces added before; not allocated if there are none [bodies]
+    !> Forces added before; not allocated if no forces were added [bodies]
     type(half_solved_body), allocatable, intent(inout) :: half(:)
     real(wp), allocatable :: border(:, :), inner(:, :)
     integer :: b, i

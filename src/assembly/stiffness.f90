@@ -27,7 +27,7 @@ module epcont_assembly_stiffness
   type :: spring_set
     real(wp), allocatable :: stiffness(:)   !! [force/length] [springs]
     logical, allocatable :: changed(:)      !! differs from that of the last factor [springs]
-    real(wp) :: norm = 0.0_wp               !! of the stiffness without any, in the 1-norm [force/length]
+    real(wp) :: norm = 0.0_wp               !! of the stiffness without springs, in the 1-norm [force/length]
   end type spring_set
 
   type :: body_stiffness
@@ -110,11 +110,11 @@ contains
     end associate
   end subroutine assemble
 
-  !> Begin a matrix of zeros, of the kind that the plan has chosen.
+  !> Begin a matrix of zeros of the kind chosen by the plan.
   subroutine begin(self, body, once)
     class(body_stiffness), intent(inout) :: self
     type(body_numbering), intent(in) :: body
-    logical, intent(in) :: once   !! it will be factored only once
+    logical, intent(in) :: once   !! it is factored only once
     type(front_matrix), allocatable :: fronts
     type(panel_matrix), allocatable :: panels
 

@@ -1,5 +1,5 @@
-!> The operator B of all integration points, made once: strain = B u; and what is made with it: strains of
-!> displacements, nodal forces of stresses, element stiffness.
+!> Operator B of all integration points, made once: strain = B u. It gives strains of displacements, nodal
+!> forces of stresses, and element stiffness.
 module epcont_assembly_strain_operator
   use epcont_base_kinds, only: wp
   use epcont_element_element_kind, only: most_nodes, most_points
@@ -13,10 +13,10 @@ module epcont_assembly_strain_operator
   public :: strain_operator, new_strain_operator
 
   type :: strain_operator
-    !> Rows xx, yy, zz, xy; two columns a node, point by point [1/length] [components, columns]
+    !> Rows xx, yy, zz, xy; two columns for each node, point by point [1/length] [components, columns]
     real(wp), allocatable :: b(:, :)
-    integer, allocatable :: column(:)        !! column before the first of each point [points]
-    real(wp), allocatable :: volume(:)       !! that belongs to each point [length**3] [points]
+    integer, allocatable :: column(:)        !! number of columns before those of each point [points]
+    real(wp), allocatable :: volume(:)       !! volume of each point [length**3] [points]
   contains
     procedure :: strains
     procedure :: add_fields
@@ -27,9 +27,9 @@ module epcont_assembly_strain_operator
 
 contains
 
-  !> The operator of a scene.
+  !> Make the operator of a model.
   function new_strain_operator(model) result(operator)
-    type(model_type), intent(in) :: model   !! the scene
+    type(model_type), intent(in) :: model
     type(strain_operator) :: operator
     integer :: columns, e, p
 
@@ -47,7 +47,7 @@ contains
     !$omp end parallel do
   end function new_strain_operator
 
-  !> What is of one element.
+  !> Add the columns of one element.
   pure subroutine put_element(operator, model, e)
     type(strain_operator), intent(inout) :: operator
     type(model_type), intent(in) :: model
@@ -73,20 +73,20 @@ contains
     end do
   end subroutine put_element
 
-  !> Strains xx, yy, zz, xy (engineering) that stresses come of: of displacements, less free ones, which
-  !! temperatures make without stress [components, points].
+  !> Strains xx, yy, zz, xy (engineering) that cause stresses: those of displacements minus thermal strains
+  !! [components, points].
   function strains(self, model, displacement, load_factor) result(strain)
     class(strain_operator), intent(in) :: self
-    type(model_type), intent(in) :: model        !! the scene
+    type(model_type), intent(in) :: model
     real(wp), intent(in) :: displacement(:, :)   !! [length] [directions, nodes]
-    real(wp), intent(in) :: load_factor          !! of the temperatures
+    real(wp), intent(in) :: load_factor          !! part of the temperatures
     real(wp), allocatable :: strain(:, :)
     logical :: expands
     integer :: p
 
     expands = allocated(model%free_strain) .and. load_factor /= 0.0_wp
     allocate (strain(components, model%points))
-    if (.not. expands .and. all(displacement == 0.0_wp)) then   ! as contact of joined bodies begins
+    if (.not. expands .and. all(displacement == 0.0_wp)) then   ! first state of joined bodies
       strain = 0.0_wp
       return
     end if
@@ -115,15 +115,15 @@ contains
     end function strain_at
   end function strains
 
-  !> Strains of one element under several fields of displacements, put behind one that is there.
+  !> Compute strains of one element for several displacement fields, after the field that is there already.
   pure subroutine add_fields(self, model, element, place, fields, u, strain)
     class(strain_operator), intent(in) :: self
-    type(model_type), intent(in) :: model        !! the scene
-    integer, intent(in) :: element               !! which
-    integer, intent(in) :: place(*)              !! where its nodes are in `u`
-    integer, intent(in) :: fields                !! how many
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: element               !! its number
+    integer, intent(in) :: place(*)              !! positions of its nodes in `u`
+    integer, intent(in) :: fields                !! number of fields
     real(wp), intent(in) :: u(directions, fields, *)   !! displacements [length]
-    !> At its points: the first field stays as it is [components, 0:fields, points]
+    !> At its points: the first field is unchanged [components, 0:fields, points]
     real(wp), intent(inout) :: strain(components, 0:fields, *)
     integer :: p
 
@@ -134,15 +134,15 @@ contains
     end do
   end subroutine add_fields
 
-  !> The same of their means over the element: by the mean of B.
+  !> Compute mean strains of one element for several displacement fields, with the mean of B.
   pure subroutine add_means(self, model, element, place, fields, u, strain)
     class(strain_operator), intent(in) :: self
-    type(model_type), intent(in) :: model        !! the scene
-    integer, intent(in) :: element               !! which
-    integer, intent(in) :: place(*)              !! where its nodes are in `u`
-    integer, intent(in) :: fields                !! how many
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: element               !! its number
+    integer, intent(in) :: place(*)              !! positions of its nodes in `u`
+    integer, intent(in) :: fields                !! number of fields
     real(wp), intent(in) :: u(directions, fields, *)   !! displacements [length]
-    real(wp), intent(inout) :: strain(components, 0:fields)   !! the first stays as it is
+    real(wp), intent(inout) :: strain(components, 0:fields)   !! the first field is unchanged
     real(wp) :: b(components, directions*most_nodes), volume
     integer :: c, i, p
 
@@ -160,7 +160,7 @@ contains
     call apply(model%node_count(element), b, place, fields, u, strain(1, 1))
   end subroutine add_means
 
-  !> Strains at a point under several fields.
+  !> Compute the strains at a point for several fields.
   pure subroutine apply(nodes, b, place, fields, u, strain)
     integer, intent(in) :: nodes, place(nodes), fields
     real(wp), intent(in) :: b(components, directions, nodes)
@@ -178,10 +178,10 @@ contains
     end do
   end subroutine apply
 
-  !> Forces that nodes must exert on the elements to hold their stresses [force] [directions, nodes].
+  !> Nodal forces in equilibrium with stresses [force] [directions, nodes].
   pure function nodal_forces(self, model, stress) result(force)
     class(strain_operator), intent(in) :: self
-    type(model_type), intent(in) :: model        !! the scene
+    type(model_type), intent(in) :: model
     real(wp), intent(in) :: stress(:, :)         !! xx, yy, zz, xy [stress] [components, points]
     real(wp), allocatable :: force(:, :)
     real(wp) :: s(components)
@@ -205,10 +205,10 @@ contains
   !> Stiffness of an element: B'D B times the volume of each point [force/length].
   pure subroutine element_stiffness(self, model, element, law, n, k)
     class(strain_operator), intent(in) :: self
-    type(model_type), intent(in) :: model        !! the scene
-    integer, intent(in) :: element               !! which
-    type(linear_law), intent(in) :: law          !! stresses of strains
-    integer, intent(in) :: n                     !! freedoms of the element
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: element               !! its number
+    type(linear_law), intent(in) :: law          !! material law at its points
+    integer, intent(in) :: n                     !! DOFs of the element
     real(wp), intent(out) :: k(n, n)             !! its stiffness
     integer :: i, j, p
 
@@ -223,7 +223,7 @@ contains
     end do
   end subroutine element_stiffness
 
-  !> Add the part of a point, above the diagonal.
+  !> Add the contribution of a point, above the diagonal.
   pure subroutine add_point(n, b, volume, d, k)
     integer, intent(in) :: n
     real(wp), intent(in) :: b(components, n), volume, d(components, components)

@@ -9,9 +9,9 @@ module epcont_base_base64
 
 contains
 
-  !> Four characters for every three bytes; `=` where the last group lacks one.
+  !> Encode bytes: four characters for three bytes; `=` replaces the missing characters of the last group.
   pure function base64(bytes) result(text)
-    integer(int8), intent(in) :: bytes(:)   !! any number of them
+    integer(int8), intent(in) :: bytes(:)   !! [any]
     character(len=:), allocatable :: text
     integer(int8) :: last(3)
     integer :: group, whole, left
@@ -29,7 +29,7 @@ contains
     text(4*whole + left + 2:) = repeat('=', 3 - left)
   end function base64
 
-  !> Three bytes as four digits of six bits.
+  !> Encode three bytes as four digits of six bits.
   pure function encoded(three) result(text)
     integer(int8), intent(in) :: three(3)
     character(len=4) :: text

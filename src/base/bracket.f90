@@ -1,4 +1,4 @@
-!> A zero of a function that rises, between two places: regula falsi of Illinois.
+!> Zero of an increasing function between two points: regula falsi, Illinois variant.
 module epcont_base_bracket
   use epcont_base_kinds, only: wp
   implicit none
@@ -6,9 +6,9 @@ module epcont_base_bracket
   public :: bracket
 
   type :: bracket
-    real(wp) :: at(2)         !! before and behind the zero
-    real(wp) :: values(2)     !! there, below and above zero; that of a place that stays is halved
-    integer :: last = 0       !! which was found last; 0: none
+    real(wp) :: at(2)         !! points before and after the zero
+    real(wp) :: values(2)     !! values there, below and above zero; the value at a point that stays is halved
+    integer :: last = 0       !! point that was found last; 0 if none was found
   contains
     procedure :: likely
     procedure :: take
@@ -16,14 +16,14 @@ module epcont_base_bracket
 
 contains
 
-  !> Where a straight line between both would be zero.
+  !> Zero of the straight line through both points.
   pure real(wp) function likely(self)
     class(bracket), intent(in) :: self
 
     likely = (self%at(1)*self%values(2) - self%at(2)*self%values(1))/(self%values(2) - self%values(1))
   end function likely
 
-  !> A place between, and the value there.
+  !> Take a point between them with its value.
   pure subroutine take(self, place, value)
     class(bracket), intent(inout) :: self
     real(wp), intent(in) :: place, value

@@ -1,4 +1,5 @@
-!> Reals as decimals, with the digits of a format and in a tenth of its time: tables have a million numbers.
+!> Write reals as decimals, with the digits of a format but in a tenth of its time: tables have a million
+!> numbers.
 !>
 !> A real is m 2**e; times 10**p it is m 5**p 2**(e + p). For usual sizes this is an integer of 128 bits,
 !> whose last digit is rounded exactly, ties to even. Other reals are written with a format.
@@ -14,9 +15,9 @@ module epcont_base_decimal
 
 contains
 
-  !> Write a real as the format es has it with these digits, with trailing blanks.
+  !> Write a real with these digits as the format `es` does, with trailing blanks.
   pure function decimal_text(value, digits, places) result(text)
-    real(wp), intent(in) :: value    !! any; its exponent needs no more places
+    real(wp), intent(in) :: value    !! any; its exponent must fit its digits
     integer, intent(in) :: digits, places   !! significant digits, and digits of the exponent
     character(len=digits + places + 5) :: text
     character(len=20) :: form
@@ -40,9 +41,9 @@ contains
     integer, intent(in) :: digits          !! number of digits
     integer(i8), intent(out) :: number
     integer, intent(out) :: power
-    logical, intent(out) :: exact          !! otherwise nothing is found
+    logical, intent(out) :: exact          !! otherwise the result is undefined
     integer(i16) :: product, rest
-    integer :: behind, p   ! bits behind the point; tens that are multiplied with
+    integer :: behind, p   ! bits after the binary point; power of ten of the factor
 
     number = 0
     power = 0
@@ -71,8 +72,8 @@ contains
   pure subroutine put_together(negative, number, digits, power, places, text)
     logical, intent(in) :: negative
     integer(i8), intent(in) :: number       !! the digits
-    integer, intent(in) :: digits           !! how many
-    integer, intent(in) :: power, places    !! of ten, and how many digits that has
+    integer, intent(in) :: digits           !! number of digits
+    integer, intent(in) :: power, places    !! power of ten, and its number of digits
     character(len=*), intent(out) :: text
     integer :: first
 
@@ -87,10 +88,10 @@ contains
     end associate
   end subroutine put_together
 
-  !> A whole number, with zeros before it.
+  !> Write an integer with leading zeros.
   pure subroutine put_digits(number, text)
     integer(i8), intent(in) :: number
-    character(len=*), intent(out) :: text   !! filled
+    character(len=*), intent(out) :: text   !! filled completely
     integer(i8) :: left
     integer :: k
 

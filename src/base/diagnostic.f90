@@ -1,5 +1,5 @@
-!> Faults of a deck or of a scene: what is wrong, where, and what would be right. They are collected, so that
-!> one run reports them all; `epcont_deck_render` turns them into text.
+!> Errors, warnings and notes about a deck or a model. They are collected, so that one run reports all of
+!> them; `epcont_deck_render` makes their text.
 module epcont_base_diagnostic
   use epcont_base_sorting, only: sorted_order
   implicit none
@@ -8,34 +8,34 @@ module epcont_base_diagnostic
 
   integer, parameter, public :: &
     severity_error = 1, &    !! the deck is rejected
-    severity_warning = 2, &  !! the deck is read, but look here
-    severity_note = 3        !! for the listing only
+    severity_warning = 2, &  !! the deck is accepted, but is probably not meant so
+    severity_note = 3        !! only in the listing
 
-  !> A stretch of columns of one line of the deck.
+  !> Columns of one line of the deck.
   type :: place_type
-    integer :: line = 0   !! index into the lines of the source, in deck order; 0: the deck as a whole
+    integer :: line = 0   !! index of the line in the source, in deck order; 0: the deck as a whole
     integer :: first = 0  !! first column
     integer :: last = 0   !! last column
   end type place_type
 
-  !> One fault.
+  !> An error, a warning or a note.
   type :: diagnostic
     integer :: severity = severity_error
     type(place_type) :: place
-    !> What it is about, where that is no place in a deck, or not yet: a card (above zero) or a part of a
-    !! scene (`epcont_model_finding`), which of these, which of its data
+    !> Subject, if it has no columns in a deck yet: card (positive) or part of a model
+    !! (`epcont_model_finding`), its number, and the number of its item
     integer :: of = 0, which = 0, item = 0
     character(len=:), allocatable :: what    !! `GRID 17: field 4 (X1) is not a real number`
-    character(len=:), allocatable :: remedy  !! `a real such as 1.5`; may be empty
-    integer, allocatable :: node(:)          !! all the nodes that it is about, if these matter [any]
+    character(len=:), allocatable :: remedy  !! an imperative; may be empty
+    integer, allocatable :: node(:)          !! all nodes concerned, if they are needed [any]
   end type diagnostic
 
-  !> The faults of one deck or scene, in the order in which they were found.
+  !> All findings about a deck or model, in the order in which they were found.
   type :: diagnostics
-    integer :: errors = 0, warnings = 0, notes = 0   !! how many there are of each severity
+    integer :: errors = 0, warnings = 0, notes = 0   !! number of each severity
     integer :: count = 0
     type(diagnostic), allocatable :: list(:)         !! [count or more]
-    !> Items that come from others: of, which, item of the first, then of the other [6, origins or more]
+    !> Items and their origins: of, which, item of each [6, origins or more]
     integer, allocatable, private :: origin(:, :)
     integer, private :: origins = 0
   contains
@@ -55,55 +55,55 @@ module epcont_base_diagnostic
 
 contains
 
-  !> An error: the deck is rejected, the scene cannot be.
+  !> Add an error at columns of the deck.
   pure subroutine add_error_at(self, place, what, remedy)
     class(diagnostics), intent(inout) :: self
-    type(place_type), intent(in) :: place          !! where
-    character(len=*), intent(in) :: what, remedy   !! is wrong, and what would be right (may be empty)
+    type(place_type), intent(in) :: place          !! columns
+    character(len=*), intent(in) :: what, remedy   !! fault and remedy (may be empty)
 
     call self%add(diagnostic(severity_error, place, what=what, remedy=remedy))
   end subroutine add_error_at
 
-  !> The same of a card or a part of a scene.
+  !> Add an error of a card or a part of a model.
   pure subroutine add_error_of(self, of, which, item, what, remedy)
     class(diagnostics), intent(inout) :: self
-    integer, intent(in) :: of, which, item         !! what it is about
-    character(len=*), intent(in) :: what, remedy   !! is wrong, behind its name; would be right
+    integer, intent(in) :: of, which, item         !! subject
+    character(len=*), intent(in) :: what, remedy   !! fault, after the name of the subject; remedy
 
     call self%add(diagnostic(severity_error, place_type(), of, which, item, what, remedy))
   end subroutine add_error_of
 
-  !> A warning: the scene can be, but is hardly meant.
+  !> Add a warning: the model is possible, but probably not meant.
   pure subroutine add_warning(self, of, which, item, what, remedy)
     class(diagnostics), intent(inout) :: self
-    integer, intent(in) :: of, which, item         !! what it is about
-    character(len=*), intent(in) :: what, remedy   !! is to be looked at, behind its name; would be right
+    integer, intent(in) :: of, which, item         !! subject
+    character(len=*), intent(in) :: what, remedy   !! finding, after the name of the subject; remedy
 
     call self%add(diagnostic(severity_warning, place_type(), of, which, item, what, remedy))
   end subroutine add_warning
 
-  !> A note: something accepted without effect, or else worth a line in the listing.
+  !> Add a note: input without effect, or a fact for the listing.
   pure subroutine add_note_at(self, place, what)
     class(diagnostics), intent(inout) :: self
-    type(place_type), intent(in) :: place   !! where
-    character(len=*), intent(in) :: what    !! is worth a line
+    type(place_type), intent(in) :: place   !! columns
+    character(len=*), intent(in) :: what    !! fact
 
     call self%add(diagnostic(severity_note, place, what=what, remedy=''))
   end subroutine add_note_at
 
-  !> The same of a card.
+  !> Add a note about a card.
   pure subroutine add_note_of(self, of, which, item, what)
     class(diagnostics), intent(inout) :: self
-    integer, intent(in) :: of, which, item   !! what it is about
-    character(len=*), intent(in) :: what     !! is worth a line, behind its name
+    integer, intent(in) :: of, which, item   !! subject
+    character(len=*), intent(in) :: what     !! fact, after the name of the subject
 
     call self%add(diagnostic(severity_note, place_type(), of, which, item, what, remedy=''))
   end subroutine add_note_of
 
-  !> Behind the others; where there is no room, in a list of twice the length.
+  !> Append a finding. If the list is full, its length is doubled.
   pure subroutine add(self, fault)
     class(diagnostics), intent(inout) :: self
-    type(diagnostic), intent(in) :: fault   !! of any severity
+    type(diagnostic), intent(in) :: fault   !! any severity
     type(diagnostic), allocatable :: longer(:)
 
     if (.not. allocated(self%list)) allocate (self%list(16))
@@ -124,19 +124,19 @@ contains
     end select
   end subroutine add
 
-  !> Note that an item comes from another one.
+  !> Record that an item was made from another one.
   pure subroutine add_origin(self, item, from)
     class(diagnostics), intent(inout) :: self
-    integer, intent(in) :: item(3), from(3)   !! of, which, item; of the other one
+    integer, intent(in) :: item(3), from(3)   !! of, which, item of both
 
     if (.not. allocated(self%origin)) allocate (self%origin(6, 16))
-    if (self%origins == size(self%origin, 2)) &   ! room doubles
+    if (self%origins == size(self%origin, 2)) &   ! double the size
       self%origin = reshape([self%origin, self%origin], [6, 2*self%origins])
     self%origins = self%origins + 1
     self%origin(:, self%origins) = [item, from]
   end subroutine add_origin
 
-  !> What an item comes from: of, which, item; itself if nothing has been noted.
+  !> Origin of an item: of, which, item; the item itself if no origin is recorded.
   pure function origin_of(self, item) result(from)
     class(diagnostics), intent(in) :: self
     integer, intent(in) :: item(3)   !! of, which, item
@@ -148,7 +148,7 @@ contains
     end do
   end function origin_of
 
-  !> The faults by line, then column, then arrival; those of the deck as a whole come last.
+  !> Order of the findings: by line, column, and arrival; those about the whole deck come last.
   pure function in_deck_order(self) result(order)
     class(diagnostics), intent(in) :: self
     integer, allocatable :: line(:), order(:)
@@ -161,10 +161,10 @@ contains
     order = order(sorted_order(line(order)))
   end function in_deck_order
 
-  !> Is one said already, of the same place?
+  !> Is a finding with the same text and columns in the list?
   pure logical function has(self, fault)
     class(diagnostics), intent(in) :: self
-    type(diagnostic), intent(in) :: fault   !! of a deck, with its place
+    type(diagnostic), intent(in) :: fault   !! with its columns in a deck
     integer :: i
 
     has = .false.

@@ -1,8 +1,8 @@
-!> The error that ends a run: what to say and with which exit status.
+!> The error that ends a run: message and exit status.
 !>
-!> A procedure that can fail takes an allocatable `error_type` as its last argument and leaves it
-!> unallocated when all went well. Only the driver prints it. Faults of a deck are diagnostics
-!> (`epcont_base_diagnostic`), collected so that all of them are reported in one run.
+!> A procedure that can fail has an allocatable `error_type` as its last argument, which stays unallocated if
+!> it succeeds. Only the driver prints it. Errors in a deck are diagnostics (`epcont_base_diagnostic`), which
+!> are collected so that one run reports all of them.
 module epcont_base_error
   implicit none
   private
@@ -13,11 +13,11 @@ module epcont_base_error
     status_valid = 0, &      !! the answer is valid
     status_no_answer = 1, &  !! not converged, or no equilibrium
     status_deck = 2, &       !! deck rejected
-    status_usage = 3, &      !! usage, files, or memory refused
-    status_numerical = 4, &  !! breakdown, or certificate beyond tolerance
-    status_internal = 5      !! a fault of the program
+    status_usage = 3, &      !! usage, files, or memory
+    status_numerical = 4, &  !! numerical breakdown, or certificate beyond tolerance
+    status_internal = 5      !! internal error
 
-  !> What they mean, for whoever runs the program.
+  !> Meanings for the user.
   character(len=*), parameter, public :: status_meaning(0:5) = [ &
     'answer valid, or what was asked for was printed      ', &
     'not converged, limit load passed, or no equilibrium  ', &
@@ -26,7 +26,7 @@ module epcont_base_error
     'numerical breakdown, or certificate beyond tolerance ', &
     'internal error: please report it with the deck       ']
 
-  !> An error: the exit status it leads to, and the message.
+  !> Exit status and message.
   type :: error_type
     integer :: status = status_internal
     character(len=:), allocatable :: message
@@ -38,7 +38,7 @@ contains
   pure subroutine raise(error, status, message)
     type(error_type), allocatable, intent(out) :: error   !! allocated afterwards
     integer, intent(in) :: status            !! one of the exit statuses above
-    character(len=*), intent(in) :: message  !! what is wrong, where, and what would be right
+    character(len=*), intent(in) :: message  !! object, fault, and remedy
 
     allocate (error)
     error%status = status

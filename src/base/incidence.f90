@@ -1,4 +1,4 @@
-!> Which groups each member belongs to: a table of groups turned round.
+!> Inverse of a table of groups: the groups that each member belongs to.
 module epcont_base_incidence
   implicit none
   private
@@ -14,10 +14,10 @@ module epcont_base_incidence
 
 contains
 
-  !> From the members of each group [any, groups]; 0 is no member.
+  !> Make the table from the members of each group [any, groups]; 0 is ignored.
   pure function new_incidence(member, members) result(table)
-    integer, intent(in) :: member(:, :)   !! of each group; 0 ends them [any, groups]
-    integer, intent(in) :: members   !! how many there are in all
+    integer, intent(in) :: member(:, :)   !! members of each group; 0 ends them [any, groups]
+    integer, intent(in) :: members   !! number of all members
     type(incidence) :: table
     integer :: g, k
     integer, allocatable :: next(:)
@@ -44,10 +44,10 @@ contains
     end do
   end function new_incidence
 
-  !> The groups that a member belongs to, ascending.
+  !> Groups of a member, ascending.
   pure function of(self, member) result(groups)
     class(incidence), intent(in) :: self
-    integer, intent(in) :: member   !! by its number
+    integer, intent(in) :: member   !! its number
     integer, allocatable :: groups(:)
 
     groups = self%group(self%start(member):self%start(member + 1) - 1)

@@ -1,4 +1,4 @@
-!> Kinds of numbers used throughout.
+!> Kinds of numbers.
 module epcont_base_kinds
   use, intrinsic :: iso_fortran_env, only: int64, real64
   implicit none
@@ -7,8 +7,8 @@ module epcont_base_kinds
 
   !> Working precision of all reals.
   integer, parameter :: wp = real64
-  !> Long integer, for counts that outgrow 2**31 (operations, bytes, band entries).
+  !> Long integer, for counts that may exceed 2**31 (operations, bytes, band entries).
   integer, parameter :: i8 = int64
-  !> Whole numbers of 38 digits, for reals as decimals.
+  !> Integers of 38 digits, for writing reals as decimals.
   integer, parameter :: i16 = selected_int_kind(38)
 end module epcont_base_kinds

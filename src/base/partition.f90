@@ -1,4 +1,4 @@
-!> Sets that are joined two at a time (union-find).
+!> Union-find: disjoint sets that are joined.
 module epcont_base_partition
   implicit none
   private
@@ -6,7 +6,7 @@ module epcont_base_partition
 
   type :: partition
     private
-    integer, allocatable :: parent(:)   !! a member before it of the same set, or itself
+    integer, allocatable :: parent(:)   !! an earlier member of the same set, or itself
   contains
     procedure :: join
     procedure :: numbers
@@ -14,9 +14,9 @@ module epcont_base_partition
 
 contains
 
-  !> `count` sets of one member each.
+  !> Make `count` sets of one member each.
   pure function new_partition(count) result(sets)
-    integer, intent(in) :: count   !! of members
+    integer, intent(in) :: count   !! number of members
     type(partition) :: sets
     integer :: i
 
@@ -32,18 +32,18 @@ contains
     root = [a, b]
     do i = 1, 2
       do while (self%parent(root(i)) /= root(i))
-        self%parent(root(i)) = self%parent(self%parent(root(i)))   ! a shorter way for the next call
+        self%parent(root(i)) = self%parent(self%parent(root(i)))   ! shortens later searches
         root(i) = self%parent(root(i))
       end do
     end do
     self%parent(maxval(root)) = minval(root)
   end subroutine join
 
-  !> The sets numbered from 1 in order of their smallest members: the number of each member's set.
+  !> Number the sets from 1 in the order of their smallest members.
   pure subroutine numbers(self, number, count)
     class(partition), intent(in) :: self
-    integer, allocatable, intent(out) :: number(:)   !! of each member's set
-    integer, intent(out) :: count   !! of sets
+    integer, allocatable, intent(out) :: number(:)   !! number of each member's set
+    integer, intent(out) :: count   !! number of sets
     integer :: i
 
     allocate (number(size(self%parent)))

@@ -1,15 +1,15 @@
-!> Sorting and look-up of keys.
+!> Sorting and searching.
 module epcont_base_sorting
   use epcont_base_kinds, only: wp
   implicit none
   private
   public :: sorted_order, halve, id_index, new_id_index
 
-  !> Finds the position of an id in the list it was made from.
+  !> Index that finds the position of an id in a list.
   type :: id_index
     private
-    integer, allocatable :: key(:)       !! the ids, ascending, each once [n]
-    integer, allocatable :: position(:)  !! where each first stood in the original list [n]
+    integer, allocatable :: key(:)       !! ids, ascending, each once [n]
+    integer, allocatable :: position(:)  !! position of the first occurrence in the list [n]
   contains
     procedure :: find
     procedure :: within
@@ -17,11 +17,11 @@ module epcont_base_sorting
 
 contains
 
-  !> The permutation that puts `key` in ascending order; equal keys keep their order (merge sort).
+  !> Permutation that sorts `key`; equal keys keep their order (merge sort).
   pure function sorted_order(key) result(order)
     integer, intent(in) :: key(:)   !! in any order
     integer, allocatable :: order(:), merged(:)
-    integer, parameter :: run = 8   ! so many are put in order by insertion
+    integer, parameter :: run = 8   ! length of runs that are sorted by insertion
     integer :: n, width, left, i, j, k
 
     n = size(key)
@@ -48,7 +48,7 @@ contains
     end do
   end function sorted_order
 
-  !> Merge two runs that are in order, from `left` and from `middle` on; what follows begins at `right`.
+  !> Merge two sorted runs, which begin at `left` and `middle`; the next run begins at `right`.
   pure subroutine merge_runs(key, order, left, middle, right, merged)
     integer, intent(in) :: key(:), order(:), left, middle, right
     integer, intent(inout) :: merged(:)
@@ -70,8 +70,8 @@ contains
     end do
   end subroutine merge_runs
 
-  !> Rearrange items so that no key of the first half is above any of the second; the first half has n/2,
-  !! rounded down (Hoare's selection).
+  !> Rearrange items so that no key of the first half exceeds any key of the second; the first half has n/2
+  !! items, rounded down (Hoare's selection).
   pure subroutine halve(key, item)
     real(wp), intent(in) :: key(:)          !! [n]
     integer, intent(inout) :: item(:)       !! [n]
@@ -111,7 +111,7 @@ contains
     end do
   end subroutine halve
 
-  !> Index of a list of ids; of equal ids the first is the one found.
+  !> Index of a list of ids. Of equal ids, the first is found.
   pure function new_id_index(ids) result(index)
     integer, intent(in) :: ids(:)   !! in any order
     type(id_index) :: index
@@ -125,31 +125,32 @@ contains
     index%key = ids(index%position)
   end function new_id_index
 
-  !> Position of `id` in the original list; 0 where it is absent.
+  !> Position of `id` in the list; 0 if it is not there.
   elemental integer function find(self, id) result(position)
     class(id_index), intent(in) :: self
-    integer, intent(in) :: id   !! to look for
+    integer, intent(in) :: id   !! id to be found
     integer :: at, n
 
     position = 0
     n = size(self%key)
     if (n == 0) return
     if (id < self%key(1) .or. id > self%key(n)) return
-    at = min(id - self%key(1) + 1, n)   ! its place if no id before it is left out, as is mostly so
+    at = min(id - self%key(1) + 1, n)   ! its position if no id before it is missing: the usual case
     if (self%key(at) /= id) at = first_not_below(self%key, id)
     if (self%key(at) == id) position = self%position(at)
   end function find
 
-  !> Positions of all ids from `first` to `last`, in ascending order of id.
+  !> Positions of all ids between `first` and `last`, in ascending order of id.
   pure function within(self, first, last) result(positions)
     class(id_index), intent(in) :: self
-    integer, intent(in) :: first, last   !! ids, which need not be in the list
+    integer, intent(in) :: first, last   !! need not be in the list
     integer, allocatable :: positions(:)
 
     positions = self%position(first_not_below(self%key, first):first_not_below(self%key, last + 1) - 1)
   end function within
 
-  !> The first place in the ascending list `key` that is not below `id` (size + 1: none).
+  !> First position in the ascending list `key` whose value is at least `id`; size + 1 if there is no such
+  !! value.
   pure integer function first_not_below(key, id) result(low)
     integer, intent(in) :: key(:), id
     integer :: middle, high

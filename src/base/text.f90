@@ -1,4 +1,4 @@
-!> Small conversions between numbers and text.
+!> Conversions between numbers and text.
 module epcont_base_text
   use epcont_base_kinds, only: i8, wp
   implicit none
@@ -14,7 +14,7 @@ module epcont_base_text
 
 contains
 
-  !> `string` with the letters a-z made capital.
+  !> `string` in upper case.
   pure function upper(string) result(capital)
     character(len=*), intent(in) :: string   !! any
     character(len=len(string)) :: capital
@@ -51,10 +51,10 @@ contains
     if (number < 0) text = '-'//text
   end function text_of_long
 
-  !> A real as a format has it, without blanks around it.
+  !> A real in a given format, without leading and trailing blanks.
   pure function formatted(form, number) result(text)
     character(len=*), intent(in) :: form   !! the format, such as `(f20.3)`
-    real(wp), intent(in) :: number         !! any that it has room for
+    real(wp), intent(in) :: number         !! must fit the format
     character(len=:), allocatable :: text
     character(len=24) :: buffer
 
@@ -78,12 +78,12 @@ contains
     end if
   end function short_real
 
-  !> A name as it may be printed: control characters, which would move the cursor, colour the screen or feign
-  !! a line, as \x1B.
+  !> A name for printing: control characters, which could move the cursor, change colours or imitate a line,
+  !! become \x1B.
   pure function shown(name) result(text)
     character(len=*), intent(in) :: name   !! any bytes
     character(len=:), allocatable :: text
-    !> in UTF-8 the controls from 128 to 159 begin with a byte of 194
+    !> In UTF-8 the controls from 128 to 159 begin with a byte of 194
     integer, parameter :: delete = 127, first_of_c1 = 194
     character(len=2) :: code
     integer :: byte(0:len(name) + 1), i
@@ -104,7 +104,7 @@ contains
 
   !> `1 pair`, `2 pairs`.
   pure function plural(count, noun) result(text)
-    integer, intent(in) :: count   !! how many
+    integer, intent(in) :: count
     character(len=*), intent(in) :: noun   !! in the singular
     character(len=:), allocatable :: text
 

@@ -1,4 +1,4 @@
-!> The bulk data: each card checked field by field against the catalogue, and stored in its table.
+!> Bulk data: check each card field by field against the catalogue, and store it in its table.
 module epcont_deck_bulk
   use epcont_base_diagnostic, only: diagnostics
   use epcont_base_incidence, only: incidence, new_incidence
@@ -25,20 +25,20 @@ module epcont_deck_bulk
 
 contains
 
-  !> Read the cards from line `first` on.
+  !> Read the cards, beginning with line `first`.
   subroutine read_bulk(lines, first, heated, table, faults)
     type(source), intent(in) :: lines   !! of the deck
-    integer, intent(in) :: first                              !! the first line that is not of case control
+    integer, intent(in) :: first                              !! first line after case control
     logical, intent(in) :: heated                             !! temperatures have an effect
-    type(card_table), allocatable, intent(out) :: table(:)    !! the cards of each kind [card_kinds]
+    type(card_table), allocatable, intent(out) :: table(:)    !! cards of each kind [card_kinds]
     type(diagnostics), intent(inout) :: faults   !! errors and notes are added
     type(card_entry) :: entry(card_kinds)
     type(card_fields) :: card
     type(field_entry), allocatable :: parameter_entry(:)
     character(len=8) :: names(card_kinds)
-    integer, allocatable :: kind(:, :)   ! of the card that begins on each line [1, lines]
-    type(incidence) :: begun             ! lines on which those of each kind begin
-    integer :: next(card_kinds)          ! cards of each that the next line may begin
+    integer, allocatable :: kind(:, :)   ! kind of the card that begins on each line [1, lines]
+    type(incidence) :: begun             ! lines on which the cards of each kind begin
+    integer :: next(card_kinds)          ! for each kind, the card that the next line may begin
     integer :: errors, k, line
 
     entry = catalogue()
@@ -78,7 +78,7 @@ contains
 
   contains
 
-    !> Mark the fields that have no effect because the deck has none of certain cards.
+    !> Mark the fields that have no effect because the deck has no card of certain names.
     pure subroutine note_without_cards(field)
       type(field_entry), intent(inout) :: field(:)
       integer :: i, k
@@ -113,7 +113,7 @@ contains
         end if
         is_first = .false.
         text = lines%text(line%first:min(line%last, line%first + 7))
-        if (line%special <= line%last) then   ! with a comma the name may be longer
+        if (line%special <= line%last) then   ! with a comma, the name may be longer
           found = kind_of(names, lines%text(line%first:line%last))
           before = ''
         else if (text /= before) then
@@ -168,7 +168,8 @@ contains
     call faults%add_error(card%place(0), 'unknown card '//name, remedy)
   end subroutine refuse_name
 
-  !> Find the PARAM and its possible values: any word if the name is malformed; an unknown name is an error.
+  !> Find the PARAM and its possible values. A malformed name gets any word as its value; an unknown name is
+  !! an error.
   subroutine choose_parameter(card, parameter_entry, value_entry, faults)
     type(card_fields), intent(in) :: card
     type(field_entry), intent(in) :: parameter_entry(:)
@@ -200,7 +201,8 @@ contains
     end if
   end subroutine choose_parameter
 
-  !> ` without GRAV or RFORCE`: cards without which a field has no effect; empty if they do not matter.
+  !> ` without GRAV or RFORCE`: cards without which a field has no effect; empty if the field does not depend
+  !! on cards.
   pure function without(field) result(text)
     type(field_entry), intent(in) :: field
     character(len=:), allocatable :: text
@@ -215,7 +217,7 @@ contains
     text = ' without '//listed(text)
   end function without
 
-  !> List once each field that was filled and has no effect.
+  !> Report once each field that is filled but has no effect.
   subroutine note_fields(lines, cards, faults)
     type(source), intent(in) :: lines
     type(card_table), intent(in) :: cards

@@ -1,4 +1,4 @@
-!> Physical lines to one card: its name and its fields, each with the columns where it stands.
+!> Assemble the physical lines of a card: its name and its fields, each with its columns.
 !>
 !> Small field: a name and eight fields of 8 columns. Large field (`*` behind the name): four of 16
 !> columns, two lines to a row. Free field: commas. All may be mixed in one card:
@@ -21,19 +21,19 @@ module epcont_deck_card
     longest_fixed = 80, &   !! columns of a fixed line
     longest_free = 256      !! columns of a free line
 
-  !> One data field of a card.
+  !> Data field of a card.
   type :: card_slot
     integer :: first = 1, last = 0   !! the value in the text of the card; last < first: blank
     type(place_type) :: place        !! the whole field
   end type card_slot
 
-  !> The fields of one card. A slot is a data field: slots 1 to 8 are the fields 2 to 9, slots 9 to 16 the
-  !> fields 12 to 19, and so on.
+  !> Fields of one card. Slots number the data fields: slots 1 to 8 are the fields 2 to 9, slots 9 to 16 the
+  !! fields 12 to 19, and so on.
   type :: card_fields
-    character(len=:), allocatable :: text       !! its lines, one behind the other
-    integer :: name_first = 1, name_last = 0    !! the name in the text, without `*`
+    character(len=:), allocatable :: text       !! its lines, joined
+    integer :: name_first = 1, name_last = 0    !! name in the text, without `*`
     integer :: count = 0                        !! slots: eight for each row
-    type(card_slot), allocatable :: slot(:)     !! with a blank one behind the last [count + 1 or more]
+    type(card_slot), allocatable :: slot(:)     !! with a blank slot after the last [count + 1 or more]
     logical :: sound = .true.                   !! the lines can be cut into fields
     type(place_type), private :: name_place
   contains
@@ -42,14 +42,14 @@ module epcont_deck_card
     procedure :: place
   end type card_fields
 
-  !> The line of a card that is being cut.
+  !> Line of a card that is being cut.
   type :: line_state
-    integer :: at                      !! which line
-    integer :: before = 0, length = 0  !! characters of the card's text before it, and of it
-    integer :: comma                   !! column of its first comma; 0: fields of fixed width
-    integer :: first_slot, fields      !! slots on it, 8 or 4
-    logical :: half_open = .false.     !! the last line was the first half of a large-field row
-    integer :: mark          !! in the text: behind the fields of the last line, where its `+A` has the A
+    integer :: at                      !! number of the line
+    integer :: before = 0, length = 0  !! characters of the card's text before this line, and in this line
+    integer :: comma                   !! column of its first comma; 0 if its fields have fixed width
+    integer :: first_slot, fields      !! first slot, and number of slots (8 or 4)
+    logical :: half_open = .false.     !! the previous line was the first half of a large-field row
+    integer :: mark   !! position in the text after the previous line's fields: its mark `+A` has the A here
   end type line_state
 
 contains
@@ -57,9 +57,9 @@ contains
   !> Collect the card that begins at `line`, which is not blank, with its continuations.
   subroutine gather(lines, line, card, faults)
     type(source), intent(in) :: lines   !! of the deck
-    integer, intent(in) :: line   !! where it begins
-    type(card_fields), intent(inout) :: card   !! its arrays are used again
-    type(diagnostics), intent(inout) :: faults   !! of form; they are added
+    integer, intent(in) :: line   !! first line of the card
+    type(card_fields), intent(inout) :: card   !! its arrays are reused
+    type(diagnostics), intent(inout) :: faults   !! errors of form are added
     type(line_state) :: now
     integer :: at
 
@@ -82,12 +82,12 @@ contains
   !> Add the fields of one line.
   subroutine add_line(lines, is_first, card, now, faults)
     type(source), intent(in) :: lines
-    logical, intent(in) :: is_first   !! of the card
+    logical, intent(in) :: is_first   !! first line of the card
     type(card_fields), intent(inout) :: card
     type(line_state), intent(inout) :: now
     type(diagnostics), intent(inout) :: faults
     logical :: large
-    character(len=width) :: own   ! mark, without its `+`
+    character(len=width) :: own   ! continuation mark, without its `+`
 
     associate (text => lines%line(now%at))
       now%before = now%before + now%length
@@ -103,7 +103,7 @@ contains
       card%name_place = place_type(now%at, card%name_first, max(card%name_first, card%name_last))
     else
       large = card%text(now%before + 1:now%before + 1) == '*'
-      if (now%mark <= now%before) then   ! decks may be sorted
+      if (now%mark <= now%before) then   ! nothing to compare: decks may be sorted
         own = card%text(now%before + 2:now%before + min(merge(now%comma - 1, width, now%comma > 0), &
                                                         now%length))
         if (own /= '' .and. own /= card%text(now%mark:now%before)) &
@@ -122,7 +122,7 @@ contains
     end if
   end subroutine add_line
 
-  !> Look through a line: its first comma, and what may not be there.
+  !> Inspect a line: find its first comma, and report forbidden characters.
   subroutine inspect(lines, card, now, faults)
     type(source), intent(in) :: lines
     type(card_fields), intent(inout) :: card
@@ -137,7 +137,7 @@ contains
       code = iachar(lines%text(k:k))
       column = k - lines%line(now%at)%first + 1
       if (code == 9) then
-        if (now%comma > 0) cycle   ! as a blank: columns do not count
+        if (now%comma > 0) cycle   ! allowed like a blank: columns do not count
         call refuse(card, now%at, column, column, 'a tab in column '//text_of(column), &
                     'blanks: a tab has no width in columns; or commas', faults)
         return
@@ -154,10 +154,10 @@ contains
                   'the line goes on beyond column '//text_of(longest), 'nothing here', faults)
   end subroutine inspect
 
-  !> The line cannot be cut into fields.
+  !> Report a line that cannot be cut into fields.
   subroutine refuse(card, at, first, last, what, remedy, faults)
     type(card_fields), intent(inout) :: card
-    integer, intent(in) :: at            !! the line
+    integer, intent(in) :: at            !! number of the line
     integer, intent(in) :: first, last   !! columns
     character(len=*), intent(in) :: what, remedy
     type(diagnostics), intent(inout) :: faults
@@ -166,8 +166,8 @@ contains
     call faults%add_error(place_type(at, first, last), what, remedy)
   end subroutine refuse
 
-  !> Slots for the fields of a line: a new row of eight, or the second half of a large-field row. They are
-  !! blank, and stand behind the line's end until it is cut.
+  !> Add slots for the fields of a line: a new row of eight, or the second half of a large-field row. They are
+  !! blank, and lie after the end of the line until it is cut.
   subroutine open_slots(large, card, now)
     logical, intent(in) :: large
     type(card_fields), intent(inout) :: card
@@ -182,7 +182,7 @@ contains
       card%count = card%count + fields_a_line
     end if
     if (card%count >= size(card%slot)) card%slot = [card%slot, card%slot]
-    if (now%half_open .or. now%comma > 0) &   ! all other slots are cut, be it behind the line's end
+    if (now%half_open .or. now%comma > 0) &   ! all other slots are cut, even after the end of the line
       card%slot(now%first_slot:card%count) = card_slot(place=place_type(now%at, now%length + 1, &
                                                                         now%length + 1))
     card%slot(card%count + 1)%last = 0
@@ -205,7 +205,7 @@ contains
     end do
   end subroutine cut_fixed
 
-  !> Cut a line at its commas. Behind the data fields only a continuation mark may stand.
+  !> Cut a line at its commas. Only a continuation mark may follow the data fields.
   subroutine cut_free(now, card, faults)
     type(line_state), intent(in) :: now
     type(card_fields), intent(inout) :: card
@@ -234,9 +234,9 @@ contains
     end do
   end subroutine cut_free
 
-  !> Is the line a continuation: its first field blank, `+...` or `*...`?
+  !> Is the line a continuation: does it begin with a blank field, `+...` or `*...`?
   pure logical function continues(text)
-    character(len=*), intent(in) :: text   !! the line, which is not blank
+    character(len=*), intent(in) :: text   !! line that is not blank
     integer :: at
 
     continues = text(1:1) == '+' .or. text(1:1) == '*'
@@ -247,12 +247,12 @@ contains
     continues = at > width .or. text(at:at) == ','
   end function continues
 
-  !> The name of a card in its first line; a `*` behind it means large fields.
+  !> Find the name of a card in its first line; a `*` after the name means large fields.
   pure subroutine find_name(text, comma, first, last, large)
-    character(len=*), intent(in) :: text     !! the line
-    integer, intent(in) :: comma             !! the first; 0: none
-    integer, intent(out) :: first, last      !! the name, without `*`
-    logical, intent(out) :: large   !! there is a `*` behind it
+    character(len=*), intent(in) :: text     !! first line
+    integer, intent(in) :: comma             !! column of the first comma; 0 if there is no comma
+    integer, intent(out) :: first, last      !! range of the name, without `*`
+    logical, intent(out) :: large   !! a `*` follows the name
 
     first = 1
     last = min(width, len(text))
@@ -265,8 +265,8 @@ contains
     call trim_blanks(text, first, last)
   end subroutine find_name
 
-  !> Move `from` and `to` inwards over blanks and tabs. These are compared by their codes: a character
-  !! compared with a blank becomes a call of len_trim, which for so few characters costs more than the loop.
+  !> Move `from` and `to` inwards over blanks and tabs. Character codes are compared, because comparing a
+  !! character with a blank becomes a call of len_trim, which costs more than the loop.
   pure subroutine trim_blanks(text, from, to)
     character(len=*), intent(in) :: text
     integer, intent(inout) :: from, to
@@ -275,35 +275,35 @@ contains
       if (iachar(text(to:to)) > iachar(' ')) exit
       to = to - 1
     end do
-    if (iachar(text(from:from)) > iachar(' ')) return   ! mostly so
+    if (iachar(text(from:from)) > iachar(' ')) return   ! the usual case
     do while (from < to)
       if (iachar(text(from:from)) > iachar(' ')) exit
       from = from + 1
     end do
   end subroutine trim_blanks
 
-  !> Is there anything in a slot?
+  !> Is a slot filled?
   pure logical function filled(self, slot)
     class(card_fields), intent(in) :: self
-    integer, intent(in) :: slot   !! which field
+    integer, intent(in) :: slot
 
     filled = .false.
     if (slot <= self%count) filled = self%slot(slot)%last >= self%slot(slot)%first
   end function filled
 
-  !> Whether a slot is a large field of a fixed line: sixteen columns.
+  !> Is a slot a large field of a fixed line, with 16 columns?
   pure logical function is_large(self, slot)
     class(card_fields), intent(in) :: self
-    integer, intent(in) :: slot   !! which field
+    integer, intent(in) :: slot
 
     is_large = self%slot(slot)%place%last - self%slot(slot)%place%first == 2*width - 1
   end function is_large
 
-  !> The columns of a slot: those of the whole field; of the name for slot 0 and where the card has no such
-  !! line; behind the line's end where it does not say anything of the slot.
+  !> Columns of a slot: those of the whole field; those of the name if the slot is 0 or the card has no line
+  !! for it; those after the end of the line if the line ends before the slot.
   pure type(place_type) function place(self, slot)
     class(card_fields), intent(in) :: self
-    integer, intent(in) :: slot   !! which field; 0: the name
+    integer, intent(in) :: slot   !! 0 for the name
 
     place = self%name_place
     if (slot > 0 .and. slot <= self%count) place = self%slot(slot)%place

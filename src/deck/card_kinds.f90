@@ -1,5 +1,4 @@
-!> The kinds of cards, by their place in the catalogue and in the tables of a deck. Listings count them in
-!> this order.
+!> Numbers of the cards in the catalogue and in the tables of a deck. Listings count cards in this order.
 module epcont_deck_card_kinds
   implicit none
   private
@@ -12,5 +11,5 @@ module epcont_deck_card_kinds
     card_bconp = 24, card_cquad8 = 25, card_load = 26, card_spcd = 27, card_temp = 28, &
     card_tempd = 29, card_grav = 30, card_rforce = 31, card_moment = 32, card_mpc = 33, card_mpcadd = 34, &
     card_celas1 = 35, card_celas2 = 36, card_pelas = 37, card_nlparm = 38, &
-    card_kinds = 38   !! how many there are
+    card_kinds = 38   !! number of cards
 end module epcont_deck_card_kinds

@@ -1,5 +1,5 @@
-!> One card, field by field, into its table. Behind its fields there may be a list: of ids, `G1 G2 ..`, with
-!> `G1 THRU G2` and `G1 THRU G2 BY step` where the card allows it; or of records, `X1 Y1 X2 Y2 ..`.
+!> Read a card, field by field, into its table. A list may follow its fields: ids `G1 G2 ..`, with `G1 THRU
+!> G2` and `G1 THRU G2 BY step` if the card allows it; or records `X1 Y1 X2 Y2 ..`.
 module epcont_deck_card_reader
   use epcont_base_diagnostic, only: diagnostics
   use epcont_base_kinds, only: i8, wp
@@ -14,35 +14,35 @@ module epcont_deck_card_reader
   private
   public :: read_card
 
-  !> What lists of ids hold.
+  !> Elements of lists of ids.
   type(field_entry), parameter :: &
     id = field_entry(kind=kind_integer, lowest=1.0_wp, highest=real(largest_id, wp))
 
-  !> Faults that are not of form, beside the outcomes of a scan.
+  !> Errors of range, in addition to the outcomes of a scan.
   integer, parameter :: out_of_range = -1, out_of_reach = -2
-  !> What fields hold, by their kinds.
+  !> Contents of fields, by their kinds.
   character(len=*), parameter :: noun(4) = [character(len=20) :: &
     'a whole number', 'a real number', 'a list of directions', 'a word']
 
-  !> What a field says. (Not initialised: that would take longer than reading it.)
+  !> Value of a field. It is not initialised, because that would take longer than reading it.
   type :: field_value
     real(wp) :: number
-    character(len=8) :: word   !! in capitals
-    integer :: outcome         !! `scan_sound`, or what is wrong
+    character(len=8) :: word   !! in upper case
+    integer :: outcome         !! `scan_sound`, or the error
   end type field_value
 
 contains
 
   !> Read a card into its row of a table.
   subroutine read_card(card, table, row, faults)
-    type(card_fields), intent(in) :: card        !! its fields
-    type(card_table), intent(inout) :: table     !! those of its kind
-    integer, intent(in) :: row                   !! which of them
-    type(diagnostics), intent(inout) :: faults   !! what is wrong is added to them
+    type(card_fields), intent(in) :: card        !! fields of the card
+    type(card_table), intent(inout) :: table     !! table of cards with its name
+    integer, intent(in) :: row                   !! row of the card
+    type(diagnostics), intent(inout) :: faults   !! errors are added
     integer :: slot
 
     do slot = 1, size(table%entry%field)
-      associate (at => card%slot(min(slot, card%count + 1)))   ! the one behind the last is blank
+      associate (at => card%slot(min(slot, card%count + 1)))   ! the slot after the last is blank
         if (at%last < at%first) then
           call take_blank()
         else if (table%entry%field(slot)%kind == kind_blank) then
@@ -64,7 +64,7 @@ contains
 
   contains
 
-    !> A field that the catalogue does not know must be blank.
+    !> Report a filled field that the catalogue does not know.
     subroutine refuse_surplus()
       character(len=:), allocatable :: remedy
 
@@ -74,7 +74,7 @@ contains
       call refuse(card, table, row, slot, 'must be blank', remedy, faults)
     end subroutine refuse_surplus
 
-    !> A blank field has its default, or the value of another; some may not be blank.
+    !> Give a blank field its default, or the value of another field; report it if it may not be blank.
     subroutine take_blank()
 
       associate (field => table%entry%field(slot))
@@ -97,7 +97,7 @@ contains
     end subroutine take_value
   end subroutine read_card
 
-  !> A field is at fault: `GRID 17: field 4 (X1) is ...`.
+  !> Report an error in a field: `GRID 17: field 4 (X1) is ...`.
   subroutine refuse(card, table, row, slot, what, remedy, faults)
     type(card_fields), intent(in) :: card
     type(card_table), intent(in) :: table
@@ -109,12 +109,12 @@ contains
                           table%entry%field_text(slot)//' '//what, remedy)
   end subroutine refuse
 
-  !> The value of a field; a blank one is malformed.
+  !> Read the value of a field; a blank one is malformed.
   pure subroutine read_value(card, slot, entry, value)
     type(card_fields), intent(in) :: card
-    integer, intent(in) :: slot               !! which field
-    type(field_entry), intent(in) :: entry    !! what it may hold
-    type(field_value), intent(out) :: value   !! what it says
+    integer, intent(in) :: slot               !! slot of the field
+    type(field_entry), intent(in) :: entry    !! allowed contents
+    type(field_value), intent(out) :: value   !! value that was read
     integer(i8) :: whole
 
     value%outcome = scan_sound
@@ -145,7 +145,7 @@ contains
       else if (number < entry%lowest .or. (entry%above_lowest .and. number <= entry%lowest) .or. &
                number > entry%highest .or. (entry%below_highest .and. number >= entry%highest)) then
         value%outcome = out_of_range
-      else if (entry%kind == kind_real .and. entry%used) then   ! whole numbers are always within reach
+      else if (entry%kind == kind_real .and. entry%used) then   ! integers are always within reach
         if (abs(number) > farthest .or. (number /= 0.0_wp .and. abs(number) < entry%least)) &
           value%outcome = out_of_reach
       end if
@@ -156,7 +156,7 @@ contains
   logical function is_word(card, slot, word)
     type(card_fields), intent(in) :: card
     integer, intent(in) :: slot
-    character(len=*), intent(in) :: word     !! in capitals
+    character(len=*), intent(in) :: word     !! in upper case
 
     is_word = .false.
     if (.not. card%filled(slot)) return
@@ -165,12 +165,12 @@ contains
     end associate
   end function is_word
 
-  !> Read a field; where it is blank, or cannot be taken, say why.
+  !> Read a field; report an error if it is blank or not accepted.
   subroutine read_slot(card, table, row, slot, entry, value, faults)
     type(card_fields), intent(in) :: card
     type(card_table), intent(in) :: table
     integer, intent(in) :: row, slot
-    type(field_entry), intent(in) :: entry    !! what it may hold
+    type(field_entry), intent(in) :: entry    !! allowed contents
     type(field_value), intent(out) :: value
     type(diagnostics), intent(inout) :: faults
     character(len=:), allocatable :: what, remedy
@@ -183,7 +183,7 @@ contains
     call refuse(card, table, row, slot, what, remedy, faults)
   end subroutine read_slot
 
-  !> The ids at the end of a card, one at least.
+  !> Read the ids at the end of a card, at least one.
   subroutine read_ids(card, row, table, faults)
     type(card_fields), intent(in) :: card
     integer, intent(in) :: row
@@ -200,11 +200,11 @@ contains
     end do
   end subroutine read_ids
 
-  !> One id, or a range of them.
+  !> Read one id, or a range of ids.
   subroutine read_range(card, row, slot, table, faults)
     type(card_fields), intent(in) :: card
     integer, intent(in) :: row
-    integer, intent(inout) :: slot   !! the first of the range, then its last
+    integer, intent(inout) :: slot   !! slot of the first id of the range; on exit that of its last
     type(card_table), intent(inout) :: table
     type(diagnostics), intent(inout) :: faults
     type(field_value) :: value
@@ -232,7 +232,8 @@ contains
     call table%add_item(row, item)
   end subroutine read_range
 
-  !> The step of a range: 1 towards its end, or as `BY` behind it says; `slot` is then that of the step.
+  !> Read the step of a range: 1 towards its end, or the number after `BY`; `slot` is then the slot of the
+  !! step.
   subroutine read_step(card, row, slot, item, table, faults)
     type(card_fields), intent(in) :: card
     integer, intent(in) :: row
@@ -261,8 +262,8 @@ contains
     end if
   end subroutine read_step
 
-  !> Records, one at least. A fault in one of them ends the list: what follows it would be taken for the
-  !! wrong field.
+  !> Read records, at least one. The list ends at the first error, because the following values would be read
+  !! as the wrong fields.
   subroutine read_records(card, row, table, faults)
     type(card_fields), intent(in) :: card
     integer, intent(in) :: row
@@ -312,12 +313,12 @@ contains
     end if
   end function at_end
 
-  !> Read a field of a record. A blank one has its default, if there is one.
+  !> Read a field of a record. A blank field has its default, if it has one.
   subroutine read_part(card, table, row, slot, entry, value, faults)
     type(card_fields), intent(in) :: card
     type(card_table), intent(in) :: table
     integer, intent(in) :: row, slot
-    type(field_entry), intent(in) :: entry   !! what it may hold
+    type(field_entry), intent(in) :: entry   !! allowed contents
     type(field_value), intent(out) :: value
     type(diagnostics), intent(inout) :: faults
     character(len=:), allocatable :: remedy
@@ -333,11 +334,11 @@ contains
     end if
   end subroutine read_part
 
-  !> Say why a value cannot be taken, and which would be right.
+  !> Describe the error of a value, and the allowed values.
   subroutine explain(entry, value, text, what, remedy)
-    type(field_entry), intent(in) :: entry    !! what the field may hold
+    type(field_entry), intent(in) :: entry    !! allowed contents
     type(field_value), intent(in) :: value
-    character(len=*), intent(in) :: text      !! of the field
+    character(len=*), intent(in) :: text      !! text of the field
     character(len=:), allocatable, intent(out) :: what, remedy
     integer :: last
 
@@ -345,7 +346,7 @@ contains
     select case (value%outcome)
     case (scan_no_point)
       what = 'is not a real number'
-      last = verify(text(2:)//'.', '0123456789')   ! of its digits
+      last = verify(text(2:)//'.', '0123456789')   ! last of its digits
       remedy = 'a real needs a decimal point: '//text(:last)//'.'//text(last + 1:)
       if (last == len(text)) remedy = remedy//'0'
     case (scan_too_large)

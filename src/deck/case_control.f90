@@ -1,5 +1,5 @@
-!> The statements before BEGIN BULK: which load cases there are, which sets each uses, titles, and what output
-!> is wanted. What stands before the first SUBCASE is said for all of them.
+!> Case control: the statements before BEGIN BULK. They name the load cases, their sets, titles and output.
+!> Statements before the first SUBCASE apply to all load cases.
 module epcont_deck_case_control
   use epcont_base_diagnostic, only: diagnostics, place_type
   use epcont_base_kinds, only: i8
@@ -12,61 +12,61 @@ module epcont_deck_case_control
   private
   public :: case_control, set_choice, subcase_control, read_case_control
 
-  !> The set that a statement chooses; 0: no choice.
+  !> Set that a statement chooses; 0 if it chooses no set.
   type :: set_choice
     integer :: id = 0
     type(place_type) :: place
   end type set_choice
 
-  !> What the statements say of a load case.
+  !> Statements of a load case.
   type :: subcase_control
-    integer :: id = 0                                        !! 0: the deck has no SUBCASE
-    type(place_type) :: place                                !! of its SUBCASE
-    character(len=:), allocatable :: subtitle, label         !! empty where not given
+    integer :: id = 0                                        !! 0 if the deck has no SUBCASE
+    type(place_type) :: place                                !! columns of its SUBCASE
+    character(len=:), allocatable :: subtitle, label         !! empty if not given
     type(set_choice) :: spc, load, mpc, temperature, nlparm
-    type(set_choice) :: contact                              !! the only BCONP; 0: all; -1: none
-    logical :: displacement = .false., stress = .false., spcforces = .false.  !! tables wanted
+    type(set_choice) :: contact                              !! chosen BCONP; 0: all; -1: no contact
+    logical :: displacement = .false., stress = .false., spcforces = .false.  !! requested tables
   end type subcase_control
 
-  !> What the statements say.
+  !> All statements.
   type :: case_control
-    character(len=:), allocatable :: title                   !! empty where not given
-    type(subcase_control), allocatable :: subcase(:)         !! one at least
-    logical :: echo_unsorted = .false., echo_sorted = .false.   !! cards listed as they stand, by their names
+    character(len=:), allocatable :: title                   !! empty if not given
+    type(subcase_control), allocatable :: subcase(:)         !! at least one
+    logical :: echo_unsorted = .false., echo_sorted = .false.   !! list the cards as they are, sorted by name
   end type case_control
 
-  !> Their words. From the first on that a load case may have for itself, all are its own.
+  !> Keywords. Beginning with `first_own`, all may be given for a single load case.
   character(len=*), parameter, public :: keyword(17) = [character(len=12) :: &
     'SOL', 'CEND', 'TITLE', 'ECHO', 'CNTNLSUB', 'SUBCASE', 'SUBTITLE', 'LABEL', 'SPC', 'LOAD', 'MPC', &
     'BCONTACT', 'DISPLACEMENT', 'STRESS', 'SPCFORCES', 'NLPARM', 'TEMPERATURE']
   integer, parameter :: first_own = 7
-  !> Those of SOL that are static, linear or not.
+  !> Values of SOL that are static, linear or not.
   character(len=*), parameter :: static = &
     '  1 24 66 101 106 400 401 402 600 601 SESTATIC NLSTATIC '
-  !> Of these, those whose load cases are a sequence where CNTNLSUB does not say.
+  !> Values of SOL whose load cases are a sequence unless CNTNLSUB says otherwise.
   character(len=*), parameter :: sequential = ' 66 106 NLSTATIC '
 
-  !> One statement, cut into its parts. Columns count from the first of the line.
+  !> A statement, cut into its parts. Columns are counted in its line.
   type :: statement
-    character(len=:), allocatable :: word      !! in capitals
-    character(len=:), allocatable :: value     !! behind `=`, or behind the word
-    character(len=:), allocatable :: option    !! in parentheses between, with these; no blanks
-    type(place_type) :: word_place, option_place, value_place   !! of line 0: there is none
+    character(len=:), allocatable :: word      !! in upper case
+    character(len=:), allocatable :: value     !! text after `=`, or after the word
+    character(len=:), allocatable :: option    !! `(text)` between them, without blanks
+    type(place_type) :: word_place, option_place, value_place   !! line 0: absent
   end type statement
 
 contains
 
-  !> Read the statements up to BEGIN BULK. `bulk` is the first line behind it; without it, the whole file is
+  !> Read the statements before BEGIN BULK. `bulk` is the line after it. Without BEGIN BULK, the whole file is
   !! bulk data, and `bulk` is 1.
   subroutine read_case_control(lines, control, bulk, faults)
     type(source), intent(in) :: lines   !! of the deck
-    type(case_control), intent(out) :: control   !! what they say
-    integer, intent(out) :: bulk   !! the first line of bulk data
-    type(diagnostics), intent(inout) :: faults   !! what is wrong is added to them
+    type(case_control), intent(out) :: control   !! result
+    integer, intent(out) :: bulk   !! first line of bulk data
+    type(diagnostics), intent(inout) :: faults   !! errors are added
     logical :: stated(size(keyword))
     type(statement) :: parts
-    type(subcase_control) :: common, now   ! what is said before the first, and of that which lines are about
-    type(place_type) :: sequence     ! what makes a sequence of them; of line 0: nothing
+    type(subcase_control) :: common, now   ! statements before the first SUBCASE, and of the current load case
+    type(place_type) :: sequence     ! statement that makes them a sequence; line 0: none
     integer :: cases, line
 
     bulk = behind_begin_bulk(lines)
@@ -137,7 +137,7 @@ contains
         if (upper(parts%value) == 'ALL') now%contact%id = 0
         if (upper(parts%value) == 'NONE') now%contact%id = -1
       case ('ECHO')
-        ! Words with commas between, some with options: `SORT(EXCEPT GRID), PUNCH`.
+        ! Words with commas between them, some with options: `SORT(EXCEPT GRID), PUNCH`.
         words = ' '//upper(parts%value)
         control%echo_unsorted = index(words, 'UNSORT') + index(words, 'BOTH') > 0
         control%echo_sorted = index(words, ' SORT') + index(words, ',SORT') + index(words, 'BOTH') > 0
@@ -154,7 +154,7 @@ contains
       end select
     end subroutine take_statement
 
-    !> A load case: what was said before the first of all holds for it, too.
+    !> Begin a load case. Statements before the first SUBCASE apply to it too.
     subroutine begin_subcase()
       if (cases == 0) common = now
       if (cases > 0) control%subcase(cases) = now
@@ -168,7 +168,7 @@ contains
     end subroutine begin_subcase
   end subroutine read_case_control
 
-  !> A value that is missing, or cannot be taken.
+  !> Report a value that is missing or not accepted.
   subroutine refuse(parts, needed, which, remedy, faults)
     type(statement), intent(in) :: parts
     character(len=*), intent(in) :: needed, which, remedy
@@ -181,7 +181,7 @@ contains
     end if
   end subroutine refuse
 
-  !> The number that a statement says.
+  !> Read the number of a statement.
   subroutine take_number(parts, number, faults)
     type(statement), intent(in) :: parts
     integer, intent(inout) :: number
@@ -198,7 +198,7 @@ contains
     end if
   end subroutine take_number
 
-  !> The set of a statement such as `SPC = 1`.
+  !> Read the set of a statement such as `SPC = 1`.
   subroutine take_set(parts, set, faults)
     type(statement), intent(in) :: parts
     type(set_choice), intent(inout) :: set
@@ -208,7 +208,7 @@ contains
     call take_number(parts, set%id, faults)
   end subroutine take_set
 
-  !> Does a statement say ALL? Else it must say NONE.
+  !> Is the value ALL? Report an error if it is neither ALL nor NONE.
   logical function says_all(parts, faults)
     type(statement), intent(in) :: parts
     type(diagnostics), intent(inout) :: faults
@@ -218,7 +218,7 @@ contains
       call refuse(parts, 'a word', ' known here', 'ALL or NONE', faults)
   end function says_all
 
-  !> Temperatures that are no load.
+  !> Report a TEMPERATURE statement whose option is not LOAD.
   subroutine refuse_option(parts, faults)
     type(statement), intent(in) :: parts
     type(diagnostics), intent(inout) :: faults
@@ -230,7 +230,7 @@ contains
     call faults%add_error(parts%option_place, 'TEMPERATURE'//parts%option//' is not known here', remedy)
   end subroutine refuse_option
 
-  !> A statement must be known, and stand once; its options have no effect.
+  !> Check that a statement is known and given once; its options have no effect.
   subroutine check_word(now, faults, stated, parts)
     type(subcase_control), intent(in) :: now
     type(diagnostics), intent(inout) :: faults
@@ -266,7 +266,7 @@ contains
     is_subcase = len(parts%word) > 3 .and. index('SUBCASE', parts%word) == 1
   end function is_subcase
 
-  !> All keywords, with a blank between two of them.
+  !> All keywords, separated by blanks.
   pure function all_keywords() result(words)
     character(len=:), allocatable :: words
     integer :: k
@@ -277,7 +277,7 @@ contains
     end do
   end function all_keywords
 
-  !> The line behind BEGIN BULK; 1 where there is none.
+  !> Number of the line after BEGIN BULK; 1 if there is no such line.
   pure integer function behind_begin_bulk(lines) result(bulk)
     type(source), intent(in) :: lines
     character(len=:), allocatable :: text
@@ -297,7 +297,7 @@ contains
   !> Cut a line into word, option and value.
   pure type(statement) function cut(text, line) result(parts)
     character(len=*), intent(in) :: text
-    integer, intent(in) :: line   !! its number
+    integer, intent(in) :: line   !! number of the line
     integer :: at, first, k, last
 
     first = verify(text, ' ')

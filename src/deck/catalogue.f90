@@ -1,5 +1,5 @@
-!> THE table of cards and fields. The reader checks by it, and `epcont --cards` prints it: there is
-!> no other place that knows a column.
+!> Table of all cards and fields. The reader checks cards with it, and `epcont --cards` prints it. Columns are
+!> defined nowhere else.
 module epcont_deck_catalogue
   use epcont_deck_card_kinds, only: card_kinds
   use epcont_deck_entry, only: card_entry, field_entry, new_field
@@ -7,11 +7,10 @@ module epcont_deck_catalogue
   private
   public :: catalogue, parameters
 
-  !> All cards, in the order of `epcont_deck_card_kinds`: name and meaning of each, and under it its fields in
-  !! their order, fields 2 to 9, then 12 to 19, and so on, each as `new_field` takes it; the first so many may
-  !! be `like` those of a card before. Behind them there may be a list, of `ids`, some of which are `ranges`,
-  !! with `steps`, or of records, whose fields are there for `each`, all behind each other or
-  !! `two_a_line`; ENDT stands behind the last.
+  !> Cards in the order of `epcont_deck_card_kinds`: name and meaning. Under each card are its fields in their
+  !! order (fields 2 to 9, then 12 to 19, and so on), as `new_field` reads them; `like` copies the first
+  !! fields of an earlier card. A list may follow: `ids`, with `ranges` and `steps`; or records, whose fields
+  !! have the word `each`, one record after the other or `two_a_line`. ENDT follows the last record.
   character(len=*), parameter :: scene_cards(*) = [character(len=140) :: &
     'GRID: node', &
     '  ID; id; node', &
@@ -195,7 +194,7 @@ module epcont_deck_catalogue
     '  G7; id; between the third and the fourth', &
     '  G8; id; between the fourth and the first']
 
-  !> The rest of them: loads and ties.
+  !> Loads and ties.
   character(len=*), parameter :: load_cards(*) = [character(len=140) :: &
     'LOAD: sets of loads, each times a factor, under one id', &
     '  SID; id; set', &
@@ -289,7 +288,7 @@ module epcont_deck_catalogue
 
   character(len=*), parameter :: cards(*) = [scene_cards, load_cards]
 
-  !> All PARAMs: the field VALUE for each NAME.
+  !> PARAMs: the field VALUE for each NAME.
   character(len=*), parameter :: choices(*) = [character(len=180) :: &
     'PLANE; for=PSHELL word STRAIN STRESS; every PSHELL with blank MID2', &
     'RULE; for=CGAP/BCONP word AUTO CONRY JOINED; contact entry rule; default AUTO', &
@@ -326,7 +325,7 @@ module epcont_deck_catalogue
 
 contains
 
-  !> All cards, by their kinds.
+  !> All cards, in the order of their kinds.
   function catalogue() result(card)
     type(card_entry) :: card(card_kinds)
     type(field_entry) :: field

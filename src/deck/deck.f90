@@ -1,4 +1,4 @@
-!> A deck as the rest of the program sees it: what case control says, and a table of cards for each name.
+!> A deck for the rest of the program: its case control, and a table for each card name.
 module epcont_deck_deck
   use epcont_base_diagnostic, only: diagnostics, place_type
   use epcont_base_error, only: error_type
@@ -15,11 +15,11 @@ module epcont_deck_deck
   private
   public :: deck_type, card_table, read_deck
 
-  !> All that a deck says: titles, sets chosen and output wanted, as case control has it, and the cards.
+  !> Contents of a deck: titles, chosen sets and requested output (case control), and the cards.
   type, extends(case_control) :: deck_type
-    type(source) :: source                         !! its text
-    logical :: whole = .true.                      !! all files were read, to the end
-    type(card_table), allocatable :: card(:)  !! its cards, and what the catalogue says of them [card_kinds]
+    type(source) :: source                         !! text of the deck
+    logical :: whole = .true.                      !! all files were read to their ends
+    type(card_table), allocatable :: card(:)  !! cards by kind, with their catalogue entries [card_kinds]
   contains
     procedure :: place
     procedure :: parameter_row
@@ -30,12 +30,12 @@ module epcont_deck_deck
 
 contains
 
-  !> Read a deck. Faults in it are collected in `faults`; `error` is set where the file itself cannot be read.
+  !> Read a deck. `faults` collects its errors; `error` is set if the file cannot be read.
   subroutine read_deck(path, deck, faults, error)
-    character(len=*), intent(in) :: path   !! of the file
-    type(deck_type), intent(out) :: deck   !! what it says
-    type(diagnostics), intent(inout) :: faults   !! of the deck; they are added
-    type(error_type), allocatable, intent(out) :: error   !! where the file cannot be read
+    character(len=*), intent(in) :: path   !! path of the file
+    type(deck_type), intent(out) :: deck   !! contents
+    type(diagnostics), intent(inout) :: faults   !! findings about the deck are added
+    type(error_type), allocatable, intent(out) :: error   !! the file cannot be read
     integer :: bulk
 
     call read_source(path, deck%source, faults, error)
@@ -46,9 +46,10 @@ contains
     if (.not. deck%source%ended) call check_end(deck, faults)
   end subroutine read_deck
 
-  !> Without ENDDATA a deck looks cut off, unless its header counts the nodes and elements that were read.
+  !> Report a missing ENDDATA, because the deck may be cut off. If a header has the numbers of nodes and
+  !! elements that were read, this is a note.
   subroutine check_end(deck, faults)
-    type(deck_type), intent(inout) :: deck       !! what was read of it; it is not whole if it looks cut off
+    type(deck_type), intent(inout) :: deck       !! marked as incomplete if it looks cut off
     type(diagnostics), intent(inout) :: faults   !! an error or a note is added
     integer, parameter :: elements(*) = [card_ctria3, card_ctria6, card_cquad4, card_cquad8, card_ctrax3, &
                                          card_ctrax6, card_cbar, card_cgap, card_celas1, card_celas2]
@@ -66,13 +67,13 @@ contains
     end if
   end subroutine check_end
 
-  !> The numbers of nodes and elements in a header by pyNastran: comments such as `$pyNastran: nnodes=9`.
+  !> Read the numbers of nodes and elements in a header by pyNastran: comments such as `$pyNastran: nnodes=9`.
   subroutine read_header(lines, counts, place)
     type(source), intent(in) :: lines        !! of the deck
-    integer, intent(out) :: counts(2)        !! -1 if there is none
-    type(place_type), intent(out) :: place   !! of the last of them
+    integer, intent(out) :: counts(2)        !! -1 if absent
+    type(place_type), intent(out) :: place   !! columns of the last of them
     character(len=*), parameter :: key(2) = [character(len=10) :: 'NNODES=', 'NELEMENTS=']
-    integer, parameter :: longest = 80       ! line of a header
+    integer, parameter :: longest = 80       ! lines of a header
     character(len=:), allocatable :: text
     integer :: at, k, line, status
 
@@ -90,8 +91,8 @@ contains
     end do
   end subroutine read_header
 
-  !> The text, unless it is to be listed, and the fields of all cards but the parameters are done with: their
-  !! memory is free for what follows. How many cards there are remains known.
+  !> Free the memory of the text, unless it is to be listed, and of all cards except the parameters. The
+  !! numbers of cards remain known.
   pure subroutine forget_text(self)
     class(deck_type), intent(inout) :: self
     integer :: k
@@ -103,13 +104,13 @@ contains
     end do
   end subroutine forget_text
 
-  !> Where a field of a card stands; the card is cut into fields once more to find out. Items of lists, of
-  !! which a card may have ten thousands, have kept their places.
+  !> Columns of a field of a card. The card is cut into fields again to find them. Items of lists keep their
+  !! columns, because a card may have ten thousand items.
   type(place_type) function place(self, card, i, field)
     class(deck_type), intent(in) :: self
-    integer, intent(in) :: card   !! which table: card_grid, ...
-    integer, intent(in) :: i      !! which card of it
-    integer, intent(in) :: field  !! column in the table; 0: the name of the card; -k: item k of all its lists
+    integer, intent(in) :: card   !! table: card_grid, ...
+    integer, intent(in) :: i      !! row of the card
+    integer, intent(in) :: field  !! column; 0: name of the card; -k: item k of all its lists
     type(card_fields) :: fields
     type(diagnostics) :: unheard
 
@@ -121,18 +122,18 @@ contains
     end if
   end function place
 
-  !> The first PARAM card of a name; 0 where there is none.
+  !> Row of the first PARAM card of a name; 0 if there is no such card.
   pure integer function parameter_row(self, name) result(row)
     class(deck_type), intent(in) :: self
-    character(len=*), intent(in) :: name   !! of the parameter
+    character(len=*), intent(in) :: name   !! name of the parameter
 
     row = findloc(self%card(card_param)%word(1, :) == name, .true., dim=1)
   end function parameter_row
 
-  !> The word that a PARAM says; blank if it is at fault, or there is no such card.
+  !> Word of a PARAM; blank if the card has an error or does not exist.
   pure function parameter_word(self, name) result(word)
     class(deck_type), intent(in) :: self
-    character(len=*), intent(in) :: name   !! of the parameter
+    character(len=*), intent(in) :: name   !! name of the parameter
     character(len=8) :: word
     integer :: row
 
@@ -141,10 +142,10 @@ contains
     if (row > 0) word = self%card(card_param)%word(2, row)
   end function parameter_word
 
-  !> The number that a PARAM says, 0 if it is at fault; `default` where there is no such card.
+  !> Number of a PARAM; 0 if it has an error; `default` if there is no such card.
   pure real(wp) function parameter_value(self, name, default) result(value)
     class(deck_type), intent(in) :: self
-    character(len=*), intent(in) :: name   !! of the parameter
+    character(len=*), intent(in) :: name   !! name of the parameter
     real(wp), intent(in) :: default   !! the value without such a card
     integer :: row
 

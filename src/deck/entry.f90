@@ -1,4 +1,4 @@
-!> What the catalogue says of a card and of each of its fields.
+!> Catalogue entries of cards and of their fields.
 module epcont_deck_entry
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: formatted, text_of
@@ -11,54 +11,54 @@ module epcont_deck_entry
     kind_blank = 0, kind_integer = 1, kind_real = 2, kind_components = 3, kind_word = 4, kind_any = 5
   !> The largest id.
   integer, parameter, public :: largest_id = 99999999
-  !> Data fields on one line: numbers 2 to 9, then 12 to 19, and so on.
+  !> Data fields on one line: fields 2 to 9, then 12 to 19, and so on.
   integer, parameter, public :: fields_a_line = 8
 
-  !> Sizes of numbers that have an effect: at most `farthest`; where zero is none, at least `least_divisor`;
-  !! of what loads a scene (force, pressure, prescribed displacement, gap), zero or at least `least_cause`.
-  !! Then works are numbers, though they are squares of it over stiffnesses, areas and lengths of `farthest`,
-  !! and of what rounding leaves where loads cancel.
+  !> Magnitudes of numbers that have an effect. They are at most `farthest`. Numbers that may not be zero are
+  !! at least `least_divisor`. Loads of a model (force, pressure, prescribed displacement, gap) are zero or at
+  !! least `least_cause`. So the work of the loads is a finite number, although it is a square of loads over
+  !! stiffnesses, areas and lengths of `farthest`, or the rounding left by cancelling loads.
   real(wp), parameter, public :: farthest = 1.0e30_wp, least_divisor = 1.0e-30_wp, least_cause = 1.0e-60_wp
 
-  !> One field of a card, or one PARAM. `new_field` makes it.
+  !> A field of a card, or a PARAM, as made by `new_field`.
   type :: field_entry
     character(len=8) :: name = ''
-    integer :: kind = kind_blank       !! it must be blank
+    integer :: kind = kind_blank       !! default: must be blank
     character(len=120) :: meaning = ''
     character(len=8) :: unit = ''
-    logical :: used = .true.           !! false: noted, that is accepted without effect
-    real(wp) :: heard_to = huge(1.0_wp)   !! larger values are noted too
-    character(len=24) :: with_cards = ''  !! without one of these, with `/` between, it is noted; blank: any
-    logical :: required = .false.      !! may not be blank
-    integer :: with(2) = 0             !! may not be blank if the last (-1), the next (1) field is filled
-    integer :: same_as = 0             !! a blank means the value of the last field (-1)
-    real(wp) :: default = 0.0_wp       !! the value of a blank field
+    logical :: used = .true.           !! false: ignored, that is, accepted without effect
+    real(wp) :: heard_to = huge(1.0_wp)   !! larger values are ignored too
+    character(len=24) :: with_cards = ''  !! ignored without one of these cards (separated by `/`)
+    logical :: required = .false.      !! a blank field is an error
+    integer :: with(2) = 0             !! required if the previous (-1) or next (1) field is filled
+    integer :: same_as = 0             !! a blank field has the value of the previous field (-1)
+    real(wp) :: default = 0.0_wp       !! value of a blank field
     logical :: has_default = .false.   !! false: a blank has a meaning of its own
     real(wp) :: lowest = -huge(1.0_wp), highest = huge(1.0_wp)
     logical :: above_lowest = .false., below_highest = .false.  !! the limit itself is out of range
-    real(wp) :: least = 0.0_wp           !! least size, zero apart, of a number that has an effect
-    logical :: point_optional = .false.  !! in large field a real without a decimal point serves too
-    character(len=40) :: choices = ''    !! the words allowed, with blanks between; blank: any
-    character(len=60) :: reason = ''     !! why the upper limit is out of range, or why nothing but zero is in
-    integer :: times = 1                 !! so many fields like it follow each other
-    character(len=8) :: instead = ''     !! a value near the upper limit that would do
+    real(wp) :: least = 0.0_wp           !! smallest magnitude, except zero, of a number that has an effect
+    logical :: point_optional = .false.  !! a large-field real may lack its decimal point
+    character(len=40) :: choices = ''    !! allowed words, separated by blanks; blank: any word
+    character(len=60) :: reason = ''     !! why the upper limit is out of range, or why only zero is allowed
+    integer :: times = 1                 !! number of such fields in a row
+    character(len=8) :: instead = ''     !! a valid value near the upper limit
   contains
     procedure :: allowed
   end type field_entry
 
-  !> A card: its fields, and after them perhaps a list, of ids or of records, that is open at the end.
+  !> A card: its fields, and a list of ids or records that may follow them.
   type :: card_entry
     character(len=8) :: name = ''
     character(len=:), allocatable :: meaning
     type(field_entry), allocatable :: field(:)   !! in their order [slots]
-    integer :: list_slot = huge(1)               !! where the list begins; beyond all slots: there is none
-    logical :: has_ranges = .false.              !! the list may hold `G1 THRU G2`
-    logical :: has_steps = .false.               !! ranges may fall, or go on `BY` a step
-    character(len=:), allocatable :: list_name, list_meaning   !! of a list of ids
-    !> Or the list is of records, such as `X1 Y1 X2 Y2 ..`: their fields, and the word behind the last record
+    integer :: list_slot = huge(1)   !! first slot of the list; beyond all slots if there is no list
+    logical :: has_ranges = .false.              !! the list may contain `G1 THRU G2`
+    logical :: has_steps = .false.               !! ranges may decrease, or have a step (`BY`)
+    character(len=:), allocatable :: list_name, list_meaning   !! name and meaning of a list of ids
+    !> Fields of a record such as `X1 Y1 X2 Y2 ..`, and the word after the last record
     type(field_entry), allocatable :: record(:)
-    character(len=4) :: end_word = ''            !! blank: the end of the card
-    integer :: records_a_line = 0                !! blanks follow them there; 0: no line ends between them
+    character(len=4) :: end_word = ''            !! blank: the list ends with the card
+    integer :: records_a_line = 0   !! records on a line; 0: records may continue on the next line
   contains
     procedure :: field_name
     procedure :: field_text
@@ -67,18 +67,17 @@ module epcont_deck_entry
 
 contains
 
-  !> The n-th data field of a card is at the position `number_of(n)`: every tenth and eleventh hold
-  !! continuation marks.
+  !> Position of the n-th data field in a card. Positions 10, 11, 20, 21, ... hold continuation marks.
   elemental integer function number_of(slot)
-    integer, intent(in) :: slot   !! n
+    integer, intent(in) :: slot
 
     number_of = 10*((slot - 1)/fields_a_line) + mod(slot - 1, fields_a_line) + 2
   end function number_of
 
-  !> The name of the field in a slot; empty where it has none.
+  !> Name of the field in a slot; empty if it has no name.
   pure function field_name(self, slot) result(name)
     class(card_entry), intent(in) :: self
-    integer, intent(in) :: slot   !! which data field
+    integer, intent(in) :: slot
     character(len=:), allocatable :: name
     integer :: k, r
 
@@ -98,10 +97,10 @@ contains
     end if
   end function field_name
 
-  !> Where a record of the list begins.
+  !> First slot of a record of the list.
   pure integer function record_slot(self, record) result(slot)
     class(card_entry), intent(in) :: self
-    integer, intent(in) :: record   !! which one, from 1
+    integer, intent(in) :: record   !! number of the record, from 1
 
     associate (fields => size(self%record), n => self%records_a_line)
       slot = self%list_slot + (record - 1)*fields
@@ -109,29 +108,28 @@ contains
     end associate
   end function record_slot
 
-  !> The field in a slot as messages name it: `field 4 (X1)`.
+  !> Name of the field in a slot for messages: `field 4 (X1)`.
   pure function field_text(self, slot) result(text)
     class(card_entry), intent(in) :: self
-    integer, intent(in) :: slot   !! which data field
+    integer, intent(in) :: slot
     character(len=:), allocatable :: text
 
     text = 'field '//text_of(number_of(slot))
     if (len(self%field_name(slot)) > 0) text = text//' ('//self%field_name(slot)//')'
   end function field_text
 
-  !> A field from its line in the catalogue: `name; what it may hold; meaning [unit] | reason`. It may hold
-  !! an `id` (from 1 on), a `system` (0 or an id), a `whole` number, a `real`, `digits` (directions, from 1
-  !! to 6), a `word`, where some are listed one of these, or `any`thing; or it is `blank`. Behind that may
-  !! stand, in any order: limits (`from=`, `to=`, or `below=`, in place of which `instead=` would do),
-  !! `positive`, `only_zero` (0 or blank), `cause` (it loads the scene), `noted` (checked, without effect),
-  !! or so above `heard_to=`, or without one of the cards
-  !! `for=`, `point_optional`; what a blank means: `zero`, `default=`, or `as_last`, its
-  !! neighbour; and whether it may be blank: ids and digits may if they are `optional`, or where their
-  !! neighbour (`with_next`, `with_last`) is, numbers if they are not `needed`. So many like it follow each
-  !! other as `times=` says. Fields that are there for `each` record of a list are told by the catalogue.
+  !> Read a field from its line in the catalogue: `name; contents; meaning [unit] | reason`. Contents are an
+  !! `id` (at least 1), a `system` (0 or an id), a `whole` number, a `real`, `digits` (directions 1 to 6), a
+  !! `word` (one of the listed words, if there are any), `any`, or `blank`. Attributes follow in any order:
+  !! limits (`from=`, `to=`, or `below=`, with a valid value `instead=`); `positive`; `only_zero` (0 or
+  !! blank); `cause` (a load of the model); `noted` (checked but ignored; also above `heard_to=`, or without
+  !! one of the cards `for=`); `point_optional`. A blank means `zero`, `default=`, or the value of the
+  !! previous field (`as_last`). A blank is allowed for ids and digits if they are `optional` or their
+  !! neighbour (`with_next`, `with_last`) is blank, and for numbers unless they are `needed`. `times=` repeats
+  !! the field. The catalogue itself reads `each`.
   type(field_entry) function new_field(line) result(field)
-    character(len=*), intent(in) :: line   !! as above
-    character(len=48) :: form   ! its words that are still to be read
+    character(len=*), intent(in) :: line   !! line of the catalogue
+    character(len=48) :: form   ! words that are still to be read
     character(len=len(line)) :: rest
     character(len=:), allocatable :: word
     integer :: behind, first, second
@@ -157,10 +155,10 @@ contains
 
   contains
 
-    !> What a word says of the field.
+    !> Apply one word of the attributes.
     subroutine take_word()
       integer :: equals
-      real(wp) :: number   ! behind it
+      real(wp) :: number   ! number after the word
 
       equals = index(word//'=', '=')
       if (equals < len(word) .and. word(:equals - 1) /= 'for') read (word(equals + 1:), *) number
@@ -230,7 +228,7 @@ contains
     end subroutine take_word
   end function new_field
 
-  !> What the field may hold, in words: `a real above 0.0`.
+  !> Allowed values in words: `a real above 0.0`.
   pure function allowed(self) result(text)
     class(field_entry), intent(in) :: self
     character(len=:), allocatable :: text
@@ -271,7 +269,7 @@ contains
     end if
   end function real_range
 
-  !> A limit as it would be written in a deck.
+  !> A limit in the form of a deck.
   pure function decimal(number) result(text)
     real(wp), intent(in) :: number
     character(len=:), allocatable :: text
@@ -282,7 +280,7 @@ contains
     if (text(1:1) == '.') text = '0'//text
   end function decimal
 
-  !> `AUTO, CONRY or JOINED` of words with blanks between.
+  !> Join words: `AUTO, CONRY or JOINED`.
   pure function listed(words) result(text)
     character(len=*), intent(in) :: words
     character(len=:), allocatable :: text

@@ -1,6 +1,5 @@
-!> The characters of one field as a number or a word, strictly: scanned first, converted only then.
-!>
-!> A READ of unchecked text would take `12 34`, `/`, `1e400`, `nan` or ten digits without complaint.
+!> Convert the characters of a field to a number or a word. They are scanned strictly first, because READ
+!> would accept `12 34`, `/`, `1e400`, `nan` or ten digits.
 module epcont_deck_field
   use epcont_base_kinds, only: i8, wp
   use epcont_base_text, only: text_of, upper
@@ -8,43 +7,43 @@ module epcont_deck_field
   private
   public :: scan_integer, scan_real, scan_components, scan_word
 
-  !> What became of a scan.
+  !> Outcomes of a scan.
   integer, parameter, public :: &
     scan_sound = 0, &      !! a value
-    scan_malformed = 1, &  !! not of the kind asked for
-    scan_no_point = 2, &   !! would be a real, but for the decimal point
+    scan_malformed = 1, &  !! not of the requested kind
+    scan_no_point = 2, &   !! a real without its decimal point
     scan_too_large = 3, &  !! beyond the largest number
-    scan_too_small = 4, &  !! a real that is not zero, but nearer to it than the least normal one
+    scan_too_small = 4, &  !! a real that is not zero, but smaller than the smallest normal number
     scan_too_long = 5      !! a word of more than eight characters
 
-  !> From here on one more decimal digit would not certainly fit an integer of eight bytes: 18 digits do.
+  !> Above this number another decimal digit might not fit an integer of eight bytes; 18 digits always fit.
   integer(i8), parameter :: full = 10_i8**17
-  !> All whole numbers up to this one are exact reals.
+  !> Integers of at most this size are exact as reals.
   integer(i8), parameter :: exact_mantissa = 2_i8**53
-  !> Powers of ten that are exact reals: one product or quotient of two exact reals is rounded correctly.
+  !> Powers of ten that are exact as reals: one product or quotient of two exact reals is rounded correctly.
   integer, parameter :: exact_power = 22
-  !> The largest real has 308 as decimal exponent, and these as its first 17 digits.
+  !> Decimal exponent of the largest real, and its first 17 digits.
   integer, parameter :: largest_exponent = 308
   integer(i8), parameter :: largest_digits = 17976931348623157_i8
-  !> No exponent written in a field is followed further than this.
+  !> Exponents are not counted beyond this value.
   integer(i8), parameter :: endless_exponent = 100000
 
-  !> The parts of a real as it is written: digits x 10**exponent.
+  !> Parts of a real: digits x 10**exponent.
   type :: decimal
     integer(i8) :: digits = 0      !! the first 18 significant digits
-    integer :: dropped = 0         !! significant digits behind these
-    integer :: point = 0           !! the point among the characters; 0: there is none
-    integer :: mantissa_last = 0   !! last character of the mantissa
-    integer :: exponent = 0        !! the exponent as written
+    integer :: dropped = 0         !! number of further significant digits
+    integer :: point = 0           !! position of the decimal point; 0 if there is no point
+    integer :: mantissa_last = 0   !! position of the last character of the mantissa
+    integer :: exponent = 0        !! exponent as written
     logical :: negative = .false.
   end type decimal
 
 contains
 
-  !> A whole number: a sign, then digits, nothing else.
+  !> Scan an integer: a sign, then digits.
   pure subroutine scan_integer(text, number, outcome)
-    character(len=*), intent(in) :: text  !! without blanks around it
-    integer(i8), intent(out) :: number   !! of too many digits, the first of them
+    character(len=*), intent(in) :: text  !! without leading or trailing blanks
+    integer(i8), intent(out) :: number   !! of the first digits, if there are too many
     integer, intent(out) :: outcome       !! one of the outcomes above
     integer :: at, first
     integer(i8) :: digit
@@ -69,10 +68,10 @@ contains
     outcome = merge(scan_too_large, scan_sound, too_large)
   end subroutine scan_integer
 
-  !> A real: `7.0`, `.7E1`, `0.7+1`, `7.-2`, `7.D0`. It has a decimal point, and is rounded correctly.
+  !> Scan a real: `7.0`, `.7E1`, `0.7+1`, `7.-2`, `7.D0`. It needs a decimal point, and is rounded correctly.
   pure subroutine scan_real(text, number, outcome)
-    character(len=*), intent(in) :: text  !! without blanks around it
-    real(wp), intent(out) :: number       !! also where only the point is missing
+    character(len=*), intent(in) :: text  !! without leading or trailing blanks
+    real(wp), intent(out) :: number       !! set even if only the point is missing
     integer, intent(out) :: outcome       !! one of the outcomes above
     type(decimal) :: parts
     integer :: k, power
@@ -98,14 +97,14 @@ contains
 
   contains
 
-    !> The real of a mantissa with many digits or a large exponent, by way of READ. What would overflow is
-    !! kept away from READ, which would trap or give infinity.
+    !> Convert a mantissa with many digits or a large exponent with READ. Numbers that would overflow do not
+    !! reach READ, which would trap or return infinity.
     pure subroutine convert(number, outcome)
       real(wp), intent(out) :: number
       integer, intent(out) :: outcome
       character(len=len(text) + 8) :: clean
-      integer(i8) :: first_digits  ! 17 of them, filled up with zeros
-      integer :: leading           ! exponent of the first of them
+      integer(i8) :: first_digits  ! 17 digits, padded with zeros
+      integer :: leading           ! exponent of the first digit
       integer :: status
 
       number = 0.0_wp
@@ -131,7 +130,7 @@ contains
     end subroutine convert
   end subroutine scan_real
 
-  !> The parts of a real; `outcome` says whether it is one.
+  !> Split a real into its parts; `outcome` says whether it is a real.
   pure subroutine take_apart(text, parts, outcome)
     character(len=*), intent(in) :: text
     type(decimal), intent(out) :: parts
@@ -158,7 +157,7 @@ contains
       end if
     end do
     parts%mantissa_last = at - 1
-    if (at - first == merge(1, 0, parts%point > 0)) return   ! without a digit
+    if (at - first == merge(1, 0, parts%point > 0)) return   ! no digit
     if (at <= len(text)) then
       first = at + merge(1, 0, scan(text(at:at), 'EeDd') == 1)
       if (first > at .or. is_sign(text(at:at))) call scan_integer(text(first:), exponent, outcome)
@@ -168,10 +167,10 @@ contains
     outcome = merge(scan_sound, scan_no_point, parts%point > 0)
   end subroutine take_apart
 
-  !> Directions: digits from 1 to 6, each at most once, such as `12`.
+  !> Scan directions: digits from 1 to 6, each at most once, such as `12`.
   pure subroutine scan_components(text, number, outcome)
-    character(len=*), intent(in) :: text  !! without blanks around it
-    integer(i8), intent(out) :: number   !! the same digits
+    character(len=*), intent(in) :: text  !! without leading or trailing blanks
+    integer(i8), intent(out) :: number   !! the digits as a number
     integer, intent(out) :: outcome   !! one of the outcomes above
     integer :: at
 
@@ -182,10 +181,10 @@ contains
     call scan_integer(text, number, outcome)
   end subroutine scan_components
 
-  !> A word: a letter, then other characters but blanks, eight in all.
+  !> Scan a word: a letter, then other characters except blanks, at most eight in all.
   pure subroutine scan_word(text, word, outcome)
-    character(len=*), intent(in) :: text  !! without blanks around it
-    character(len=8), intent(out) :: word   !! in capitals, cut at eight characters
+    character(len=*), intent(in) :: text  !! without leading or trailing blanks
+    character(len=8), intent(out) :: word   !! in upper case, cut at eight characters
     integer, intent(out) :: outcome   !! one of the outcomes above
 
     outcome = scan_malformed

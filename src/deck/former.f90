@@ -9,7 +9,7 @@ module epcont_deck_former
 
   type :: former_entry
     character(len=8) :: name, word   !! word blank: any value of this PARAM
-    logical :: is_error              !! else a note: without this PARAM the answer is the same, or more exact
+    logical :: is_error   !! otherwise a note: without this PARAM the result is the same or more accurate
     character(len=60) :: reason, remedy
   end type former_entry
 
@@ -24,9 +24,9 @@ contains
   !> If a card has a former PARAM, or a former word of a PARAM, add an error or a note.
   subroutine report_former(card, name, faults, is_former)
     type(card_fields), intent(in) :: card        !! a PARAM with a name
-    character(len=*), intent(in) :: name         !! in capitals
-    type(diagnostics), intent(inout) :: faults   !! is added to
-    logical, intent(out) :: is_former            !! the card is reported, and its value has no effect
+    character(len=*), intent(in) :: name         !! in upper case
+    type(diagnostics), intent(inout) :: faults   !! an error or a note is added
+    logical, intent(out) :: is_former            !! the card is reported and has no effect
     character(len=:), allocatable :: subject, word
     integer :: i
 

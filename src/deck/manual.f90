@@ -1,4 +1,4 @@
-!> The manual of the cards, printed from the catalogue that the reader checks by.
+!> Print the manual of the cards from the catalogue with which the reader checks them.
 module epcont_deck_manual
   use epcont_base_text, only: newline, text_of, upper
   use epcont_deck_card_kinds, only: card_kinds, card_param
@@ -9,15 +9,15 @@ module epcont_deck_manual
   private
   public :: manual
 
-  !> What fields hold, by their kinds.
+  !> Contents of fields, by their kinds.
   character(len=7), parameter :: kind_name(5) = ['integer', 'real   ', 'digits ', 'word   ', 'any    ']
 
 contains
 
-  !> The cards in one line each, or all about the card `name`; empty where there is no such card. Each line is
-  !! ended by a newline.
+  !> One line for each card, or all about the card `name`; empty if there is no such card. Each line ends with
+  !! a newline.
   function manual(name) result(text)
-    character(len=*), intent(in) :: name  !! blank: all cards
+    character(len=*), intent(in) :: name  !! blank for all cards
     character(len=:), allocatable :: text
     type(card_entry) :: entry(card_kinds)
     integer :: k
@@ -34,7 +34,7 @@ contains
     end do
   end function manual
 
-  !> All about one card.
+  !> Describe one card.
   function card_text(entry) result(text)
     type(card_entry), intent(in) :: entry
     character(len=:), allocatable :: text
@@ -65,9 +65,9 @@ contains
 
   contains
 
-    !> The line of a field that may be filled.
+    !> Add the line of a field.
     subroutine add_field(more, name, field)
-      character(len=*), intent(in) :: more   !! behind the number of the field
+      character(len=*), intent(in) :: more   !! text after the number of the field
       character(len=*), intent(in) :: name
       type(field_entry), intent(in) :: field
 
@@ -75,9 +75,9 @@ contains
                    merge('used ', 'noted', field%used), meaning_text(field))
     end subroutine add_field
 
-    !> The line of a slot. Columns are those of a small field, on a continuation line counted from its start.
+    !> Add the line of a slot. Columns are those of a small field, counted on its own line of the card.
     subroutine add_row(more, name, kind, default, use, meaning)
-      character(len=*), intent(in) :: more   !! behind the number of the field
+      character(len=*), intent(in) :: more   !! text after the number of the field
       character(len=*), intent(in) :: name, kind, default, use, meaning
       character(len=48) :: head
       integer :: first
@@ -88,8 +88,8 @@ contains
       text = text//head//meaning//newline
     end subroutine add_row
 
-    !> What a blank means: a value, another field, nothing that would do, or `blank` where it has a meaning of
-    !! its own.
+    !> Meaning of a blank: a value, another field, an error (`none`), or `blank` if it has a meaning of its
+    !! own.
     pure function default_text(field) result(text)
       type(field_entry), intent(in) :: field
       character(len=:), allocatable :: text
@@ -111,7 +111,7 @@ contains
     end function meaning_text
   end function card_text
 
-  !> The parameters that PARAM may set.
+  !> Describe the parameters of PARAM.
   function parameter_text() result(text)
     character(len=:), allocatable :: text
     type(field_entry), allocatable :: field(:)

@@ -1,10 +1,10 @@
-!> Cards that decks of contact have and this program does not read: why, and the way round.
+!> Cards of contact models that epcont does not support: reason and replacement.
 module epcont_deck_refused
   implicit none
   private
   public :: refused_card
 
-  !> Names that share a reason and a remedy: `NAMES: why | what would do`.
+  !> Names with a common reason and remedy: `NAMES: reason | remedy`.
   character(len=*), parameter :: table(*) = [character(len=220) :: &
     'CHEXA CPENTA CTETRA CPYRAM: three dimensions | a section of plane elements (CTRIA3 to CQUAD8) or of'// &
     ' rings (CTRAX3, CTRAX6)', &
@@ -58,7 +58,7 @@ module epcont_deck_refused
 
 contains
 
-  !> Why a card is not here, and what would do instead; empty: it is none of these.
+  !> Reason why a card is not supported, and its remedy; empty if the card is not in this list.
   pure subroutine refused_card(name, why, remedy)
     character(len=*), intent(in) :: name
     character(len=:), allocatable, intent(out) :: why, remedy

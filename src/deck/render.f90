@@ -1,4 +1,4 @@
-!> Faults of a deck as text: file, line and columns, the line itself, and what would be right.
+!> Text of the errors and warnings of a deck: file, line and columns, the line itself, and the remedy.
 module epcont_deck_render
   use epcont_base_diagnostic, only: diagnostic, diagnostics, place_type, severity_error, severity_note, &
       severity_warning
@@ -8,21 +8,21 @@ module epcont_deck_render
   private
   public :: render, render_notes, included_file, printable
 
-  !> Errors shown, and as many warnings, and of those that say the same; of the others only the number.
+  !> Largest number of errors shown, and of warnings; and of similar ones. The others are only counted.
   integer, parameter :: most_shown = 50, most_alike = 5
-  !> Columns shown of a line of the deck.
+  !> Columns of a line of the deck that are shown.
   integer, parameter :: width = 132
 
 contains
 
-  !> The errors and warnings in deck order, each line of text ended by a newline; the last line counts them.
-  !! Empty where there are none.
+  !> Errors and warnings in deck order. Each line ends with a newline; the last line counts them. Empty if
+  !! there are no errors or warnings.
   pure function render(faults, lines) result(text)
-    type(diagnostics), intent(in) :: faults   !! of the deck
-    type(source), intent(in) :: lines   !! its lines
+    type(diagnostics), intent(in) :: faults   !! findings about the deck
+    type(source), intent(in) :: lines   !! lines of the deck
     character(len=:), allocatable :: text
     integer, allocatable :: order(:), told(:)
-    integer :: i, k, n(3)   ! those told of each severity
+    integer :: i, k, n(3)   ! number shown of each severity
 
     text = ''
     order = faults%in_deck_order()
@@ -42,7 +42,7 @@ contains
 
   contains
 
-    !> Is the same said of both, behind the names of their cards?
+    !> Do two findings have the same text after the names of their cards?
     pure logical function are_alike(one, other)
       type(diagnostic), intent(in) :: one, other
 
@@ -66,11 +66,11 @@ contains
     end function tally
   end function render
 
-  !> Warnings and notes in deck order, one line each, for the listing: without the name of the deck, and of
-  !! included files the name as seen from it, so that it does not matter from where the deck was read.
+  !> Warnings and notes in deck order, one line each, for the listing. Without the name of the deck, and with
+  !! included files named relative to it, the text does not depend on the working directory.
   pure function render_notes(faults, lines) result(text)
-    type(diagnostics), intent(in) :: faults   !! of the deck
-    type(source), intent(in) :: lines   !! its lines
+    type(diagnostics), intent(in) :: faults   !! findings about the deck
+    type(source), intent(in) :: lines   !! lines of the deck
     character(len=:), allocatable :: text
     integer, allocatable :: order(:)
     integer :: i
@@ -87,7 +87,7 @@ contains
     end do
   end function render_notes
 
-  !> `text` with every byte that is no printable ASCII character replaced by a question mark.
+  !> Replace every byte of `text` that is not printable ASCII by a question mark.
   pure function printable(text)
     character(len=*), intent(in) :: text   !! any bytes
     character(len=len(text)) :: printable
@@ -99,8 +99,8 @@ contains
     end do
   end function printable
 
-  !> One fault: `hertz.dat:41:25-32: GRID 17: field 4 (X1) is not a real number`, line of the deck, carets and
-  !! remedy.
+  !> One finding: `hertz.dat:41:25-32: GRID 17: field 4 (X1) is not a real number`, the line of the deck,
+  !! carets and remedy.
   pure function paragraph(fault, lines) result(text)
     type(diagnostic), intent(in) :: fault
     type(source), intent(in) :: lines
@@ -116,8 +116,8 @@ contains
 
   contains
 
-    !> The line of the deck, and below it carets under the value (or the whole field, where that is blank).
-    !! Of a line too long to show, the part that holds the place.
+    !> The line of the deck, and carets under the value (under the whole field if that is blank). From a long
+    !! line, the part with these columns is taken.
     pure function excerpt() result(text)
       character(len=:), allocatable :: line, text
       integer :: first, last, left
@@ -138,7 +138,7 @@ contains
     end function excerpt
   end function paragraph
 
-  !> What is wrong, a warning named as such.
+  !> The fault; warnings are marked.
   pure function said(fault) result(text)
     type(diagnostic), intent(in) :: fault
     character(len=:), allocatable :: text
@@ -160,10 +160,11 @@ contains
     text = text//': '
   end function columns
 
-  !> The included file that a line is of, as seen from the deck, and a colon; empty where it is of the deck.
+  !> Name of the included file of a line relative to the deck, and a colon; empty for lines of the deck
+  !! itself.
   pure function included_file(lines, line) result(text)
     type(source), intent(in) :: lines   !! of the deck
-    integer, intent(in) :: line         !! in deck order; 0: none
+    integer, intent(in) :: line         !! in deck order; 0 if there is no line
     character(len=:), allocatable :: text, directory
 
     text = ''

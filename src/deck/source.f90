@@ -1,7 +1,7 @@
-!> The text of a deck: its file and the files it includes, cut into lines in deck order.
+!> Text of a deck: its file and the included files, cut into lines in deck order.
 !>
-!> All files lie one after the other in one buffer, a newline behind each; a line is a stretch of it.
-!> INCLUDE and ENDDATA are dealt with here, so that what reads the cards sees one run of lines.
+!> One buffer has all files, each followed by a newline; a line is a range of it. INCLUDE and ENDDATA are
+!> processed here, so the card reader sees one sequence of lines.
 module epcont_deck_source
   use epcont_base_diagnostic, only: diagnostics, place_type
   use epcont_base_error, only: error_type, raise, status_usage
@@ -12,41 +12,40 @@ module epcont_deck_source
   public :: source, read_source
 
   integer, parameter :: &
-    !> How deep files may include files, the deck itself not counted.
+    !> Depth of nested INCLUDEs, not counting the deck itself.
     deepest = 8, &
-    !> How many INCLUDE lines a deck may have: files that include each other twice would double at every
-    !! depth.
+    !> Number of INCLUDE lines in a deck: files that include each other twice would double at every depth.
     most_files = 10000, &
-    !> Characters of a line, as they are mostly: that is the room for lines at first.
+    !> Usual length of a line [characters]; determines the initial number of lines.
     usual_line = 32
-  !> What ends a line: either of them, or a return with a newline behind it.
+  !> Ends of a line: one of them, or a return followed by a newline.
   character(len=*), parameter :: newline = achar(10), return = achar(13)
 
-  !> One file of the deck.
+  !> File of a deck.
   type :: source_file
-    !> as the user gave it; an included one with the directory of its parent
+    !> Name as given by the user; for an included file with the directory of its parent
     character(len=:), allocatable :: name
-    integer :: parent = 0                  !! the file that includes it
+    integer :: parent = 0                  !! file that includes it
     integer :: first = 1                   !! its first character in the buffer
-    integer :: last = 0                    !! its last
+    integer :: last = 0                    !! its last character
   end type source_file
 
-  !> One line, without comment and trailing blanks; one that INCLUDE or ENDDATA has used up is blank.
+  !> A line without comment and trailing blanks; lines with INCLUDE or ENDDATA become blank.
   type :: source_line
     integer :: first, last   !! its characters in the buffer
-    integer :: special       !! first comma or character that is not printable; > last: none
+    integer :: special       !! first comma or unprintable character; > last if there is no such character
     integer :: number        !! line number in its file
     integer :: file          !! its file
   end type source_line
 
-  !> The lines of a deck.
+  !> Lines of a deck.
   type :: source
     character(len=:), allocatable :: text        !! all files
     integer :: used = 0                          !! characters of `text` in use
     integer :: count = 0                         !! number of lines
     type(source_line), allocatable :: line(:)    !! [count or more]
     type(source_file), allocatable :: files(:)   !! [files]
-    logical :: ended = .false.                   !! the deck has its ENDDATA
+    logical :: ended = .false.                   !! ENDDATA has been read
   contains
     procedure :: file_name
     procedure :: text_of_line
@@ -56,13 +55,13 @@ module epcont_deck_source
 
 contains
 
-  !> Read the deck at `path` with all that it includes.
-  !! Faults inside go to `faults`; `error` only where the deck itself cannot be read.
+  !> Read the deck at `path` with all included files. `faults` collects errors inside; `error` is set if the
+  !! deck itself cannot be read.
   subroutine read_source(path, lines, faults, error)
-    character(len=*), intent(in) :: path   !! of the deck
-    type(source), intent(out) :: lines   !! of all its files
-    type(diagnostics), intent(inout) :: faults   !! inside, which are added
-    type(error_type), allocatable, intent(out) :: error   !! where the deck itself cannot be read
+    character(len=*), intent(in) :: path   !! path of the deck
+    type(source), intent(out) :: lines   !! lines of all its files
+    type(diagnostics), intent(inout) :: faults   !! errors inside are added
+    type(error_type), allocatable, intent(out) :: error   !! the deck itself cannot be read
     character(len=:), allocatable :: trouble
 
     allocate (lines%files(0))
@@ -77,7 +76,7 @@ contains
 
   contains
 
-    !> Cut a file into lines and, where it includes another, that one too. `ended`: it had its ENDDATA.
+    !> Cut a file into lines, and include other files. `ended`: the file had its ENDDATA.
     recursive subroutine cut(file, ended)
       integer, intent(in) :: file
       logical, intent(out) :: ended
@@ -91,7 +90,7 @@ contains
       do while (at <= end_of_file .and. .not. ended)
         number = number + 1
         call find_end(lines%text, at, last, special, next)
-        if (lines%count == size(lines%line)) lines%line = [lines%line, lines%line]   ! room for twice as many
+        if (lines%count == size(lines%line)) lines%line = [lines%line, lines%line]   ! double the size
         lines%count = lines%count + 1
         line = lines%count
         lines%line(line) = source_line(at, last, special, number, file)
@@ -103,7 +102,7 @@ contains
       end do
     end subroutine cut
 
-    !> Read the file that the INCLUDE line `line` names, or say why not.
+    !> Read the file that an INCLUDE line names, or report an error.
     recursive subroutine include_file(line)
       integer, intent(in) :: line
       character(len=:), allocatable :: name, remedy, trouble
@@ -142,7 +141,7 @@ contains
       end if
     end subroutine include_file
 
-    !> How many files lead down to `file`, the deck and itself included; 0 where `name` is one of them.
+    !> Number of files from the deck down to `file`, both included; 0 if one of them is `name`.
     pure integer function files_above(file, name) result(files)
       integer, intent(in) :: file
       character(len=*), intent(in) :: name
@@ -159,7 +158,7 @@ contains
     end function files_above
   end subroutine read_source
 
-  !> Append the bytes of a file to the buffer; `trouble` says why that cannot be done.
+  !> Append the bytes of a file to the buffer; `trouble` says why this is impossible.
   subroutine load(path, parent, trouble, lines)
     character(len=*), intent(in) :: path
     integer, intent(in) :: parent
@@ -185,12 +184,12 @@ contains
     inquire (unit=unit, size=bytes)
     if (bytes < 0) then
       trouble = 'not a file that can be read'
-    else if (lines%used + bytes >= huge(1) - 1) then   ! behind come a newline and the place of a next line
+    else if (lines%used + bytes >= huge(1) - 1) then   ! a newline and the position of a next line follow
       trouble = 'the deck is larger than 2 GiB'
     else
       first = lines%used + 1
       last = lines%used + int(bytes)
-      if (last >= len(lines%text)) then   ! the first file gets just its size; included ones make it double
+      if (last >= len(lines%text)) then   ! the first file gets its own size; included files double the buffer
         allocate (character(len=max(last + 1, int(min(2_i8*len(lines%text), int(huge(1), i8))))) :: longer)
         longer(:lines%used) = lines%text(:lines%used)
         call move_alloc(longer, lines%text)
@@ -198,7 +197,7 @@ contains
       read (unit, iostat=status) lines%text(first:max(last, first))
       if (bytes > 0 .and. status /= 0) trouble = 'cannot be read'
       if (bytes == 0 .and. status == 0) trouble = 'a pipe or a device, not a file of known size'
-      ! The mark that editors put before UTF-8 says nothing.
+      ! Skip the byte-order mark of UTF-8.
       if (lines%text(first:min(first + 2, last)) == char(239)//char(187)//char(191)) first = first + 3
     end if
     close (unit, iostat=status)
@@ -209,16 +208,15 @@ contains
     lines%text(lines%used:lines%used) = newline
   end subroutine load
 
-  !> The end of the line that begins at `first`: its last character that is no comment and no blank (or
-  !! control character: tabs, page ends, the mark of DOS that ends a file), and
-  !! the first character of the next line. On the way, its first comma or character that is not printable
-  !! ASCII.
+  !> Find the end of the line that begins at `first`: its last character before a comment and trailing blanks
+  !! (or control characters: tabs, page ends, the end mark of DOS), and the first character of the next line.
+  !! Also find its first comma or character that is not printable ASCII.
   pure subroutine find_end(text, first, last, special, next)
     character(len=*), intent(in) :: text
     integer, intent(in) :: first
     integer, intent(out) :: last, special, next
     integer :: at, comment, code
-    ! By code, the characters that mean nothing but themselves: printable ASCII but `$` and `,`.
+    ! By code: characters without a special meaning, that is, printable ASCII except `$` and `,`.
     logical, parameter :: plain(0:255) = [(code >= 32 .and. code <= 126 .and. &
         all(code /= iachar(['$', ','])), code=0, 255)]
 
@@ -243,7 +241,7 @@ contains
     end do
   end subroutine find_end
 
-  !> INCLUDE or ENDDATA if the line is that statement, else blank.
+  !> INCLUDE or ENDDATA if the line is this statement; otherwise blank.
   pure function statement(line) result(word)
     character(len=*), intent(in) :: line
     character(len=7) :: word
@@ -256,13 +254,13 @@ contains
     if (len(line) < at + 6) return
     word = upper(line(at:at + 6))
     if (all(word /= ['ENDDATA', 'INCLUDE']) .or. scan(upper(line(at + 7:min(at + 7, len(line)))), &
-        'ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789*') > 0) word = ''   ! no such word, or a longer one
+        'ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789*') > 0) word = ''   ! another word
   end function statement
 
-  !> The name between the quotes of an INCLUDE line; not allocated where there is none.
+  !> Name between the quotes of an INCLUDE line; not allocated if there is no name.
   pure subroutine find_quoted(text, place, name)
     character(len=*), intent(in) :: text
-    type(place_type), intent(out) :: place  !! columns of the name, or where it should be
+    type(place_type), intent(out) :: place  !! columns of the name, or those where it is missing
     character(len=:), allocatable, intent(out) :: name
     integer :: from, to
 
@@ -274,17 +272,17 @@ contains
     if (to == len(text) .and. verify(text(from + 1:to - 1), ' ') > 0) name = trim(text(from + 1:to - 1))
   end subroutine find_quoted
 
-  !> The name of the file of a line, as the user gave it.
+  !> Name of the file of a line, as given by the user.
   pure function file_name(self, line) result(name)
     class(source), intent(in) :: self
-    integer, intent(in) :: line   !! in deck order; 0: of the deck as a whole
+    integer, intent(in) :: line   !! in deck order; 0 for the deck as a whole
     character(len=:), allocatable :: name
 
     name = self%files(1)%name
     if (line > 0) name = self%files(self%line(line)%file)%name
   end function file_name
 
-  !> A line as it is read, without comment, tabs as blanks.
+  !> Text of a line without its comment; tabs become blanks.
   pure function text_of_line(self, line) result(text)
     class(source), intent(in) :: self
     integer, intent(in) :: line   !! in deck order
@@ -297,12 +295,12 @@ contains
     end do
   end function text_of_line
 
-  !> A line as it stands in the file, comment and all, but no longer than `most` characters from `from` on.
+  !> Text of a line in the file, with its comment, from column `from`, at most `most` characters.
   pure function whole_line(self, line, from, most) result(text)
     class(source), intent(in) :: self
     integer, intent(in) :: line   !! in deck order
-    integer, intent(in) :: from   !! first column wanted
-    integer, intent(in) :: most   !! columns wanted
+    integer, intent(in) :: from   !! first column
+    integer, intent(in) :: most   !! largest number of columns
     character(len=:), allocatable :: text
     integer :: first, last
 
@@ -313,7 +311,7 @@ contains
     text = trim(self%text(first + from - 1:last - 1))
   end function whole_line
 
-  !> Is there nothing to read in a line?
+  !> Is a line blank?
   pure logical function blank(self, line)
     class(source), intent(in) :: self
     integer, intent(in) :: line   !! in deck order

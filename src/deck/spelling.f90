@@ -6,13 +6,12 @@ module epcont_deck_spelling
 
 contains
 
-  !> What to say of a word that is not known: the name nearest to it, with the same first letter and one slip
-  !! away (two for words of more than five letters); or something else where none is. Digits are no slips:
-  !! CTRIA6 is not a misspelt CTRIA3.
+  !> Remedy for an unknown word: the nearest name with the same first letter and one slip (two for words with
+  !! more than five letters), or `otherwise`. Digits do not count as slips: CTRIA6 is not a misspelt CTRIA3.
   pure function suggestion(word, names, otherwise) result(remedy)
-    character(len=*), intent(in) :: word        !! in capitals
-    character(len=*), intent(in) :: names(:)    !! those that are known
-    character(len=*), intent(in) :: otherwise   !! where none is near
+    character(len=*), intent(in) :: word        !! in upper case
+    character(len=*), intent(in) :: names(:)    !! known names
+    character(len=*), intent(in) :: otherwise   !! remedy if no name is near
     character(len=:), allocatable :: remedy
     integer :: i, least, slips
 
@@ -28,7 +27,7 @@ contains
     end do
   end function suggestion
 
-  !> The digits of a word, in order.
+  !> Digits of a word, in order.
   pure function digits_of(word)
     character(len=*), intent(in) :: word
     character(len=8) :: digits_of
@@ -40,7 +39,7 @@ contains
     end do
   end function digits_of
 
-  !> Letters to insert, leave out, replace or exchange with their neighbour (Damerau, optimal string
+  !> Number of letters to insert, delete, replace or exchange with a neighbour (Damerau, optimal string
   !! alignment).
   pure integer function distance(a, b)
     character(len=*), intent(in) :: a, b

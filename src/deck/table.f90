@@ -1,4 +1,4 @@
-!> The cards of one name, field by field, as the reader hands them on.
+!> Table of the cards with one name, field by field.
 module epcont_deck_table
   use epcont_base_diagnostic, only: place_type
   use epcont_base_kinds, only: wp
@@ -8,25 +8,25 @@ module epcont_deck_table
   private
   public :: card_table, list_item
 
-  !> One item of the open list of a card: the ids from one to another, or a record of numbers.
+  !> Item of the list of a card: the ids from one to another, or a record of numbers.
   type :: list_item
     integer :: from = 0, to = 0, step = 1   !! ids
-    real(wp) :: number(3) = 0.0_wp          !! those of a record, which may be fewer; integers are exact
-    type(place_type) :: place               !! where it begins
+    real(wp) :: number(3) = 0.0_wp          !! numbers of a record, which may have fewer; integers are exact
+    type(place_type) :: place               !! columns of its first field
   end type list_item
 
-  !> All cards of one name.
+  !> All cards with one name.
   type :: card_table
-    type(card_entry) :: entry                          !! what the catalogue says of them
+    type(card_entry) :: entry                          !! catalogue entry
     integer :: count = 0                               !! cards
     real(wp), allocatable :: value(:, :)               !! numbers; integers are exact [columns, count]
     logical, allocatable :: given(:, :)                !! the field is not blank [columns, count]
-    character(len=8), allocatable :: word(:, :)        !! words, where it has such fields [columns, count]
-    logical, allocatable :: sound(:)                   !! the reader found no fault in the card [count]
-    integer, allocatable :: line(:)                    !! where the card begins [count]
-    integer :: items = 0                               !! in all lists
-    type(list_item), allocatable :: list(:)            !! of all cards [items or more]
-    !> card i has the items list_start(i) to list_start(i+1)-1 [count + 1]
+    character(len=8), allocatable :: word(:, :)        !! words, if the card has such fields [columns, count]
+    logical, allocatable :: sound(:)                   !! the card has no error [count]
+    integer, allocatable :: line(:)                    !! first line of the card [count]
+    integer :: items = 0                               !! number of items in all lists
+    type(list_item), allocatable :: list(:)            !! items of all cards [items or more]
+    !> Card i has the items list_start(i) to list_start(i+1)-1 [count + 1]
     integer, allocatable :: list_start(:)
   contains
     procedure :: begin
@@ -40,11 +40,11 @@ module epcont_deck_table
 
 contains
 
-  !> A table of cards that are still to be read.
+  !> Table of cards that are not read yet.
   subroutine begin(self, entry, line)
     class(card_table), intent(out) :: self
-    type(card_entry), intent(in) :: entry   !! what the catalogue says of them
-    integer, intent(in) :: line(:)          !! where each begins
+    type(card_entry), intent(in) :: entry   !! catalogue entry
+    integer, intent(in) :: line(:)          !! first line of each card
     integer :: columns
 
     columns = size(entry%field)
@@ -59,10 +59,10 @@ contains
     allocate (self%list(16))
   end subroutine begin
 
-  !> The column of a field by name. A name that the catalogue has not is a fault of the program.
+  !> Column of a field. An unknown name is an internal error.
   pure integer function column(self, name)
     class(card_table), intent(in) :: self
-    character(len=*), intent(in) :: name   !! of the field
+    character(len=*), intent(in) :: name   !! name of the field
 
     do column = size(self%entry%field), 1, -1
       if (self%entry%field(column)%name == name) return
@@ -70,11 +70,11 @@ contains
     error stop 'no such field in the catalogue of cards'
   end function column
 
-  !> The number in a field of a card.
+  !> Number in a field of a card.
   pure real(wp) function number(self, name, i)
     class(card_table), intent(in) :: self
-    character(len=*), intent(in) :: name   !! of the field
-    integer, intent(in) :: i               !! which card
+    character(len=*), intent(in) :: name   !! name of the field
+    integer, intent(in) :: i               !! row of the card
 
     number = self%value(self%column(name), i)
   end function number
@@ -82,16 +82,16 @@ contains
   !> Is a field of a card not blank?
   pure logical function has(self, name, i)
     class(card_table), intent(in) :: self
-    character(len=*), intent(in) :: name   !! of the field
-    integer, intent(in) :: i               !! which card
+    character(len=*), intent(in) :: name   !! name of the field
+    integer, intent(in) :: i               !! row of the card
 
     has = self%given(self%column(name), i)
   end function has
 
-  !> A card as messages name it: `GRID 17`, `PARAM PLANE`; `GRID` where it has no such name.
+  !> Name of a card in messages: `GRID 17`, `PARAM PLANE`; `GRID` if the card has no name.
   pure function identity(self, i) result(text)
     class(card_table), intent(in) :: self
-    integer, intent(in) :: i   !! which card
+    integer, intent(in) :: i   !! row of the card
     character(len=:), allocatable :: text
 
     text = trim(self%entry%name)
@@ -103,10 +103,10 @@ contains
     end if
   end function identity
 
-  !> Begin the list of a card; items that are added from now on belong to it.
+  !> Begin the list of a card. All items that are added later belong to it.
   pure subroutine begin_list(self, card)
     class(card_table), intent(inout) :: self
-    integer, intent(in) :: card   !! which
+    integer, intent(in) :: card   !! row of the card
 
     self%list_start(card:card + 1) = self%items + 1
   end subroutine begin_list
@@ -114,7 +114,7 @@ contains
   !> Add an item to the list of a card.
   pure subroutine add_item(self, card, item)
     class(card_table), intent(inout) :: self
-    integer, intent(in) :: card           !! the one that was begun last
+    integer, intent(in) :: card           !! card whose list was begun last
     type(list_item), intent(in) :: item   !! ids or a record
 
     if (self%items == size(self%list)) self%list = [self%list, self%list]

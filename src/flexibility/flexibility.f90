@@ -1,4 +1,4 @@
-!> What a unit force at one pair does to the gaps of all pairs, and what the rigid motions do to them.
+!> Effects of unit pair forces and of unit rigid-body displacements on the gaps.
 module epcont_flexibility_flexibility
   use epcont_assembly_stiffness, only: body_stiffness
   use epcont_base_kinds, only: wp
@@ -14,7 +14,7 @@ module epcont_flexibility_flexibility
   private
   public :: body_flexibility, find_flexibility, gap_opening, pair_forces, see_motions, terms_of_openings
 
-  !> One body's part of F, between the pairs that it gives way at.
+  !> Contribution of one body to F, for the pairs whose gaps depend on its deformation.
   type :: body_flexibility
     integer, allocatable :: pair(:)         !! ascending
     !> Lower triangle [length/force] [its pairs, its pairs]
@@ -23,14 +23,14 @@ module epcont_flexibility_flexibility
 
 contains
 
-  !> One body's part of F = N K^-1 N'.
+  !> Compute the contribution of one body to F = N K^-1 N'.
   pure subroutine find_flexibility(model, numbering, b, pairs, stiffness, part)
-    type(model_type), intent(in) :: model   !! the scene
-    type(numbering_type), intent(in) :: numbering   !! of its equations
+    type(model_type), intent(in) :: model
+    type(numbering_type), intent(in) :: numbering   !! equation numbers
     integer, intent(in) :: b                       !! the body
-    integer, intent(in) :: pairs(:)                !! with nodes in it
+    integer, intent(in) :: pairs(:)                !! pairs with nodes in it
     type(body_stiffness), intent(in) :: stiffness  !! factored
-    type(body_flexibility), intent(out) :: part   !! no pairs where the body has none
+    type(body_flexibility), intent(out) :: part   !! without pairs if the body has no free DOFs in gaps
     type(sparse_rows) :: rows
 
     call find_rows(part%pair, rows)
@@ -40,12 +40,12 @@ contains
 
   contains
 
-    !> Rows of N in the body, of the pairs that have any entry there; negative equations are of the border.
-    !! Freedoms that are held, not wanted, across the normal or of another body are left out.
+    !> Find the rows of N in the body, for pairs with entries there; negative equations belong to the border.
+    !! Fixed DOFs, DOFs that gaps do not depend on, and DOFs of other bodies are left out.
     pure subroutine find_rows(pair, rows)
       integer, allocatable, intent(out) :: pair(:)      !! [its pairs]
       type(sparse_rows), intent(out) :: rows
-      real(wp) :: normal(directions)   ! along the freedoms of a node
+      real(wp) :: normal(directions)   ! components along the DOFs of a node
       integer :: c, entries, found, i, j, k, last, number
 
       entries = directions*sum(model%row_start(pairs + 1) - model%row_start(pairs))
@@ -76,7 +76,7 @@ contains
       rows = sparse_rows(rows%start(:found + 1), rows%equation(:last), rows%weight(:last))
     end subroutine find_rows
 
-    !> What the border adds: K^-1 = [K_bb^-1 0; 0 0] + [W; -1] S^-1 [W; -1]'.
+    !> Contribution of the border: K^-1 = [K_bb^-1 0; 0 0] + [W; -1] S^-1 [W; -1]'.
     pure function border_part() result(flexibility)
       real(wp), allocatable :: flexibility(:, :), solved(:, :)
       real(wp) :: response(size(part%pair), size(stiffness%schur, 1))
@@ -103,9 +103,9 @@ contains
     end function border_part
   end subroutine find_flexibility
 
-  !> Opening of the gaps by displacements: N u [length] [pairs].
+  !> Gap changes due to displacements: N u [length] [pairs].
   pure function gap_opening(model, displacement) result(opening)
-    type(model_type), intent(in) :: model   !! the scene
+    type(model_type), intent(in) :: model
     real(wp), intent(in) :: displacement(:, :)  !! [directions, nodes]
     real(wp) :: opening(model%pairs)
     integer :: k
@@ -116,9 +116,10 @@ contains
     end do
   end function gap_opening
 
-  !> What these openings are the sum of: magnitudes along x or y, whichever is larger [length] [pairs].
+  !> Sums of the magnitudes of the terms in these gap changes, along x or y, whichever is larger [length]
+  !! [pairs].
   pure function terms_of_openings(model, displacement) result(terms)
-    type(model_type), intent(in) :: model   !! the scene
+    type(model_type), intent(in) :: model
     real(wp), intent(in) :: displacement(:, :)  !! [directions, nodes]
     real(wp) :: terms(model%pairs)
     integer :: i, k
@@ -131,9 +132,9 @@ contains
     end do
   end function terms_of_openings
 
-  !> Forces of the pairs on the nodes: N' R [force] [directions, nodes].
+  !> Nodal forces of the pairs: N' R [force] [directions, nodes].
   pure function pair_forces(model, force) result(nodal)
-    type(model_type), intent(in) :: model   !! the scene
+    type(model_type), intent(in) :: model
     real(wp), intent(in) :: force(:)  !! [pairs]
     real(wp) :: nodal(directions, model%nodes)
     integer :: i, k, node
@@ -147,13 +148,14 @@ contains
     end do
   end function pair_forces
 
-  !> A = -N Phi, the closing of the gaps by unit rigid motions, and P = Phi' f, the loads along these. There
-  !! is no closing of a pair that moves as a whole, or along itself, but for rounding: else a large force on
-  !! it would drive the body. Nor is there a load where loads cancel, or act across the motion: else rounding
-  !! would tell whether the body moves off. What acts on a held freedom does not count: its support has it.
+  !> Compute A = -N Phi, the gap closures by unit rigid-body displacements, and P = Phi' f, the loads along
+  !! these modes. Rounding is removed from A if a pair moves as a whole or tangentially; otherwise large
+  !! contact forces would drive the body. It is removed from P if loads cancel or act across the mode;
+  !! otherwise rounding would decide whether a body is unconstrained. Loads on fixed DOFs are left out,
+  !! because their supports carry them.
   subroutine see_motions(model, motions, closing, resultant)
-    type(model_type), intent(in) :: model   !! the scene
-    type(free_motions), intent(in) :: motions   !! free ones
+    type(model_type), intent(in) :: model
+    type(free_motions), intent(in) :: motions   !! unconstrained modes
     type(motion_matrix), intent(out) :: closing   !! A
     real(wp), allocatable, intent(out) :: resultant(:)    !! P [motions]
     type(motion_matrix) :: of_pair   ! rows of A
@@ -182,11 +184,12 @@ contains
 
   contains
 
-    !> A motion of a body that closes no gap is seldom along one axis: on a flat that leans by 1E-8 it is that
-    !! along x but for 1E-8 of y. What these two close, and what drives them, is alike but for rounding; in
-    !! units of the motion along x that would be a hold, and a load. So it is taken off all of the body's.
+    !> Remove rounding of modes that close no gap. They are seldom along one axis: on a flat surface inclined
+    !! by 1E-8, this mode is x minus 1E-8 y. Closures and loads of both modes then agree except for rounding,
+    !! which would restrain and load the combination. So its closures and load are subtracted from all modes
+    !! of the body.
     subroutine clear_slides(first, last)
-      integer, intent(in) :: first, last             !! motions of one body
+      integer, intent(in) :: first, last             !! modes of one body
       real(wp), allocatable :: noise(:), own(:, :), slide(:, :)
       real(wp) :: drive
       integer :: before, e, j, m
@@ -208,10 +211,10 @@ contains
       end do
     end subroutine clear_slides
 
-    !> Of each entry of these motions its row of A, by their travels.
+    !> Rows of A for each entry of these modes, divided by their largest displacements.
     pure function rows_of_entries(first, last) result(row)
       integer, intent(in) :: first, last
-      real(wp), allocatable :: row(:, :)   !! [entries, these]
+      real(wp), allocatable :: row(:, :)   !! [entries, these modes]
       integer :: before, e, i
 
       before = closing%start(first) - 1
@@ -227,10 +230,10 @@ contains
       end do
     end function rows_of_entries
 
-    !> Of each pair by the motions of the bodies that have its nodes.
+    !> Compute the closure of each pair by the modes of the bodies that have its nodes.
     subroutine close_gaps()
       real(wp) :: moved(directions, maxval([0, model%row_start(2:) - model%row_start(:model%pairs)]))
-      integer, allocatable :: pair(:), motion(:)   ! of each entry of A
+      integer, allocatable :: pair(:), motion(:)   ! row and column of each entry of A
       real(wp), allocatable :: by(:)
       real(wp) :: travel(motions%count)
       integer :: entries, i, j, k, m, n

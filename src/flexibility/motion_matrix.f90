@@ -1,5 +1,5 @@
-!> A, the closing of the gaps by unit rigid motions, column by column without zeros: a motion moves one body,
-!> and of many bodies each has few pairs.
+!> Matrix A of gap closures by unit rigid-body displacements, stored by columns without zeros: a mode moves
+!> one body, and each of many bodies has few pairs.
 module epcont_flexibility_motion_matrix
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
@@ -7,17 +7,17 @@ module epcont_flexibility_motion_matrix
   private
   public :: motion_matrix, dense_motions, new_motion_matrix
 
-  !> A motion closes gaps by this part of how far it takes the body, or it is measured as if it did: of two
-  !! that close the same gaps that along the flat is the one which is none.
+  !> Smallest closure of a mode divided by its largest displacement, for scaling. If two modes close the same
+  !! gaps, the one along the flat surface is treated as closing no gap.
   real(wp), parameter :: least_lever = 1.0e-4_wp
 
-  !> Motion j closes the gaps of the pairs pair(start(j):start(j+1)-1).
+  !> Mode j closes the gaps of the pairs pair(start(j):start(j+1)-1).
   type :: motion_matrix
-    integer :: pairs = 0                    !! of the problem
-    integer, allocatable :: start(:)        !! [motions + 1]
-    integer, allocatable :: pair(:)         !! ascending in each motion [entries]
+    integer :: pairs = 0                    !! number of pairs of the problem
+    integer, allocatable :: start(:)        !! [modes + 1]
+    integer, allocatable :: pair(:)         !! ascending in each mode [entries]
     real(wp), allocatable :: closing(:)     !! [entries]
-    !> How far each takes nodes of its pairs, at most; not allocated: not known [motions]
+    !> Largest displacement of the nodes of its pairs in each mode; not allocated if unknown [modes]
     real(wp), allocatable :: travel(:)
   contains
     procedure :: motions
@@ -36,12 +36,12 @@ module epcont_flexibility_motion_matrix
 
 contains
 
-  !> A from its entries; those that are zero are left out.
+  !> Make A from its entries; zeros are left out.
   pure type(motion_matrix) function new_motion_matrix(pairs, motions, pair, motion, closing) result(new)
     integer, intent(in) :: pairs, motions           !! rows and columns
     integer, intent(in) :: pair(:), motion(:)       !! row and column of each entry; rows ascend [entries]
-    real(wp), intent(in) :: closing(:)              !! each once [entries]
-    type(incidence) :: entries   ! of each motion
+    real(wp), intent(in) :: closing(:)              !! each entry once [entries]
+    type(incidence) :: entries   ! entries of each mode
 
     new%pairs = pairs
     entries = new_incidence(reshape(merge(motion, 0, closing /= 0.0_wp), [1, size(motion)]), motions)
@@ -50,9 +50,9 @@ contains
     new%closing = closing(entries%group)
   end function new_motion_matrix
 
-  !> The same from a matrix with all of its zeros.
+  !> Make A from a matrix with all its zeros.
   pure type(motion_matrix) function dense_motions(matrix) result(new)
-    real(wp), intent(in) :: matrix(:, :)   !! A [pairs, motions]
+    real(wp), intent(in) :: matrix(:, :)   !! A [pairs, modes]
     integer :: j, k
 
     associate (n => size(matrix, 1), m => size(matrix, 2))
@@ -61,15 +61,15 @@ contains
     end associate
   end function dense_motions
 
-  !> How many there are.
+  !> Number of modes.
   pure integer function motions(self)
     class(motion_matrix), intent(in) :: self
 
     motions = size(self%start) - 1
   end function motions
 
-  !> Largest entry of each motion, without its sign, or its least lever, where that is more; 0 of none
-  !! [motions].
+  !> Magnitude of the largest entry of each mode, but at least `least_lever` times its largest displacement; 0
+  !! if the mode closes no gap [modes].
   pure function sizes(self)
     class(motion_matrix), intent(in) :: self
     real(wp) :: sizes(size(self%start) - 1)
@@ -80,7 +80,7 @@ contains
     where (sizes > 0.0_wp) sizes = max(sizes, least_lever*self%travel)
   end function sizes
 
-  !> The same, and one for a motion that closes no gap [motions].
+  !> Units of the modes: `sizes`, or 1 for a mode that closes no gap [modes].
   pure function units(self)
     class(motion_matrix), intent(in) :: self
     real(wp) :: units(size(self%start) - 1)
@@ -89,10 +89,10 @@ contains
     where (units <= 0.0_wp) units = 1.0_wp
   end function units
 
-  !> The same in units of each motion.
+  !> Divide each column by its unit.
   pure type(motion_matrix) function over(self, unit) result(new)
     class(motion_matrix), intent(in) :: self
-    real(wp), intent(in) :: unit(:)        !! that each column is measured in [motions]
+    real(wp), intent(in) :: unit(:)        !! unit of each column [modes]
     integer :: j
 
     new%pairs = self%pairs
@@ -106,11 +106,11 @@ contains
     end do
   end function over
 
-  !> A q, the closing of the gaps by motions; or |A| |q|, what it is the sum of.
+  !> A q, the gap closures by rigid-body displacements; or |A| |q|, the sums of the magnitudes of their terms.
   pure function times(self, approach, magnitudes) result(closing)
     class(motion_matrix), intent(in) :: self
-    real(wp), intent(in) :: approach(:)    !! q [motions]
-    logical, intent(in), optional :: magnitudes   !! true: of A and q
+    real(wp), intent(in) :: approach(:)    !! q [modes]
+    logical, intent(in), optional :: magnitudes   !! true: of the entries of A and q
     real(wp) :: closing(self%pairs)
     real(wp) :: by
     integer :: i, j
@@ -133,10 +133,10 @@ contains
     end do
   end function times
 
-  !> A Q, the closing of some pairs' gaps by each of several motions [pairs, any].
+  !> A Q, the closures of some gaps by several rigid-body displacements [pairs, any].
   pure function of_each(self, approach, pairs) result(closing)
     class(motion_matrix), intent(in) :: self
-    real(wp), intent(in) :: approach(:, :)   !! Q [motions, any]
+    real(wp), intent(in) :: approach(:, :)   !! Q [modes, any]
     integer, intent(in) :: pairs(:)
     real(wp), allocatable :: closing(:, :)
     real(wp) :: all_pairs(self%pairs)
@@ -149,7 +149,7 @@ contains
     end do
   end function of_each
 
-  !> A'R, what forces carry along each motion [motions].
+  !> A'R, the loads that contact forces balance along each mode [modes].
   pure function carried(self, force) result(load)
     class(motion_matrix), intent(in) :: self
     real(wp), intent(in) :: force(:)   !! R [pairs]
@@ -164,7 +164,7 @@ contains
     end do
   end function carried
 
-  !> Closing of some pairs' gaps, zeros and all, by all motions or some [pairs, motions].
+  !> Closures of some gaps by all modes or some, with zeros [pairs, modes].
   pure function rows(self, pairs, motions) result(closing)
     class(motion_matrix), intent(in) :: self
     integer, intent(in) :: pairs(:)              !! each once
@@ -172,7 +172,7 @@ contains
     real(wp), allocatable :: closing(:, :)
     integer, allocatable :: chosen(:)
     integer :: i, j, k
-    integer :: row(self%pairs)   ! of each pair; 0: none
+    integer :: row(self%pairs)   ! row of each pair; 0 if it is not requested
 
     if (present(motions)) then
       chosen = motions
@@ -189,7 +189,7 @@ contains
     end do
   end function rows
 
-  !> All of it [pairs, motions].
+  !> The matrix with its zeros [pairs, modes].
   pure function dense(self)
     class(motion_matrix), intent(in) :: self
     real(wp), allocatable :: dense(:, :)
@@ -198,7 +198,7 @@ contains
     dense = self%rows([(k, k=1, self%pairs)])
   end function dense
 
-  !> A', the motions that close each pair, ascending: pairs and motions have changed places.
+  !> A', the modes that close each pair, ascending: pairs and modes are exchanged.
   pure type(motion_matrix) function turned(self)
     class(motion_matrix), intent(in) :: self
     integer :: i, j
@@ -208,9 +208,9 @@ contains
                                self%pair, self%closing)
   end function turned
 
-  !> Drop what closes a gap by up to a part of the motion's travel.
+  !> Drop closures of at most this part of the mode's largest displacement.
   pure subroutine drop(self, part)
-    class(motion_matrix), intent(inout) :: self   !! of known travels
+    class(motion_matrix), intent(inout) :: self   !! with known largest displacements
     real(wp), intent(in) :: part
     integer :: i, j, last, start
 
@@ -230,7 +230,7 @@ contains
     self%closing = self%closing(:last)
   end subroutine drop
 
-  !> With some of the motions only.
+  !> The columns of some modes.
   pure type(motion_matrix) function only(self, kept) result(fewer)
     class(motion_matrix), intent(in) :: self
     integer, intent(in) :: kept(:)   !! motions

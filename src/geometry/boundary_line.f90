@@ -1,12 +1,12 @@
-!> Sides of elements along the boundary of a body, where a point faces them, and which of them lie near by.
+!> Edges of elements along the boundary of a body, and projections of points on them.
 !>
-!> Sides are walked with the body to the left, so that outward is to the right. Normals at the nodes come from
-!> the two sides that meet there, exact on a circle (epcont_geometry_corners); along a side they turn from one
-!> to the other by its shape functions, so that none is met twice and none left out, and that on a circle, of
-!> chords or of parabolas, all pass through its centre. Where sides are chords, the boundary that is
-!> meant is the smooth curve through their ends: the gap is measured to it (an arc over each chord) and not to
-!> the chord, whose facets would show in the pressures. Force and counterforce still lie on one line, through
-!> the chord.
+!> The body is on the left of its edges, so the outward normal is on the right. Nodal normals are computed
+!> from the two edges that meet there, and are exact on a circle (epcont_geometry_corners). Along an edge,
+!> shape functions interpolate them, so that every point has one projection, and on a circle of chords or
+!> parabolas all normals pass through the centre. If the edges are chords, the true boundary is the smooth
+!> curve through their ends: the gap is measured to this curve (an arc over each chord), because the facets of
+!> chords would show in the pressures. Force and reaction are still collinear, with their line through the
+!> chord.
 module epcont_geometry_boundary_line
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: sorted_order
@@ -16,28 +16,27 @@ module epcont_geometry_boundary_line
   private
   public :: boundary_line, facing_type
 
-  !> Part of a side by which a point may stand beyond its end, more than the rounding of coordinates in eight
-  !! columns.
+  !> Distance beyond the end of an edge, divided by its length, that still counts as on the edge; more than
+  !! the rounding of coordinates with eight columns.
   real(wp), parameter, public :: beyond = 1.0e-5_wp
-  !> Steps of Newton's method, which needs five, and the change that ends it.
+  !> Steps of Newton's method (it needs five), and the change that ends it.
   integer, parameter :: most_steps = 30
-  !> So many sides away along a side nothing is faced.
+  !> Largest distance of a projection along an edge [lengths of the edge].
   real(wp), parameter :: farthest = 10.0_wp
   real(wp), parameter :: converged = 1.0e-14_wp
 
   type :: boundary_line
-    integer, allocatable :: segment(:, :)      !! nodes of each side: start, end, and middle or 0 [3, sides]
-    integer, allocatable :: element(:)         !! whose sides they are [sides]
-    integer, allocatable :: neighbour(:, :)    !! the sides before and after each, 0: there is none [2, sides]
+    integer, allocatable :: segment(:, :)      !! start, end, mid-side node (or 0) of each edge [3, sides]
+    integer, allocatable :: element(:)         !! element of each edge [sides]
+    integer, allocatable :: neighbour(:, :)    !! previous and next edge; 0 at an end of the line [2, sides]
     real(wp), allocatable :: x(:, :, :)        !! coordinates of the nodes [length] [2, 3, sides]
-    real(wp), allocatable :: normal(:, :, :)   !! outward, at start, end and middle of each side [2, 3, sides]
-    logical, allocatable :: corner(:, :)       !! its start, its end is a corner of the boundary [2, sides]
-    logical, allocatable :: tip(:, :)          !! and a convex one [2, sides]
-    !> Its start, its end lies on a line of symmetry, and the normal there: within that line, though it be a
-    !! corner.
+    real(wp), allocatable :: normal(:, :, :)   !! outward, at start, end and middle of each edge [2, 3, sides]
+    logical, allocatable :: corner(:, :)       !! start and end are corners of the boundary [2, sides]
+    logical, allocatable :: tip(:, :)          !! start and end are convex corners [2, sides]
+    !> Start and end lie on a line of symmetry, and the normal along that line, also if the end is a corner
     logical, allocatable :: mirrored(:, :)     !! [2, sides]
     real(wp), allocatable :: end_normal(:, :, :)   !! [2, 2, sides]
-    type(box_tree), private :: tree            !! of boxes round the sides, with their normals
+    type(box_tree), private :: tree            !! boxes of the edges, with their normals
   contains
     procedure :: set_boxes
     procedure :: in_box
@@ -50,30 +49,30 @@ module epcont_geometry_boundary_line
     procedure :: at
   end type boundary_line
 
-  !> Where a point faces a line.
+  !> Projection of a point on a line.
   type :: facing_type
     logical :: found = .false.
-    logical :: same_way = .false.    !! it does not, but a side near by looks the same way
-    integer :: segment = 0           !! the side
-    real(wp) :: s = 0.0_wp           !! from 0 at the start of the side to 1 at its end; or just beyond
-    real(wp) :: share(3) = 0.0_wp    !! of start, end and middle of the side in the place [-]
+    logical :: same_way = .false.    !! no projection, but a near edge has a similar normal
+    integer :: segment = 0           !! the edge
+    real(wp) :: s = 0.0_wp           !! from 0 at the start of the edge to 1 at its end, or slightly beyond
+    real(wp) :: share(3) = 0.0_wp    !! shape functions of start, end and middle of the edge [-]
     real(wp) :: normal(2) = 0.0_wp   !! outward
-    real(wp) :: gap = 0.0_wp         !! from the curve to the point, along the normal [length]
-    logical :: at_corner = .false.   !! the place is a corner of the boundary
+    real(wp) :: gap = 0.0_wp         !! distance from the curve to the point along the normal [length]
+    logical :: at_corner = .false.   !! projection on a corner of the boundary
   contains
     procedure :: cosine
   end type facing_type
 
-  !> One side, seen from its start: far from the origin its coordinates are exact differences.
+  !> An edge with coordinates relative to its start, which are exact differences even far from the origin.
   type :: side_type
-    logical :: curved = .false.             !! it has a middle node
-    real(wp) :: x(2, 3) = 0.0_wp            !! of start, end and middle [length]
-    real(wp) :: normal(2, 3) = 0.0_wp       !! there
+    logical :: curved = .false.             !! has a mid-side node
+    real(wp) :: x(2, 3) = 0.0_wp            !! start, end and middle [length]
+    real(wp) :: normal(2, 3) = 0.0_wp       !! normals there
   end type side_type
 
 contains
 
-  !> Put boxes round the sides.
+  !> Compute the boxes of the edges.
   pure subroutine set_boxes(self)
     class(boundary_line), intent(inout) :: self
     real(wp), dimension(2, 2, size(self%element)) :: box, normals
@@ -87,43 +86,44 @@ contains
     call self%tree%set_spans(normals)
   end subroutine set_boxes
 
-  !> Low and high corner of a side's box, beyond it by half of its length, as the curve over it may be.
+  !> Box of an edge, enlarged by half its length because of the curve over it: low and high corner.
   pure function box_of(self, side) result(box)
     class(boundary_line), intent(in) :: self
-    integer, intent(in) :: side   !! which side
+    integer, intent(in) :: side   !! number of the edge
     real(wp) :: box(2, 2)   !! [length]
 
     box(:, 1) = 0.5_wp*(self%x(:, 1, side) + self%x(:, 2, side)) - self%chord_length(side)
     box(:, 2) = 0.5_wp*(self%x(:, 1, side) + self%x(:, 2, side)) + self%chord_length(side)
   end function box_of
 
-  !> Least and largest components of the normals along a side, and somewhat beyond its ends.
+  !> Least and largest components of the normals along an edge, and slightly beyond its ends.
   pure function normals_of(self, side) result(normals)
     class(boundary_line), intent(in) :: self
-    integer, intent(in) :: side   !! which side
+    integer, intent(in) :: side   !! number of the edge
     real(wp) :: normals(2, 2)
 
     normals = span_along(self%normal(:, :, side), self%segment(3, side) > 0)
     normals = normals + 10.0_wp*beyond*spread([-1.0_wp, 1.0_wp], 1, 2)
   end function normals_of
 
-  !> The sides whose boxes are looked for, in their order. Their vectors are their normals.
+  !> Edges whose boxes meet a query, in their order. The vectors of the boxes are the normals.
   pure function in_box(self, query) result(sides)
     class(boundary_line), intent(in) :: self
-    class(box_query), intent(in) :: query   !! which boxes
+    class(box_query), intent(in) :: query   !! box to be met
     integer, allocatable :: sides(:)
 
     sides = self%tree%meeting(query)
-    sides = sides(sorted_order(sides))   ! not by the tree's: of equal ones the first counts
+    sides = sides(sorted_order(sides))   ! not in the order of the tree: of equal edges the first is used
   end function in_box
 
-  !> Some of the sides, in the order given; what lies beyond the ends is forgotten, but for the normals.
+  !> Take some edges in the given order. Neighbours that are not among them are dropped, but their normals
+  !! stay.
   pure function pick(self, sides) result(part)
     class(boundary_line), intent(in) :: self
-    integer, intent(in) :: sides(:)   !! their numbers
+    integer, intent(in) :: sides(:)   !! numbers of the edges
     type(boundary_line) :: part
     integer :: end, k
-    integer :: number(minval(sides):maxval(sides))   ! of many lines each has its own
+    integer :: number(minval(sides):maxval(sides))   ! each of many lines has its own table
 
     number = 0
     number(sides) = [(k, k=1, size(sides))]
@@ -141,7 +141,7 @@ contains
 
   contains
 
-    !> The new number of a side; 0: it is none of them.
+    !> New number of an edge; 0 if it is not taken.
     pure integer function numbered(side)
       integer, intent(in) :: side
 
@@ -150,28 +150,28 @@ contains
     end function numbered
   end function pick
 
-  !> Length of a side, from end to end [length].
+  !> Length of an edge, from end to end [length].
   pure real(wp) function chord_length(self, segment)
     class(boundary_line), intent(in) :: self
-    integer, intent(in) :: segment   !! which side
+    integer, intent(in) :: segment   !! number of the edge
 
     chord_length = norm2(self%x(:, 2, segment) - self%x(:, 1, segment))
   end function chord_length
 
-  !> Outward normal of a side itself, at a place from 0 to 1.
+  !> Outward normal of an edge itself (not interpolated) at a position.
   pure function own_normal(self, segment, s) result(normal)
     class(boundary_line), intent(in) :: self
-    integer, intent(in) :: segment   !! which side
+    integer, intent(in) :: segment   !! number of the edge
     real(wp), intent(in) :: s   !! from 0 to 1
     real(wp) :: normal(2)
 
     normal = unit(right_of(tangent_at(side_of(self, segment), s)))
   end function own_normal
 
-  !> Where a point faces a side: the place whose normal leads to it.
+  !> Project a point on an edge: find the position whose normal leads to the point.
   pure function face(self, segment, point) result(place)
     class(boundary_line), intent(in) :: self
-    integer, intent(in) :: segment   !! which side
+    integer, intent(in) :: segment   !! number of the edge
     real(wp), intent(in) :: point(2)    !! [length]
     type(facing_type) :: place
     type(side_type) :: side
@@ -202,10 +202,10 @@ contains
 
   contains
 
-    !> The place whose normal leads to the point, by Newton's method.
+    !> Find the position whose normal leads to the point, with Newton's method.
     pure subroutine find_foot(s, found)
       real(wp), intent(out) :: s      !! from 0 to 1, or beyond
-      logical, intent(out) :: found   !! there is one
+      logical, intent(out) :: found   !! there is a position
       real(wp) :: away(2), normal(2), rate, step
       integer :: k
 
@@ -229,18 +229,18 @@ contains
     end subroutine find_foot
   end function face
 
-  !> Cosine of the angle between the normals of two places.
+  !> Cosine of the angle between two normals.
   elemental real(wp) function cosine(self, other)
     class(facing_type), intent(in) :: self
-    class(facing_type), intent(in) :: other   !! of whatever line
+    class(facing_type), intent(in) :: other   !! projection on any line
 
     cosine = dot_product(self%normal, other%normal)
   end function cosine
 
-  !> Shape functions, place on the smooth curve and tangent at a place of a side.
+  !> Shape functions, point on the smooth curve and tangent at a position of an edge.
   pure subroutine at(self, segment, s, share, x, tangent)
     class(boundary_line), intent(in) :: self
-    integer, intent(in) :: segment   !! which side
+    integer, intent(in) :: segment   !! number of the edge
     real(wp), intent(in) :: s   !! from 0 to 1
     real(wp), intent(out) :: share(3), x(2), tangent(2)   !! shape functions; [length]; [length]
     type(side_type) :: side
@@ -261,8 +261,7 @@ contains
     side%normal = line%normal(:, :, segment)
   end function side_of
 
-  !> How far along its normal the smooth curve rises above a chord: exactly where the normals at the ends are
-  !! those of an arc [length].
+  !> Height of the smooth curve above a chord, along its normal; exact for an arc [length].
   pure real(wp) function rise(self, s)
     type(side_type), intent(in) :: self
     real(wp), intent(in) :: s   !! from 0 to 1
@@ -271,8 +270,8 @@ contains
     rise = 0.0_wp
     if (self%curved) return
     along = unit(self%x(:, 2))
-    ! An arc of radius r leans by asin(chord/(2 r)) at its ends, and is r - sqrt(r**2 - chord**2 s (1 - s))
-    ! above.
+    ! An arc of radius r is inclined by asin(chord/(2 r)) at its ends, and its height is r - sqrt(r**2 -
+    ! chord**2 s (1 - s)).
     lean = s*dot_product(self%normal(:, 2), along) - (1.0_wp - s)*dot_product(self%normal(:, 1), along)
     associate (w => s*(1.0_wp - s))
       rise = 2.0_wp*norm2(self%x(:, 2))*w*lean/(1.0_wp + sqrt(max(0.0_wp, 1.0_wp - 4.0_wp*w*lean**2)))
@@ -289,7 +288,7 @@ contains
     if (self%curved) values = [(1.0_wp - s)*(1.0_wp - 2.0_wp*s), s*(2.0_wp*s - 1.0_wp), 4.0_wp*s*(1.0_wp - s)]
   end function values
 
-  !> What they change by along the side.
+  !> Derivatives of the shape functions.
   pure function slopes(self, s)
     type(side_type), intent(in) :: self
     real(wp), intent(in) :: s   !! from 0 to 1
@@ -299,7 +298,7 @@ contains
     if (self%curved) slopes = [4.0_wp*s - 3.0_wp, 4.0_wp*s - 1.0_wp, 4.0_wp - 8.0_wp*s]
   end function slopes
 
-  !> Along the side, as long as it would be if it were straight on from there [length].
+  !> Derivative of the position with respect to s [length].
   pure function tangent_at(self, s) result(tangent)
     type(side_type), intent(in) :: self
     real(wp), intent(in) :: s   !! from 0 to 1

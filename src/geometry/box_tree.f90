@@ -1,9 +1,8 @@
-!> Which of many boxes meet a given one, without looking at all of them; of these, which a line meets, or a
-!> box that moves.
+!> Tree of boxes that finds the boxes that meet a given box, a line, or a moving box.
 !>
-!> The boxes are halved by their middles, across the longer way of their extent, again and again; node i of
-!> the tree has the children 2i and 2i + 1, and each node has the box round all that lies below it. A leaf is
-!> one box. Boxes may have vectors, too: normals of what is in them, or how it moves.
+!> The boxes are divided repeatedly into halves by their centres, along their larger extent. Node i of the
+!> tree has the children 2i and 2i + 1, and the box of all its descendants. A leaf is one box. Boxes may have
+!> vectors: normals of their contents, or displacements.
 module epcont_geometry_box_tree
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: halve
@@ -12,10 +11,10 @@ module epcont_geometry_box_tree
   public :: box_tree, box_query, line_query, motion_query, new_box_tree
 
   type :: box_tree
-    integer, allocatable :: item(:)      !! which box a leaf is; 0: no leaf [nodes]
-    real(wp), allocatable :: low(:, :)   !! corner of each node's box [length] [2, nodes]
-    real(wp), allocatable :: high(:, :)  !! the opposite one [length] [2, nodes]
-    !> Least and largest components of the vectors of what is in each node's box; not allocated: it has none
+    integer, allocatable :: item(:)      !! number of the box of each leaf; 0 for other nodes [nodes]
+    real(wp), allocatable :: low(:, :)   !! low corner of each node's box [length] [2, nodes]
+    real(wp), allocatable :: high(:, :)  !! high corner [length] [2, nodes]
+    !> Least and largest components of the vectors in each node's box; not allocated if there are no vectors
     !! [2, 2, nodes]
     real(wp), allocatable :: span(:, :, :)
   contains
@@ -24,37 +23,37 @@ module epcont_geometry_box_tree
     procedure :: away
   end type box_tree
 
-  !> What is looked for: boxes that meet this one.
+  !> Query: boxes that meet this one.
   type :: box_query
     real(wp) :: low(2) = 0.0_wp, high(2) = 0.0_wp   !! [length]
   contains
     procedure :: may_meet
   end type box_query
 
-  !> Those that a line may pass through, too: one from a place of another box, between some directions.
+  !> Query: also boxes that a line meets, which starts in another box within a range of directions.
   type, extends(box_query) :: line_query
-    real(wp) :: from(2, 2) = 0.0_wp      !! low and high corner of that box [length]
-    logical :: by_vectors = .false.      !! the directions are the vectors of each box that is looked for
-    real(wp) :: along(2, 2) = 0.0_wp     !! else their least and largest components
+    real(wp) :: from(2, 2) = 0.0_wp      !! low and high corner of the start box [length]
+    logical :: by_vectors = .false.      !! the directions are the vectors of the boxes
+    real(wp) :: along(2, 2) = 0.0_wp     !! otherwise least and largest components of the directions
   contains
     procedure :: may_meet => may_pass
   end type line_query
 
-  !> Those that a moving box meets on its way, while each moves by its vectors: both are where they are said
-  !! to be at time 1, and went there straight from time 0 on.
+  !> Query: boxes that a moving box meets, while each of them moves by its vectors. Boxes are given at time 1;
+  !! motions are straight and begin at time 0.
   type, extends(box_query) :: motion_query
-    real(wp) :: motion(2) = 0.0_wp                 !! of the box that is given [length]
-    real(wp) :: time(2) = [0.0_wp, 1.0_wp]         !! from when until when
+    real(wp) :: motion(2) = 0.0_wp                 !! displacement of the given box [length]
+    real(wp) :: time(2) = [0.0_wp, 1.0_wp]         !! start and end of the time range
   contains
     procedure :: may_meet => may_be_met
   end type motion_query
 
-  !> Nodes that wait while a tree is walked, at most: one a level and one more.
+  !> Largest number of nodes that wait during a walk through a tree: one on each level, and one more.
   integer, parameter, public :: most_waiting = bit_size(1) + 1
 
 contains
 
-  !> The tree of boxes from `low` to `high`.
+  !> Make the tree of boxes between `low` and `high`.
   pure function new_box_tree(low, high) result(tree)
     real(wp), intent(in) :: low(:, :), high(:, :)   !! [length] [2, boxes]
     type(box_tree) :: tree
@@ -66,7 +65,7 @@ contains
     allocate (tree%low(2, nodes), source=huge(1.0_wp))
     tree%high = -tree%low
     order = [(i, i=1, size(low, 2))]
-    if (size(order) == 0) return   ! a root that nothing meets
+    if (size(order) == 0) return   ! a root that no box meets
     first(1) = 1
     last(1) = size(order)
     do i = 1, nodes
@@ -74,7 +73,7 @@ contains
       associate (own => order(first(i):last(i)))
         tree%low(:, i) = minval(low(:, own), dim=2)
         tree%high(:, i) = maxval(high(:, own), dim=2)
-        if (size(own) == 1) tree%item(i) = own(1)   ! a leaf
+        if (size(own) == 1) tree%item(i) = own(1)   ! leaf
         if (size(own) == 1) cycle
         axis = maxloc(tree%high(:, i) - tree%low(:, i), dim=1)
         call halve(low(axis, own) + high(axis, own), own)
@@ -85,10 +84,10 @@ contains
     end do
   end function new_box_tree
 
-  !> Give the boxes their vectors.
+  !> Set the vectors of the boxes.
   pure subroutine set_spans(self, span)
     class(box_tree), intent(inout) :: self
-    real(wp), intent(in) :: span(:, :, :)   !! least and largest components of those of each [2, 2, boxes]
+    real(wp), intent(in) :: span(:, :, :)   !! least and largest components for each box [2, 2, boxes]
     integer :: i
 
     allocate (self%span(2, 2, size(self%item)))
@@ -104,10 +103,10 @@ contains
     end do
   end subroutine set_spans
 
-  !> The boxes that are looked for, in their order in the tree.
+  !> Boxes that meet a query, in the order of the tree.
   pure function meeting(self, query) result(found)
     class(box_tree), intent(in) :: self
-    class(box_query), intent(in) :: query   !! which boxes
+    class(box_query), intent(in) :: query   !! box to be met
     integer, allocatable :: found(:)
     integer :: count, i, waiting(most_waiting), waits
 
@@ -131,20 +130,21 @@ contains
     found = found(:count)
   end function meeting
 
-  !> Does a box meet that of a node?
+  !> Does the box of the query meet that of a node?
   pure logical function may_meet(self, tree, node)
     class(box_query), intent(in) :: self
-    type(box_tree), intent(in) :: tree   !! of which
-    integer, intent(in) :: node          !! its node
+    type(box_tree), intent(in) :: tree
+    integer, intent(in) :: node          !! number of the node
 
     may_meet = all(self%low <= tree%high(:, node)) .and. all(self%high >= tree%low(:, node))
   end function may_meet
 
-  !> May a line pass through a node's box? The vector product of its direction and the way there vanishes.
+  !> May a line of the query meet a node's box? Then the vector product of its direction and the distance can
+  !! be zero.
   pure logical function may_pass(self, tree, node)
     class(line_query), intent(in) :: self
-    type(box_tree), intent(in) :: tree   !! of which
-    integer, intent(in) :: node          !! its node
+    type(box_tree), intent(in) :: tree
+    integer, intent(in) :: node          !! number of the node
     real(wp) :: along(2, 2), least(2), most(2), way(2)
     integer :: k
 
@@ -160,12 +160,12 @@ contains
     may_pass = least(1) <= most(2) .and. least(2) <= most(1)
   end function may_pass
 
-  !> Does a moving box meet that of a node? Their distances along an axis are linear in time: each leaves a
-  !! part of it.
+  !> Does a moving box meet that of a node? Distances along an axis are linear in time: each axis leaves a
+  !! part of the time range.
   pure logical function may_be_met(self, tree, node)
     class(motion_query), intent(in) :: self
-    type(box_tree), intent(in) :: tree   !! of which
-    integer, intent(in) :: node          !! its node
+    type(box_tree), intent(in) :: tree
+    integer, intent(in) :: node          !! number of the node
     real(wp) :: ends(2), now(4), rate(4), time(2)
     integer :: k
 
@@ -182,10 +182,10 @@ contains
     may_be_met = .true.
   end function may_be_met
 
-  !> Square of the distance of a point from the box of a node; 0 in it [length**2].
+  !> Square of the distance of a point from the box of a node; 0 inside [length**2].
   pure real(wp) function away(self, node, point)
     class(box_tree), intent(in) :: self
-    integer, intent(in) :: node   !! its node
+    integer, intent(in) :: node   !! number of the node
     real(wp), intent(in) :: point(2)   !! [length]
 
     away = sum(max(self%low(:, node) - point, 0.0_wp, point - self%high(:, node))**2)

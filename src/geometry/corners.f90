@@ -1,11 +1,11 @@
-!> Corners of a boundary, and its normals: what is a corner is decided by how the boundary turns around it.
+!> Corners and normals of a boundary. The rotations of the boundary at neighbouring nodes decide what is a
+!> corner.
 !>
-!> Where sides are chords of a curve, neighbouring nodes turn alike; at a chamfer one node turns and those
-!> beside it do not.
+!> Along chords of a curve, neighbouring nodes have similar rotations. At a chamfer one node has a rotation,
+!> and its neighbours have none.
 !>
-!>     turns  30 30 30 30   a circle of twelve sides: smooth      0 30 0   a chamfer: a corner
-!>            0 15 30 15 0  an arc of two sides: smooth           0 30 30 0   one side across a corner: two
-!> corners
+!>     rotations  30 30 30 30   circle of twelve edges: smooth     0 30 0      chamfer: a corner
+!>                0 15 30 15 0  arc of two edges: smooth           0 30 30 0   edge across a corner: two corners
 module epcont_geometry_corners
   use epcont_base_kinds, only: wp
   use epcont_geometry_boundary_line, only: boundary_line
@@ -16,28 +16,28 @@ module epcont_geometry_corners
 
   real(wp), parameter :: &
     degree = acos(-1.0_wp)/180.0_wp, &
-    !> A turn below the first is smooth, one above the second a corner, whatever lies beside them. Neither is
-    !! an angle that people draw: rounding must not decide.
+    !> Rotations below the first are smooth, above the second corners, whatever the neighbours. Neither is an
+    !! angle used in drawings, so that rounding does not decide.
     always_smooth = 4.7_wp*degree, always_corner = 35.3_wp*degree, &
-    !> Turns that differ by less than this factor are those of one curve, its sides graded.
+    !> Rotations whose ratio is below this belong to one curve with graded edges.
     alike = 1.0_wp/0.39_wp, &
-    !> Turns that differ from PARAM CORNER by less are as large.
+    !> Rotations that differ from PARAM CORNER by less are equal to it.
     rounding = 1.0e-6_wp*degree
-  !> Held in x and y.
+  !> Fixed in x and y.
   integer, parameter :: both = 3
 
 contains
 
-  !> Normals at the ends of the sides, corners and lines of symmetry, and boxes round the sides. A side's
-  !! neighbours are known.
+  !> Compute normals at the ends of the edges, corners, lines of symmetry, and boxes of the edges. The
+  !! neighbours of the edges are known.
   subroutine find_normals(line, held, angle)
-    type(boundary_line), intent(inout) :: line   !! its sides, whose normals are set
-    !> The direction in which its start, its end is held: 0 none, 3 both [2, sides]
+    type(boundary_line), intent(inout) :: line   !! its edges; their normals are set
+    !> Direction in which start and end are fixed: 0 not fixed, 3 both [2, sides]
     integer, intent(in) :: held(:, :)
-    !> Turns above it are corners, others are not [degree]; 0: decided here
+    !> Rotations above this are corners, others are not [degree]; 0: decided here
     real(wp), intent(in) :: angle
-    !> Normals of each side itself at its ends; turns of the boundary there, positive where it is convex; none
-    !! beyond its ends
+    !> Normals of each edge itself at its ends; rotations of the boundary there, positive if convex, zero at
+    !! the ends of the line
     real(wp) :: own(2, 2, size(line%element)), turn(2, 0:size(line%element))
     logical :: ends_there(2, size(line%element))
     integer :: end, i, n
@@ -72,23 +72,23 @@ contains
 
   contains
 
-    !> Does a side meet a line of symmetry at its end, along which the body is cut, and across which that is
-    !! held? A node held by itself, to keep a body from drifting, is no cut.
+    !> Does an edge end on a line of symmetry, along which the body is cut and across which this line is
+    !! fixed? A single fixed node, which keeps a body from drifting, is not a cut.
     pure logical function is_mirrored(end, side)
       integer, intent(in) :: end, side
 
       associate (d => held(end, side), next => line%neighbour(end, side))
         is_mirrored = d /= 0 .and. d /= both .and. held(3 - end, side) /= d
         if (is_mirrored) is_mirrored = abs(own(3 - d, end, side)) >= abs(own(d, end, side))
-        if (.not. is_mirrored .or. next == 0) return   ! nothing is known of what lies beyond
-        ! A cut meets the side at a corner; on a curve the next side may look like one from 45 degrees on.
+        if (.not. is_mirrored .or. next == 0) return   ! the continuation is unknown
+        ! A cut meets the edge at a corner. On a curve, the next edge looks like a cut above 45 degrees.
         is_mirrored = abs(turn(end, side)) >= always_corner .and. any(held(end, next) == [d, both]) .and. &
                       abs(own(3 - d, 3 - end, next)) < abs(own(d, 3 - end, next))
       end associate
     end function is_mirrored
 
-    !> The normal within a line of symmetry where a side meets it, and the turn there, as the side goes on
-    !! beyond it.
+    !> Set the normal along a line of symmetry at the end of an edge, and the rotation there: the edge
+    !! continues with its mirror image.
     subroutine reflect()
       real(wp) :: mirrored(2)
 
@@ -101,8 +101,8 @@ contains
     end subroutine reflect
   end subroutine find_normals
 
-  !> Is the end of a side within a curve (those on both sides turn as it does, and are no corners), or the
-  !! first or the last node of one (beside a node within it, and they turn like that)?
+  !> Is the end of an edge inside a curve (both neighbours have similar rotations and are not corners), or at
+  !! the end of a curve (next to a node inside it with a similar rotation)?
   pure function is_on_curve(line, turn, n) result(on)
     type(boundary_line), intent(in) :: line
     real(wp), intent(in) :: turn(:, 0:)
@@ -132,7 +132,7 @@ contains
 
   contains
 
-    !> The end of a side, and that side, beyond the end of another: of itself where it is mirrored.
+    !> Next end of the boundary beyond an end of an edge, and its edge; the same edge if it is mirrored.
     pure function beyond(end, side)
       integer, intent(in) :: end, side
       integer :: beyond(2)
@@ -141,8 +141,8 @@ contains
     end function beyond
   end function is_on_curve
 
-  !> Normals from the sides that meet, or from the other end of the side. By how much those at its ends are
-  !! not its own counts along it, too.
+  !> Set normals from the edges that meet, or from the other end of the edge. Differences from the edge's own
+  !! normals at its ends are interpolated along it.
   subroutine set_normals(own, n, line)
     real(wp), intent(in) :: own(:, :, :)
     integer, intent(in) :: n
@@ -172,7 +172,8 @@ contains
     end do
   end subroutine set_normals
 
-  !> Normals of the circle through start, end and middle of a side, there; of a chord its own.
+  !> Normals of the circle through start, end and middle of an edge at these nodes; for a chord, its own
+  !! normal.
   pure function arc_normals(line, own, side) result(normal)
     type(boundary_line), intent(in) :: line
     real(wp), intent(in) :: own(:, :, :)
@@ -188,9 +189,9 @@ contains
     normal(:, 2) = mirror_of(normal(:, 3), unit(right_of(half(:, 2))))
   end function arc_normals
 
-  !> Of a circle through both ends of a chord the one normal mirrors the other.
+  !> Mirror image of a normal of a circle at one end of a chord: the normal at the other end.
   pure function mirror_of(normal, chord)
-    real(wp), intent(in) :: normal(2), chord(2)   !! at one end; of the chord
+    real(wp), intent(in) :: normal(2), chord(2)   !! normal at one end; the chord
     real(wp) :: mirror_of(2)
 
     mirror_of = 2.0_wp*dot_product(normal, chord)*chord - normal

@@ -1,4 +1,4 @@
-!> Edges of elements, straight or with a node between: where they go, and integration along them.
+!> Integration along edges of elements, straight or with a mid-side node.
 module epcont_geometry_edge
   use epcont_base_kinds, only: wp
   implicit none
@@ -15,16 +15,16 @@ module epcont_geometry_edge
                          weight(4) = 0.5_wp + [-1, 1, 1, -1]*sqrt(30.0_wp)/36.0_wp
 
   type :: edge_point
-    real(wp) :: values(3) = 0.0_wp   !! shape functions of its beginning, its end and its middle node
+    real(wp) :: values(3) = 0.0_wp   !! shape functions of start, end and mid-side node
     real(wp) :: x(2) = 0.0_wp        !! [length]
-    !> Along the edge, as long as the part of it that belongs to the point [length]
+    !> Tangent, with the length of the part of the edge that belongs to the point [length]
     real(wp) :: tangent(2) = 0.0_wp
-    real(wp) :: along = 0.0_wp       !! from 0 at its beginning to 1 at its end
+    real(wp) :: along = 0.0_wp       !! from 0 at the start to 1 at the end
   end type edge_point
 
 contains
 
-  !> The integration points of an edge from its beginning and end, and its middle node where it has one.
+  !> Integration points of an edge with given start, end and, if it has one, mid-side node.
   pure function edge_points(x) result(point)
     real(wp), intent(in) :: x(:, :)   !! [length] [2, 2 or 3]
     type(edge_point) :: point(edge_point_count)
@@ -34,8 +34,8 @@ contains
     do p = 1, edge_point_count
       s = place(p)
       point(p)%values = [0.5_wp*(1.0_wp - s), 0.5_wp*(1.0_wp + s), 0.0_wp]
-      ! From differences: along an axis no rounding is left across it, which would push what is free to move
-      ! there.
+      ! Differences leave no rounding across an edge along an axis. Such rounding would be a load on an
+      ! unconstrained mode.
       point(p)%tangent = 0.5_wp*(x(:, 2) - x(:, 1))
       if (size(x, 2) == 3) then
         point(p)%values = [0.5_wp*s*(s - 1.0_wp), 0.5_wp*s*(s + 1.0_wp), 1.0_wp - s*s]

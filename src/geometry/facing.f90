@@ -1,8 +1,7 @@
-!> What a point of one boundary faces of another.
+!> Projection of a point of one boundary on another.
 !>
-!> A side is faced where its normal leads to the point, the two boundaries look against each other, and no
-!> body stands between. The nearest counts; in a concave corner, where a second face is about as near, that
-!> one too.
+!> An edge is opposite a point if its normal leads to the point, both boundaries face each other, and no body
+!> lies between. The nearest edge is used; in a concave corner, also a second edge at a similar distance.
 module epcont_geometry_facing
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: cancelled, least_difference
@@ -13,41 +12,41 @@ module epcont_geometry_facing
   private
   public :: find_facing, looking_point, node_of, rise_of
 
-  !> Boundaries face each other whose normals' cosine is below this: a wall at a right angle to a floor does
-  !! not face it,
-  !> however rounding has turned the scene. (93 degrees: no angle that people draw.)
+  !> Boundaries are opposite if the cosine of their normals is below this: a wall at a right angle to a floor
+  !! is not opposite, whatever the rounding in a rotated model. (93 degrees: an angle that is not used in
+  !! drawings.)
   real(wp), parameter :: against = -0.05_wp
-  !> Normals that differ by less (cosine) are those of one face: 10 degrees.
+  !> Normals with a larger cosine belong to the same face: 10 degrees.
   real(wp), parameter, public :: same_face = 0.985_wp
-  !> Most points have the line before their eyes: it is looked for within so many lengths of their own side
-  !! first, and so many times farther in each round.
+  !> Most points are close to the line: the first search is within this number of lengths of their own edge,
+  !! and each further one is larger by this factor.
   real(wp), parameter :: nearby = 3.0_wp, widening = 8.0_wp
   real(wp), parameter :: &
-    !> Bodies are not thinner than this part of their sides: where the gap is smaller nothing stands between.
+    !> Bodies are not thinner than this part of their edges: nothing can lie in smaller gaps.
     thin = 1.0e-3_wp, &
-    !> Curves rise above the chords of their sides by an eighth of chord times turn; nearer to a side than
-    !! this much of it, and than this part of the way, is the side itself.
+    !> Curves rise above their chords by an eighth of chord times rotation. Points nearer to an edge than this
+    !! part of the rise, and than this part of the distance, are on the edge itself.
     rise = 0.2_wp, at_end = 0.01_wp, &
-    !> What stands between is looked for this part of the side away from a node, towards the middle of its
-    !! side: flush faces do not count.
+    !> The search for bodies between starts at this part of the edge from a node towards the middle of its
+    !! edge, so that flush faces are ignored.
     aside = 1.0e-3_wp
 
-  !> Who looks.
+  !> Point to be projected.
   type :: looking_point
     real(wp) :: x(2) = 0.0_wp         !! [length]
     real(wp) :: outward(2) = 0.0_wp   !! normal of its own boundary
-    real(wp) :: along(2) = 0.0_wp     !! from there to the middle of its own side [length]
-    real(wp) :: rise = 0.0_wp         !! how far its own curve may be from the sides there [length]
-    integer :: node = 0               !! sides that end at this node do not count; 0: it is none
-    logical :: at_tip = .false.       !! a convex corner of its own boundary
+    real(wp) :: along(2) = 0.0_wp     !! vector to the middle of its own edge [length]
+    real(wp) :: rise = 0.0_wp         !! possible height of its own curve above the edges there [length]
+    integer :: node = 0               !! edges that end at this node are ignored; 0 if the point is not a node
+    logical :: at_tip = .false.       !! convex corner of its own boundary
   end type looking_point
 
 contains
 
   !> A node of a side: 1 its start, 2 its end, 3 its middle.
   pure function node_of(line, side, which) result(from)
-    class(boundary_line), intent(in) :: line   !! its sides
-    integer, intent(in) :: side, which   !! side; 1 its start, 2 its end, 3 its middle
+    class(boundary_line), intent(in) :: line
+    integer, intent(in) :: side, which   !! edge; 1 start, 2 end, 3 middle
     type(looking_point) :: from
 
     from%x = line%x(:, which, side)
@@ -59,12 +58,12 @@ contains
     if (which < 3) from%at_tip = line%tip(which, side)
   end function node_of
 
-  !> What a point faces of a line, not farther than `search`: first the side nearest by, then a second face,
-  !! if that is farther by less than the point's own side is long.
+  !> Project a point on a line, within the distance `search`: first on the nearest edge, then on a second face
+  !! that is farther by less than the length of the point's own edge.
   pure function find_facing(line, obstacles, from, search) result(face)
-    type(boundary_line), intent(in) :: line        !! that is looked at
-    type(boundary_line), intent(in) :: obstacles   !! the outlines of all bodies
-    type(looking_point), intent(in) :: from        !! who looks
+    type(boundary_line), intent(in) :: line        !! line to project on
+    type(boundary_line), intent(in) :: obstacles   !! outlines of all bodies
+    type(looking_point), intent(in) :: from        !! point to be projected
     real(wp), intent(in) :: search                 !! [length]
     type(facing_type) :: face(2)
     type(facing_type), allocatable :: met(:)
@@ -80,7 +79,7 @@ contains
       sides = line%in_box(line_query(from%x - within, from%x + within, spread(from%x, 2, 2), .true.))
       met = [(look_at(sides(k)), k=1, size(sides))]
       face = best_two(pack(met, met%found))
-      ! Sides that were left out are farther than `within`.
+      ! Edges that were left out are farther away than `within`.
       if (face(1)%found .and. abs(face(1)%gap) + more < within - 2.0_wp*least_difference*search) exit
       if (within >= search) exit
       within = min(search, widening*within)
@@ -91,7 +90,7 @@ contains
 
   contains
 
-    !> Where the point faces a side: found, if that counts.
+    !> Project the point on an edge; `found` if the projection is valid.
     pure type(facing_type) function look_at(side) result(face)
       integer, intent(in) :: side
       real(wp) :: away(2), cosine
@@ -104,7 +103,7 @@ contains
       face%found = cosine < against
       face%same_way = cosine > -against
       if (.not. face%found) return
-      if (face%at_corner .and. .not. from%at_tip) then   ! pressed along the normal of the smooth boundary
+      if (face%at_corner .and. .not. from%at_tip) then   ! in contact along the normal of the smooth boundary
         away = face%gap*face%normal
         face%normal = -from%outward
         face%gap = dot_product(face%normal, away)
@@ -113,11 +112,11 @@ contains
       if (face%found) face%found = .not. is_blocked(line, obstacles, from, ahead, face)
     end function look_at
 
-    !> The best face, and the nearest of those that look another way.
+    !> The best projection, and the nearest one with a different normal.
     pure function best_two(met) result(best)
       type(facing_type), intent(in) :: met(:)
       type(facing_type) :: best(2)
-      logical :: taken(size(met))   ! in the best one
+      logical :: taken(size(met))   ! has the same face as the best one
       real(wp) :: by
       integer :: i
 
@@ -126,7 +125,7 @@ contains
       taken = [(i == 1, i=1, size(met))]
       do i = 2, size(met)
         by = advantage(met(i), best(1))
-        ! Of equal ones that which lies more before the middle of the point's own side.
+        ! Of equal ones, the one opposite the middle of the point's own edge is better.
         if (by == 0.0_wp .and. aside_of(met(i)) < aside_of(best(1))*(1.0_wp - least_difference)) by = 1.0_wp
         if (by > 0.0_wp) then
           best(1) = met(i)
@@ -143,8 +142,8 @@ contains
       if (i > 0) best(2) = met(i)
     end function best_two
 
-    !> By how much a face is better than another: it is nearer, or as near and looks more against the point's
-    !! own boundary. 0: it is as good.
+    !> Advantage of one projection over another: it is nearer, or as near with a more opposite normal. 0 if
+    !! both are equal.
     pure real(wp) function advantage(one, other) result(by)
       type(facing_type), intent(in) :: one, other
 
@@ -154,7 +153,7 @@ contains
       if (abs(by) <= least_difference) by = 0.0_wp
     end function advantage
 
-    !> How far what is faced lies from the middle of the point's own side [length].
+    !> Distance from the projected point on the opposite edge to the middle of the point's own edge [length].
     pure real(wp) function aside_of(face)
       type(facing_type), intent(in) :: face
 
@@ -162,13 +161,14 @@ contains
     end function aside_of
   end function find_facing
 
-  !> Does a body stand between the point and what it faces?
+  !> Does a body lie between the point and its projection?
   pure logical function is_blocked(line, obstacles, from, ahead, face)
     type(boundary_line), intent(in) :: line, obstacles
     type(looking_point), intent(in) :: from
     real(wp), intent(in) :: ahead(2)
     type(facing_type), intent(in) :: face
-    ! Parts of the way that do not count at its ends; of the way and of a side, where they cross
+    ! Parts at the ends of the line of sight that are ignored; parts of this line and of an edge at which they
+    ! cross
     real(wp) :: near(2), part(2), place(2)
     integer, allocatable :: between(:)
     integer :: i
@@ -190,8 +190,8 @@ contains
     end do
   end function is_blocked
 
-  !> Does an overlap go on along the point's own side? (The corner of a block that stands on another is no
-  !! overlap with the other's flank, however far it lies behind that.)
+  !> Does a penetration continue along the point's own edge? (The corner of a block on top of another does not
+  !! penetrate the other's flank, however far it is from it.)
   pure logical function goes_on(line, search, ahead, side)
     type(boundary_line), intent(in) :: line
     real(wp), intent(in) :: search, ahead(2)
@@ -209,8 +209,7 @@ contains
     end do
   end function goes_on
 
-  !> Of two sides that a corner faces equally well at their corner none is the better one: between their
-  !! normals.
+  !> If a corner is equally far from two edges at their common corner, take the mean of their normals.
   pure subroutine take_mean(other, face)
     type(facing_type), intent(in) :: other
     type(facing_type), intent(inout) :: face
@@ -222,10 +221,10 @@ contains
     face%gap = (face%gap + other%gap)/norm2(both)
   end subroutine take_mean
 
-  !> How far the curve that a side means may be from it [length].
+  !> Largest height of the true curve above an edge [length].
   pure real(wp) function rise_of(line, side)
-    class(boundary_line), intent(in) :: line   !! its sides
-    integer, intent(in) :: side   !! which side
+    class(boundary_line), intent(in) :: line
+    integer, intent(in) :: side   !! number of the edge
 
     rise_of = rise*line%chord_length(side)*norm2(line%normal(:, 2, side) - line%normal(:, 1, side))
   end function rise_of

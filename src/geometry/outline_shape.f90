@@ -1,5 +1,5 @@
-!> The outlines of the bodies, and in one state, as drawn or displaced, what a point is near to, and whether a
-!> body has it inside. Sides of six-node elements are the parabolas that they are.
+!> Outlines of the bodies in one state, undeformed or displaced: nearest point of an outline, and whether a
+!> point is inside. Edges of six-node elements are parabolas.
 module epcont_geometry_outline_shape
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: least_difference
@@ -9,35 +9,33 @@ module epcont_geometry_outline_shape
   private
   public :: outline_type, outline_shape, near_place, new_outline_shape
 
-  !> Places of a curved side that are tried first, and steps of Newton's method from the nearest of them.
+  !> Points of a curved edge that are tried first, and steps of Newton's method from the nearest of them.
   integer, parameter :: tried = 4, most_steps = 8
 
-  !> Farther than anything is, and its square still a number.
+  !> Larger than all distances; its square does not overflow.
   real(wp), parameter :: far = 1.0e150_wp
 
-  !> The outlines of all bodies: the sides that one element alone has. Each is walked with the body to the
-  !! left, and so are the edges of holes. Nodes without elements have none.
-  !!
-  !! Part 1 has the sides first(1) to first(2) - 1, and so on.
+  !> Outlines of all bodies: the edges that belong to one element only, with the body on the left, also along
+  !! holes. Nodes without elements have no outline. Part 1 has the edges first(1) to first(2) - 1, and so on.
   type :: outline_type
     integer :: sides = 0
-    integer :: parts = 0                   !! that elements join; what RBE2 alone join are two
-    integer, allocatable :: node(:, :)     !! where a side begins, where it ends, its middle or 0 [3, sides]
-    integer, allocatable :: element(:)     !! whose side it is [sides]
-    integer, allocatable :: before(:)      !! the side that ends where it begins [sides]
-    integer, allocatable :: after(:)       !! the side that begins where it ends [sides]
+    integer :: parts = 0                   !! sets of connected elements; RBE2 does not connect
+    integer, allocatable :: node(:, :)     !! start, end, and mid-side node or 0 of each edge [3, sides]
+    integer, allocatable :: element(:)     !! element of each edge [sides]
+    integer, allocatable :: before(:)      !! edge that ends at its start [sides]
+    integer, allocatable :: after(:)       !! edge that starts at its end [sides]
     integer, allocatable :: part(:)        !! [sides]
     integer, allocatable :: first(:)       !! [parts + 1]
-    integer, allocatable :: part_of(:)     !! part of each node; 0: it has no elements [nodes]
+    integer, allocatable :: part_of(:)     !! part of each node; 0 if it has no elements [nodes]
   end type outline_type
 
   type :: outline_shape
     type(outline_type) :: outline
-    !> Of where each side begins and ends, and of its middle [length] [2, 3, sides]
+    !> Start, end and middle of each edge [length] [2, 3, sides]
     real(wp), allocatable :: x(:, :, :)
-    real(wp), allocatable :: low(:, :), high(:, :)  !! box of each side [length] [2, sides]
-    type(box_tree), allocatable :: side_tree(:)  !! of each part; the sides are counted from its first
-    type(box_tree) :: part_tree                  !! of the parts' boxes
+    real(wp), allocatable :: low(:, :), high(:, :)  !! box of each edge [length] [2, sides]
+    type(box_tree), allocatable :: side_tree(:)  !! tree of each part; edges are counted from its first
+    type(box_tree) :: part_tree                  !! tree of the boxes of the parts
   contains
     procedure :: at
     procedure :: tangent
@@ -48,20 +46,20 @@ module epcont_geometry_outline_shape
     procedure :: is_inside
   end type outline_shape
 
-  !> The place of a part's outline that is nearest to a point.
+  !> Point of a part's outline that is nearest to a given point.
   type :: near_place
-    integer :: side = 0                       !! 0: none
-    real(wp) :: s = 0.0_wp                    !! from 0 to 1 along it
+    integer :: side = 0                       !! 0 if not found
+    real(wp) :: s = 0.0_wp                    !! position on the edge, from 0 to 1
     real(wp) :: x(2) = 0.0_wp                 !! [length]
     real(wp) :: distance = far                !! [length]
-    logical :: inside = .false.               !! the point is in the body there
+    logical :: inside = .false.               !! the given point is inside the body there
   end type near_place
 
 contains
 
-  !> The outlines with the nodes at `x`.
+  !> Make the outlines with the nodes at `x`.
   pure function new_outline_shape(outline, x) result(shape)
-    type(outline_type), intent(in) :: outline   !! of all bodies
+    type(outline_type), intent(in) :: outline
     real(wp), intent(in) :: x(:, :)   !! [length] [2, nodes]
     type(outline_shape) :: shape
     real(wp) :: box(2, 2)
@@ -91,39 +89,39 @@ contains
     end associate
   end function new_outline_shape
 
-  !> A place of a side.
+  !> Point of an edge.
   pure function at(self, side, s) result(x)
     class(outline_shape), intent(in) :: self
-    integer, intent(in) :: side   !! which side
+    integer, intent(in) :: side   !! number of the edge
     real(wp), intent(in) :: s   !! from 0 to 1
     real(wp) :: x(2)
 
     x = self%x(:, 1, side) + s*self%chord(side) + 4.0_wp*s*(1.0_wp - s)*self%arch(side)
   end function at
 
-  !> Along a side, as long as it would be if it were straight on from there [length].
+  !> Derivative of the position on an edge with respect to s [length].
   pure function tangent(self, side, s) result(along)
     class(outline_shape), intent(in) :: self
-    integer, intent(in) :: side   !! which side
+    integer, intent(in) :: side   !! number of the edge
     real(wp), intent(in) :: s   !! from 0 to 1
     real(wp) :: along(2)
 
     along = self%chord(side) + 4.0_wp*(1.0_wp - 2.0_wp*s)*self%arch(side)
   end function tangent
 
-  !> From where a side begins to where it ends [length].
+  !> Vector from start to end of an edge [length].
   pure function chord(self, side)
     class(outline_shape), intent(in) :: self
-    integer, intent(in) :: side   !! which side
+    integer, intent(in) :: side   !! number of the edge
     real(wp) :: chord(2)
 
     chord = self%x(:, 2, side) - self%x(:, 1, side)
   end function chord
 
-  !> From the middle of that to the middle of the side; zero where it is straight [length].
+  !> Vector from the middle of the chord to the middle of the edge; zero if the edge is straight [length].
   pure function arch(self, side)
     class(outline_shape), intent(in) :: self
-    integer, intent(in) :: side   !! which side
+    integer, intent(in) :: side   !! number of the edge
     real(wp) :: arch(2)
 
     arch = 0.0_wp
@@ -131,13 +129,12 @@ contains
       arch = self%x(:, 3, side) - 0.5_wp*(self%x(:, 1, side) + self%x(:, 2, side))
   end function arch
 
-  !> The place of a part that is nearest to a point: branch and bound in its tree. `guess` is a side that may
-  !! be near.
+  !> Nearest point of a part's outline: branch and bound in its tree. `guess` is an edge that may be near.
   pure function nearest_place(self, part, point, guess) result(best)
     class(outline_shape), intent(in) :: self
-    integer, intent(in) :: part   !! which part
+    integer, intent(in) :: part   !! number of the part
     real(wp), intent(in) :: point(2)   !! [length]
-    integer, intent(in), optional :: guess   !! a side that may be near
+    integer, intent(in), optional :: guess   !! edge that may be near
     type(near_place) :: best
     type(near_place) :: place
     real(wp) :: away(2), bound(most_waiting)
@@ -160,7 +157,7 @@ contains
           cycle
         end if
         away = [tree%away(2*i, point), tree%away(2*i + 1, point)]
-        child = merge([2, 1], [1, 2], away(1) <= away(2))   ! the nearer one is looked at first
+        child = merge([2, 1], [1, 2], away(1) <= away(2))   ! the nearer child first
         waiting(waits + 1:waits + 2) = 2*i - 1 + child
         bound(waits + 1:waits + 2) = away(child)
         waits = waits + 2
@@ -170,7 +167,7 @@ contains
 
   contains
 
-    !> Is the place nearer; or as near, and of two edges of a slit the one whose body has the point inside?
+    !> Is the point nearer? If it is as near on the other edge of a slit: is the given point inside its body?
     pure logical function is_better()
       is_better = place%side /= best%side .and. place%distance <= best%distance*(1.0_wp + least_difference)
       if (.not. is_better .or. place%distance < best%distance*(1.0_wp - least_difference)) return
@@ -178,10 +175,10 @@ contains
     end function is_better
   end function nearest_place
 
-  !> The place of a side that is nearest to a point; whether the point is inside is not looked at.
+  !> Nearest point of an edge; `inside` is not set.
   pure function near_side(self, side, point) result(place)
     class(outline_shape), intent(in) :: self
-    integer, intent(in) :: side   !! which side
+    integer, intent(in) :: side   !! number of the edge
     real(wp), intent(in) :: point(2)   !! [length]
     type(near_place) :: place
 
@@ -201,7 +198,7 @@ contains
 
   contains
 
-    !> The place along a parabola: the nearest of a few, and Newton's method from there.
+    !> Position of the nearest point on a parabola: the nearest of a few points, then Newton's method.
     pure real(wp) function near_curve() result(s)
       real(wp) :: along(2), away(2), bend(2), rate, step
       integer :: k
@@ -222,11 +219,11 @@ contains
     end function near_curve
   end function near_side
 
-  !> Is a point in the body, as seen from the place of the outline that is nearest to it? At a node both sides
-  !! say so.
+  !> Is a point inside the body, seen from the nearest point of the outline? At a node, both edges must say
+  !! so.
   pure logical function is_inside(self, place, point)
     class(outline_shape), intent(in) :: self
-    type(near_place), intent(in) :: place   !! of the outline, nearest to the point
+    type(near_place), intent(in) :: place   !! nearest point of the outline
     real(wp), intent(in) :: point(2)   !! [length]
     real(wp) :: outward(2)
 

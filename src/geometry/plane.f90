@@ -1,4 +1,4 @@
-!> Geometry of the plane.
+!> Plane geometry.
 module epcont_geometry_plane
   use epcont_base_kinds, only: wp
   implicit none
@@ -15,25 +15,25 @@ contains
     extent = maxval(x, dim=2) - minval(x, dim=2)
   end function extent_of
 
-  !> The part of a x b across the plane: positive where b lies to the left of a.
+  !> Component of a x b perpendicular to the plane: positive if b is to the left of a.
   pure real(wp) function cross_product(a, b)
-    real(wp), intent(in) :: a(2), b(2)   !! any unit
+    real(wp), intent(in) :: a(2), b(2)
 
     cross_product = a(1)*b(2) - a(2)*b(1)
   end function cross_product
 
-  !> Counter-clockwise from one vector to another [rad].
+  !> Counter-clockwise angle from one vector to another [rad].
   pure real(wp) function angle_between(a, b)
-    real(wp), intent(in) :: a(2), b(2)   !! any unit
+    real(wp), intent(in) :: a(2), b(2)
 
     angle_between = atan2(cross_product(a, b), dot_product(a, b))
   end function angle_between
 
-  !> Where two straight ways cross: parts of either from where it begins; far beyond both where they are
+  !> Intersection of two straight lines: positions as fractions of both vectors; far outside both if they are
   !! parallel.
   pure function crossing(a, along, b, other) result(part)
-    real(wp), intent(in) :: a(2), along(2)   !! the beginning of the one, all of it [length]
-    real(wp), intent(in) :: b(2), other(2)   !! of the other
+    real(wp), intent(in) :: a(2), along(2)   !! start and vector of the first line [length]
+    real(wp), intent(in) :: b(2), other(2)   !! start and vector of the second line [length]
     real(wp) :: area, part(2)
 
     area = cross_product(along, other)
@@ -41,11 +41,11 @@ contains
     if (area /= 0.0_wp) part = [cross_product(b - a, other), cross_product(b - a, along)]/area
   end function crossing
 
-  !> Least and largest components along a side: of a parabola they lie between those of its ends and of its
-  !! control point.
+  !> Least and largest components along an edge: on a parabola, between those of its ends and of its control
+  !! point.
   pure function span_along(vector, curved) result(span)
-    real(wp), intent(in) :: vector(2, 3)   !! at its start, end and middle
-    logical, intent(in) :: curved          !! it has a middle
+    real(wp), intent(in) :: vector(2, 3)   !! at start, end and middle
+    logical, intent(in) :: curved          !! has a middle
     real(wp) :: control(2), span(2, 2)
 
     control = vector(:, 1)
@@ -54,26 +54,26 @@ contains
     span(:, 2) = max(vector(:, 1), vector(:, 2), control)
   end function span_along
 
-  !> A vector turned by a right angle, clockwise.
+  !> A vector rotated clockwise by a right angle.
   pure function right_of(vector)
-    real(wp), intent(in) :: vector(2)   !! any length
+    real(wp), intent(in) :: vector(2)
     real(wp) :: right_of(2)
 
     right_of = [vector(2), -vector(1)]
   end function right_of
 
-  !> A vector of length 1 along another; zero of zero: a side without length, which its element is refused
-  !! for.
+  !> Unit vector along another vector; zero for a zero vector: an edge without length, whose element is
+  !! rejected.
   pure function unit(vector)
-    real(wp), intent(in) :: vector(2)   !! any length
+    real(wp), intent(in) :: vector(2)
     real(wp) :: unit(2)
 
     unit = vector/max(norm2(vector), tiny(1.0_wp))
   end function unit
 
-  !> A vector turned counter-clockwise: exactly by quarter turns, and as well after any number of full ones.
+  !> Rotate a vector counter-clockwise: exact for multiples of a right angle, also after full rotations.
   pure function turned(vector, angle)
-    real(wp), intent(in) :: vector(2)   !! any length
+    real(wp), intent(in) :: vector(2)
     real(wp), intent(in) :: angle       !! [degree]
     real(wp) :: turned(2)
     real(wp), parameter :: quarter = 90.0_wp, degree = acos(-1.0_wp)/180.0_wp

@@ -23,9 +23,8 @@ module epcont_linalg_assembled
     real(wp), allocatable :: weight(:)     !! [entries]
   end type sparse_rows
 
-  !> Block p has the columns first(p) to first(p+1)-1, stored full from entries(start(p)) on: the rows of
-  !! these
-  !> equations, and below them the rows of the equations coupled with them.
+  !> Block p has the columns first(p) to first(p+1)-1, stored full, beginning at entries(start(p)): the rows
+  !! of these equations, and below them the rows of the equations coupled with them.
   type, abstract :: assembled_matrix
     integer :: order = 0
     integer :: trailing = 0   !! number of last equations that `find_compliance` may use; 0 if all
@@ -33,9 +32,9 @@ module epcont_linalg_assembled
     logical :: lacks_memory = .false.   !! the memory was too small
     real(wp), allocatable :: pivot_ratio(:)   !! pivot**2 over the diagonal entry [order]
     integer, allocatable :: first(:)       !! column of each block [blocks + 1]
-    integer, allocatable :: columns(:)     !! of each block [blocks]
+    integer, allocatable :: columns(:)     !! columns of each block [blocks]
     integer, allocatable :: height(:)      !! rows of each block [blocks]
-    integer(i8), allocatable :: start(:)   !! of each block in `entries` [blocks + 1]
+    integer(i8), allocatable :: start(:)   !! position of each block in `entries` [blocks + 1]
     real(wp), allocatable :: entries(:)
   contains
     procedure(clear_entries), deferred :: clear
@@ -65,12 +64,12 @@ module epcont_linalg_assembled
     pure subroutine add_element(self, n, number, k)
       import :: assembled_matrix, wp
       class(assembled_matrix), intent(inout) :: self
-      integer, intent(in) :: n               !! rows of it
+      integer, intent(in) :: n               !! its rows
       integer, intent(in) :: number(n)       !! equations
       real(wp), intent(in) :: k(n, n)        !! symmetric
     end subroutine add_element
 
-    !> Eliminate what has not been eliminated yet, and find the norm.
+    !> Eliminate all remaining columns, and find the norm.
     subroutine eliminate_rest(self, failed)
       import :: assembled_matrix
       class(assembled_matrix), intent(inout) :: self
@@ -185,10 +184,10 @@ contains
   !> Order rows by their first equations, and find the position of each entry's row in that order.
   pure subroutine order_rows(rows, equations, order, column, begins)
     type(sparse_rows), intent(in) :: rows   !! equations that are not positive are ignored
-    integer, intent(in) :: equations        !! how many there are
+    integer, intent(in) :: equations        !! number of equations
     integer, intent(out) :: order(:)        !! [rows]
     integer, intent(out) :: column(:)       !! [entries]
-    !> First equation of each row in that order; equations + 1 if there is none
+    !> First equation of each row in that order; equations + 1 if the row has no equation
     integer, intent(out) :: begins(:)
     integer :: i, k
 

@@ -13,7 +13,7 @@ contains
     real(wp), intent(inout) :: r(:, :)   !! r(1 + d, j): row j, column j + d [band, columns]
     integer, intent(in) :: first         !! column of the row's first entry
     real(wp), intent(in) :: row(:)       !! [band]
-    real(wp), dimension(size(row)) :: left, old   ! what is left of the row, from column j on
+    real(wp), dimension(size(row)) :: left, old   ! remainder of the row, from column j on
     real(wp) :: c, s
     integer :: j
 

@@ -43,9 +43,9 @@ contains
   !> Cholesky factor of a semidefinite matrix, largest pivot first: a(order, order) = LL' to rounding.
   pure subroutine pivoted_cholesky(a, tolerance, order, rank)
     real(wp), contiguous, intent(inout) :: a(:, :)    !! symmetric, then L in its first `rank` columns [n, n]
-    real(wp), intent(in) :: tolerance     !! a pivot up to this is zero, in the unit of `a`
+    real(wp), intent(in) :: tolerance     !! a pivot of at most this is zero, in the unit of `a`
     integer, allocatable, intent(out) :: order(:)     !! rows in the order of their pivots [n]
-    integer, intent(out) :: rank          !! number of pivots beyond `tolerance`
+    integer, intent(out) :: rank          !! number of pivots above `tolerance`
     real(wp), allocatable :: work(:)
     integer :: info, k, n
 
@@ -53,7 +53,7 @@ contains
     order = [(k, k=1, n)]
     rank = 0
     if (n == 0) return
-    ! dpstrf takes its first pivot without looking at the tolerance.
+    ! dpstrf does not compare its first pivot with the tolerance.
     if (.not. any([(a(k, k) > tolerance, k=1, n)])) return
     allocate (work(2*n))
     call dpstrf('L', n, a, n, order, rank, tolerance, work, info)
@@ -72,7 +72,7 @@ contains
 
   !> c = c + factor a b.
   pure subroutine add_product(factor, a, b, c)
-    real(wp), intent(in) :: factor   !! of the product
+    real(wp), intent(in) :: factor   !! factor of the product
     real(wp), contiguous, intent(in) :: a(:, :)       !! [n, k]
     real(wp), contiguous, intent(in) :: b(:, :)       !! [k, m]
     real(wp), contiguous, intent(inout) :: c(:, :)    !! [n, m]
@@ -84,7 +84,7 @@ contains
 
   !> c = c + a' b, of the leading rows of both.
   pure subroutine add_inner_products(rows, a, b, c)
-    integer, intent(in) :: rows                       !! that count
+    integer, intent(in) :: rows                       !! number of leading rows
     real(wp), contiguous, intent(in) :: a(:, :)       !! [>= rows, n]
     real(wp), contiguous, intent(in) :: b(:, :)       !! [>= rows, m]
     real(wp), contiguous, intent(inout) :: c(:, :)    !! [n, m]
@@ -97,7 +97,7 @@ contains
   !> Orthonormal basis of the x with a x = 0.
   pure function null_space(a, tolerance) result(basis)
     real(wp), intent(in) :: a(:, :)       !! [n, m]
-    real(wp), intent(in) :: tolerance     !! a singular value up to this is zero, in the unit of `a`
+    real(wp), intent(in) :: tolerance     !! a singular value of at most this is zero, in the unit of `a`
     real(wp), allocatable :: basis(:, :)  !! [m, m - rank]
     real(wp), allocatable :: copy(:, :), values(:), right(:, :), work(:)
     real(wp) :: left(1, 1)

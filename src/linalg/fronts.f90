@@ -23,10 +23,10 @@ module epcont_linalg_fronts
   public :: front_matrix
 
   type, extends(front_factor) :: front_matrix
-    logical :: once = .false.                   !! it is factored only once; else it is filled again in parts
+    logical :: once = .false.                   !! factored only once; otherwise filled again in parts
     type(update_matrix), allocatable :: update(:)   !! [fronts]
     logical, allocatable :: stale(:)           !! fronts to be filled and factored again, whole units [fronts]
-    !> Equation that could not be eliminated in each front or its descendants; 0 if there is none [fronts]
+    !> Equation that failed in each front or its descendants; 0 if no equation failed [fronts]
     integer, allocatable :: failed(:)
     !> Largest sum of magnitudes of its own rows [fronts]
     real(wp), allocatable :: largest_sum(:)
@@ -82,7 +82,7 @@ contains
   !> Set a front to zero and add the update matrices of its children; its elements follow.
   subroutine open_front(self, p)
     class(front_matrix), intent(inout) :: self
-    integer, intent(in) :: p   !! whose children are closed
+    integer, intent(in) :: p   !! its children are closed
     integer, allocatable :: below(:)
     integer :: i
 
@@ -316,7 +316,7 @@ contains
   !> Find the first failed equation, and the norm. All fronts are factored when they are closed.
   subroutine eliminate_fronts(self, failed)
     class(front_matrix), intent(inout) :: self
-    integer, intent(out) :: failed   !! equation without a pivot; 0 if there is none
+    integer, intent(out) :: failed   !! equation without a pivot; 0 if none failed
 
     failed = 0
     if (any(self%failed > 0)) failed = minval(self%failed, mask=self%failed > 0)

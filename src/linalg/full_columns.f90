@@ -25,7 +25,7 @@ contains
     integer, intent(in) :: rows, columns
     integer, intent(in) :: leading                  !! dimension of a
     real(wp), intent(inout) :: a(leading, columns)  !! [rows, columns]
-    integer, intent(out) :: failed                  !! column without a pivot; 0 if there is none
+    integer, intent(out) :: failed                  !! column without a pivot; 0 if none failed
     integer, parameter :: few = 24, tall = 256
     integer :: half, i
 

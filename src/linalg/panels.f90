@@ -87,7 +87,7 @@ contains
   !> Factor panel by panel, after subtracting the part that earlier panels eliminate. So each is read once.
   subroutine eliminate_panels(self, failed)
     class(panel_matrix), intent(inout) :: self
-    integer, intent(out) :: failed   !! equation without a pivot; 0 if there is none
+    integer, intent(out) :: failed   !! equation without a pivot; 0 if none failed
     real(wp), allocatable :: given(:)
     integer :: before, p, q
 
@@ -112,7 +112,7 @@ contains
     class(panel_matrix), intent(inout) :: self
     integer, intent(in) :: p
     real(wp), intent(in) :: given(:)    !! diagonal of the matrix in these columns
-    integer, intent(out) :: failed      !! equation without a pivot; 0 if there is none
+    integer, intent(out) :: failed      !! equation without a pivot; 0 if none failed
 
     associate (h => self%height(p), w => self%columns(p), s => self%start(p), f => self%first(p))
       call dpotrf('L', w, self%entries(s), h, failed)

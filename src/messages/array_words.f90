@@ -1,4 +1,4 @@
-!> Messages for programs that make their scenes from arrays: what is said of cards, in the words of arrays.
+!> Messages for programs that build their models from arrays: names of cards become names of arrays.
 module epcont_messages_array_words
   use epcont_base_diagnostic, only: diagnostic
   use epcont_base_text, only: text_of
@@ -9,7 +9,7 @@ module epcont_messages_array_words
   private
   public :: in_array_words, name_item
 
-  !> Words of a deck, and what they are in a scene from arrays. Phrases come before their words.
+  !> Words of decks, each with its replacement for models from arrays. Phrases come before their words.
   character(len=56), parameter :: word(*) = [character(len=56) :: &
     'no MOMENT, SUPORT or SPC that names its direction 6', 'tie: it does not turn', &
     'GA and GB are not the ends', 'its corners are not the ends', &
@@ -32,17 +32,17 @@ module epcont_messages_array_words
     'PARAM MAXIT', 'controls%most_iterations', 'METHOD', 'controls%method', '--memory', 'memory', &
     'what follows is', 'the answer is', '`force not unique` in CONTACT', 'answer%contact%indeterminate']
 
-  !> Items that are known by their position in a list, and these lists.
+  !> Items that are known by their position in a list, and the names of these lists.
   integer, parameter :: listed(*) = [of_tie, of_platen, of_equation, of_spring, of_pressure, of_body_load]
   character(len=*), parameter :: list(*) = ['tie      ', 'platen   ', 'equation ', 'spring   ', 'pressure ', &
                                             'body_load']
 
 contains
 
-  !> Put the name of its array before a finding, all in the words of arrays.
+  !> Put the name of its array before a finding, and replace the words of decks.
   subroutine name_item(model, one)
-    type(model_type), intent(in) :: model    !! from arrays
-    type(diagnostic), intent(inout) :: one   !! what was found of it
+    type(model_type), intent(in) :: model    !! model from arrays
+    type(diagnostic), intent(inout) :: one   !! finding about it
     character(len=:), allocatable :: name
     integer :: k
 
@@ -62,9 +62,9 @@ contains
     one%remedy = in_array_words(one%remedy)
   end subroutine name_item
 
-  !> A message, with each word of the deck replaced.
+  !> Replace each word of decks in a message.
   pure function in_array_words(text) result(told)
-    character(len=*), intent(in) :: text   !! as it is said of decks
+    character(len=*), intent(in) :: text   !! message for decks
     character(len=:), allocatable :: told
     integer :: at, from, k
 

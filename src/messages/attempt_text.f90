@@ -1,4 +1,4 @@
-!> Which attempts were made, and why, in words.
+!> Text about attempts and their reasons.
 module epcont_messages_attempt_text
   use epcont_attempts, only: attempt_type, more_pairs, more_steps, other_rule, refinement
   use epcont_base_text, only: plural, text_of
@@ -18,7 +18,7 @@ contains
   pure function attempts_text(solution) result(text)
     class(solution_type), intent(in) :: solution
     character(len=:), allocatable :: text
-    logical :: joined   ! bodies in the attempt at hand
+    logical :: joined   ! in the attempt at hand
     integer :: k
 
     text = ''
@@ -34,7 +34,7 @@ contains
     text = text//': '//solution%verdict%word()
   end function attempts_text
 
-  !> The contact rule.
+  !> Name of the contact solver.
   pure function rule_text(joined) result(text)
     logical, intent(in) :: joined
     character(len=:), allocatable :: text
@@ -43,7 +43,7 @@ contains
     if (joined) text = 'joined bodies'
   end function rule_text
 
-  !> What was changed.
+  !> Describe the change.
   pure function what_text(attempt, joined) result(text)
     type(attempt_type), intent(in) :: attempt
     logical, intent(in) :: joined

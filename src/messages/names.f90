@@ -1,4 +1,4 @@
-!> Parts of a model in words: by their ids, and where they are.
+!> Names of parts of a model: ids and coordinates.
 module epcont_messages_names
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: formatted, short_real, text_of
@@ -14,29 +14,29 @@ module epcont_messages_names
 
 contains
 
-  !> `GRID 12`, of some nodes the one with the least id: bodies are named by it.
+  !> `GRID 12`: the smallest id of some nodes. It names a body.
   pure function first_grid(model, chosen) result(name)
-    type(model_type), intent(in) :: model   !! whose ids are named
-    logical, intent(in) :: chosen(:)        !! some of its nodes [nodes]
+    type(model_type), intent(in) :: model
+    logical, intent(in) :: chosen(:)        !! these nodes [nodes]
     character(len=:), allocatable :: name
 
     name = 'GRID '//text_of(minval(model%node_id, mask=chosen))
   end function first_grid
 
-  !> `GRID 12 direction 2`: the SUPORT freedom that measures a free motion.
+  !> `GRID 12 direction 2`: the SUPORT DOF that measures a rigid-body mode.
   pure function motion_name(scene, k) result(name)
-    class(planned_model), intent(in) :: scene   !! with its model and free motions
-    integer, intent(in) :: k                    !! which of them
+    class(planned_model), intent(in) :: scene   !! model with its rigid-body modes
+    integer, intent(in) :: k                    !! number of the mode
     character(len=:), allocatable :: name
 
     name = scene%model%name_of(of_node, scene%motions%node(k))//' direction '// &
            direction_of(scene%motions, k)
   end function motion_name
 
-  !> `2`, the direction of a SUPORT freedom; 6 of a leader that turns.
+  !> `2`: direction of a SUPORT DOF; 6 for the master node of a rotating RBE2.
   pure function direction_of(motions, k) result(digit)
     type(free_motions), intent(in) :: motions
-    integer, intent(in) :: k                    !! which of them
+    integer, intent(in) :: k                    !! number of the mode
     character(len=1) :: digit
 
     digit = text_of(merge(6, motions%component(k), motions%component(k) == angle))
@@ -50,20 +50,20 @@ contains
     name = short_real(x(1))//' '//short_real(x(2))
   end function point_name
 
-  !> The mean of an element's nodes, as `point_name` has it.
+  !> `point_name` of the mean of an element's nodes.
   pure function centre_name(model, element) result(name)
-    type(model_type), intent(in) :: model   !! that has the element
+    type(model_type), intent(in) :: model
     integer, intent(in) :: element          !! its number
     character(len=:), allocatable :: name
 
     name = point_name(sum(model%coordinates(element), dim=2)/model%node_count(element))
   end function centre_name
 
-  !> `1, 2, 3, and 4 more`: numbers, those beyond the first `most` only counted.
+  !> `1, 2, 3, and 4 more`: numbers; those after the first `most` are only counted.
   pure function joined(numbers, separator, most) result(text)
     integer, intent(in) :: numbers(:)           !! at least one
     character(len=*), intent(in) :: separator   !! between two of them
-    integer, intent(in), optional :: most       !! that are named; not given: all
+    integer, intent(in), optional :: most       !! largest number of names; all if absent
     character(len=:), allocatable :: text
     integer :: k, named
 
@@ -76,11 +76,11 @@ contains
     if (size(numbers) > named) text = text//separator//'and '//text_of(size(numbers) - named)//' more'
   end function joined
 
-  !> One text or the other, of any lengths.
+  !> Choose one of two texts, which may differ in length.
   pure function when(holds, text, otherwise) result(chosen)
     logical, intent(in) :: holds                          !! a condition
-    character(len=*), intent(in) :: text                  !! where it holds
-    character(len=*), intent(in), optional :: otherwise   !! not given: nothing
+    character(len=*), intent(in) :: text                  !! if true
+    character(len=*), intent(in), optional :: otherwise   !! if false; empty if absent
     character(len=:), allocatable :: chosen
 
     chosen = ''
@@ -91,9 +91,9 @@ contains
     end if
   end function when
 
-  !> A part in per cent, two digits of it; empty where it is a hundred times the whole.
+  !> A part in per cent with two digits; empty if it is 100 times the whole or more.
   pure function percent(value, of) result(text)
-    real(wp), intent(in) :: value   !! the number
+    real(wp), intent(in) :: value   !! the part
     real(wp), intent(in) :: of      !! the whole
     character(len=:), allocatable :: text
     real(wp) :: hundredths

@@ -1,7 +1,6 @@
-!> What came of a run, in a word and a sentence; what the largest pressures are beside their figures: bounded,
-!> unbounded, or not resolved by the mesh. And warnings and notes: what the deck has that is not as it seems,
-!> and what of the answer is not as it should be. They stand in the listing, are counted in the summary, and
-!> warnings go to standard error too.
+!> Result of a run in words: status and sentence; type of the largest pressures (bounded, singular, or mesh
+!> too coarse); warnings and notes about the answer. The listing has them all; the summary counts them;
+!> warnings also go to standard error.
 module epcont_messages_outcome
   use epcont_base_diagnostic, only: place_type, severity_warning
   use epcont_base_error, only: status_valid
@@ -23,24 +22,24 @@ module epcont_messages_outcome
   character(len=*), parameter, public :: unbounded = 'singular'
   character(len=*), parameter :: not_resolved = 'mesh too coarse', no_contact = 'no contact'
 
-  !> What came of a run.
+  !> Result of a run.
   type :: outcome_type
     integer :: status = status_valid            !! exit status
-    character(len=:), allocatable :: word       !! valid, no equilibrium, ...
-    character(len=:), allocatable :: sentence   !! empty where the answer is valid
-    logical :: has_answer = .false.             !! displacements and forces were found
-    type(findings) :: found                     !! warnings and notes of the answer
+    character(len=:), allocatable :: word       !! valid, no equilibrium, limit load, ...
+    character(len=:), allocatable :: sentence   !! empty if the answer is valid
+    logical :: has_answer = .false.             !! displacements and forces are available
+    type(findings) :: found                     !! warnings and notes about the answer
   end type outcome_type
 
-  !> A component of the force on a body is warned of where its error is as large, but for a tenth, and it is
-  !! some of the total contact force.
+  !> A component of the force on a body gives a warning if its error is at least this part of it, and it is at
+  !! least this part of the total contact force.
   real(wp), parameter :: as_much = 0.9_wp, of_total = 0.01_wp
 
 contains
 
-  !> What came of a run.
+  !> Judge a run.
   function judge(run) result(outcome)
-    class(solution_type), intent(in) :: run   !! a model with its answer
+    class(solution_type), intent(in) :: run   !! model with its answer
     type(outcome_type) :: outcome
 
     outcome%status = run%verdict%status()
@@ -50,8 +49,7 @@ contains
     if (outcome%has_answer) call remark_answer(run, outcome%found)
   end function judge
 
-  !> Add warnings and notes of an answer: where its equations, solved as they are, are not those of the
-  !! scene.
+  !> Add warnings and notes about an answer, for example if small-displacement theory does not apply.
   subroutine remark_answer(run, found)
     class(solution_type), intent(in) :: run
     type(findings), intent(inout) :: found
@@ -83,7 +81,7 @@ contains
     end do
   end subroutine remark_answer
 
-  !> Add a warning; an empty text is none.
+  !> Add a warning, unless the text is empty.
   subroutine warn(found, text)
     type(findings), intent(inout) :: found
     character(len=*), intent(in) :: text
@@ -91,7 +89,7 @@ contains
     if (len(text) > 0) call found%add_warning(of_scene, 0, 0, text, '')
   end subroutine warn
 
-  !> No pair closes.
+  !> Warn if no pair is in contact.
   subroutine warn_of_contact(run, found)
     class(solution_type), intent(in) :: run
     type(findings), intent(inout) :: found
@@ -99,7 +97,7 @@ contains
 
     if (run%model%pairs == 0 .or. any(run%answer%contact%touching)) return
     associate (gap => run%answer%contact%gap)
-      ! Of gaps that are as good as equal the first: rounding chooses no pair.
+      ! If gaps are almost equal, the first is named, so that rounding does not choose.
       nearest = findloc(gap <= (1.0_wp + no_effect)*minval(gap), .true., dim=1)
       call warn(found, 'nothing touches: no pair carries a force; nearest is '// &
                 run%model%name_of(of_node, run%model%pair_node(1, nearest))//', '// &
@@ -107,7 +105,8 @@ contains
     end associate
   end subroutine warn_of_contact
 
-  !> A component that narrow contact has by how its normals lean alone, and that may hold a body.
+  !> Warn of force components that may not exist: narrow contact has them only through the inclination of its
+  !! normals, but they may support a body.
   subroutine warn_of_forces(run, found)
     class(solution_type), intent(in) :: run
     type(findings), intent(inout) :: found
@@ -127,7 +126,7 @@ contains
     end do
   end subroutine warn_of_forces
 
-  !> Elements that are too stiff, strained too far, or unloaded.
+  !> Warn of elements that are too stiff, strained too far, or unloaded.
   subroutine warn_of_material(run, found)
     class(solution_type), intent(in) :: run
     type(findings), intent(inout) :: found
@@ -160,11 +159,11 @@ contains
     end function elements_text
   end subroutine warn_of_material
 
-  !> What the largest pressure of a zone is, or of all zones; empty where that is not known. Where no pair
-  !! touches, it is 0.0, and that is said.
+  !> Type of the largest pressure of a zone, or of all zones; empty if unknown. If no pair is in contact, the
+  !! pressure is 0.0.
   pure function limit_of_pressure(run, zone) result(word)
-    class(solution_type), intent(in) :: run   !! a scene with its answer
-    integer, intent(in), optional :: zone     !! not given: the one with the largest pressure
+    class(solution_type), intent(in) :: run   !! model with its answer
+    integer, intent(in), optional :: zone     !! if absent, the zone with the largest pressure
     character(len=:), allocatable :: word
     integer :: z
 
@@ -178,9 +177,9 @@ contains
     if (run%accuracy%zone(z)%unbounded) word = unbounded
   end function limit_of_pressure
 
-  !> What a limit means, for the end of a line of the listing; empty where there is nothing to say.
+  !> Explain this type at the end of a line of the listing; empty if no explanation is needed.
   pure function reason_of(word) result(text)
-    character(len=*), intent(in) :: word   !! as `limit_of_pressure` has it
+    character(len=*), intent(in) :: word   !! from `limit_of_pressure`
     character(len=:), allocatable :: text
 
     text = ''
@@ -189,10 +188,10 @@ contains
     if (word == not_resolved) text = '   mesh too coarse: too few pairs in contact where it is largest'
   end function reason_of
 
-  !> Warnings of an answer in lines, and its notes if these are wanted.
+  !> Warnings about an answer, one line each, and its notes if requested.
   pure function remark_lines(found, with_notes) result(text)
-    type(findings), intent(in) :: found     !! of the answer
-    logical, intent(in) :: with_notes       !! are they?
+    type(findings), intent(in) :: found     !! findings about the answer
+    logical, intent(in) :: with_notes       !! include notes
     character(len=:), allocatable :: text
     integer :: i
 

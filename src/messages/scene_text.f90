@@ -17,8 +17,8 @@ module epcont_messages_scene_text
     unsound = 0, &
     body_in_itself = 1, &   !! a body passes through itself
     beyond_mirror = 2, &    !! a body passes a line at which it ends and is held
-    much_overlap = 3, &     !! bodies lie in each other by much, but allowed
-    much_gap = 4, &         !! a pair presses across as wide a gap
+    much_overlap = 3, &     !! large but allowed penetration
+    much_gap = 4, &         !! contact force across a large gap
     side_changed = 5, &     !! a side turns or stretches too far
     sides_slid = 6, &       !! sides slide too far along each other where they press
     scene_warnings = 6

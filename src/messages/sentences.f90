@@ -1,4 +1,4 @@
-!> The sentence about a verdict: what stands against an answer, and what would mend it.
+!> Sentence about a verdict: why the answer is not valid, and a remedy.
 module epcont_messages_sentences
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: plural, short_real
@@ -16,7 +16,7 @@ module epcont_messages_sentences
   private
   public :: body_name, sentence_of
 
-  !> Pairs that are named.
+  !> Largest number of pairs that are named.
   integer, parameter, public :: most_pairs = 8
   character(len=*), parameter, public :: axis_name(2) = ['x', 'y']
   character(len=*), parameter :: ill_shaped = &
@@ -25,9 +25,9 @@ module epcont_messages_sentences
 
 contains
 
-  !> The sentence about the verdict of a run; empty where the answer is valid.
+  !> Sentence about the verdict of a run; empty if the answer is valid.
   pure function sentence_of(run) result(text)
-    class(solution_type), intent(in) :: run   !! a model with its answer
+    class(solution_type), intent(in) :: run   !! model with its answer
     character(len=:), allocatable :: text
 
     select case (run%verdict%reason)
@@ -55,7 +55,7 @@ contains
     end select
   end function sentence_of
 
-  !> Which body moves off, and how.
+  !> Name the body that the load moves, and its direction.
   pure function escaping(run) result(text)
     class(solution_type), intent(in) :: run
     character(len=:), allocatable :: text
@@ -69,7 +69,7 @@ contains
     if (run%motions%component(k) == angle) text = text(:index(text, ' moves along'))//'turns'
   end function escaping
 
-  !> Why no set of pairs passed the test.
+  !> Say why no active set passed the test.
   pure function cause_of_rounding(run) result(text)
     class(solution_type), intent(in) :: run
     character(len=:), allocatable :: text
@@ -83,12 +83,12 @@ contains
     end associate
   end function cause_of_rounding
 
-  !> What speaks against an answer: the figure of the certificate that is farthest beyond its tolerance, and
-  !! lost digits.
+  !> Say why an answer is not certified: the certificate value that exceeds its tolerance most, and lost
+  !! digits.
   pure function doubts(run) result(text)
     class(solution_type), intent(in) :: run
     character(len=:), allocatable :: text
-    real(wp), parameter :: least = 1.0e-200_wp   ! a figure over a limit of no size stays a number
+    real(wp), parameter :: least = 1.0e-200_wp   ! with a limit of zero, the ratio stays finite
     real(wp) :: figure(size(figure_name)), largest(size(figure_name)), much, taken
     integer :: worst
 
@@ -98,7 +98,7 @@ contains
     if (figure(worst) > largest(worst)) text = trim(figure_name(worst))//' '//short_real(figure(worst))// &
         ' (at most '//short_real(largest(worst))//')'
     much = 0.1_wp*valid_to
-    taken = epsilon(1.0_wp)/run%answer%weakest%ratio   ! of a pivot: the cause, even if mended
+    taken = epsilon(1.0_wp)/run%answer%weakest%ratio   ! the cause, even after iterative refinement
     if (.not. all(figure <= huge(figure))) then
       text = 'the work of the loads is too far from 1.0 for a number: other units'
     else if (taken > much) then
@@ -115,7 +115,7 @@ contains
     end if
   end function doubts
 
-  !> An iteration that was given up, in words.
+  !> Describe an iteration that did not converge.
   pure function unconverged(run) result(text)
     class(solution_type), intent(in) :: run
     character(len=:), allocatable :: text
@@ -133,7 +133,7 @@ contains
     end associate
   end function unconverged
 
-  !> A body by its first node.
+  !> Name a body by its first node.
   pure function body_name(run, body) result(name)
     class(solution_type), intent(in) :: run
     integer, intent(in) :: body

@@ -17,7 +17,7 @@ module epcont_plan_contact_axes
   public :: contact_axes, followed_nodes, new_contact_axes
 
   type :: contact_axes
-    integer, allocatable :: pair(:)         !! the first pair of each node; 0 if there is none [nodes]
+    integer, allocatable :: pair(:)         !! first pair of each node; 0 if it has no pair [nodes]
     logical, allocatable :: wanted(:, :)    !! gaps depend on the DOF [directions, nodes]
     !> Index of the normal of each node; 0 if its DOFs are along x and y [nodes]
     integer, allocatable :: turn(:)
@@ -39,7 +39,7 @@ contains
   !> Find the axes of all nodes. Frictionless gaps depend on displacements along their normals; further
   !! directions of the nodes of a pair are to be added in `want`.
   function new_contact_axes(model, fixed) result(axes)
-    type(model_type), intent(in) :: model   !! the scene
+    type(model_type), intent(in) :: model
     !> The DOF has no equation: a support, or SUPORT [directions, nodes]
     logical, intent(in) :: fixed(:, :)
     type(contact_axes) :: axes
@@ -120,7 +120,7 @@ contains
   !! contact forces act only on the needed DOFs.
   pure function along(self, node, vector) result(own)
     class(contact_axes), intent(in) :: self
-    integer, intent(in) :: node                     !! where it acts
+    integer, intent(in) :: node
     real(wp), intent(in) :: vector(directions)      !! in x and y
     real(wp) :: own(directions)
 
@@ -135,8 +135,8 @@ contains
   !> A vector in x and y, from its components along the DOFs of a node.
   pure function back(self, node, own) result(vector)
     class(contact_axes), intent(in) :: self
-    integer, intent(in) :: node                     !! where it is
-    real(wp), intent(in) :: own(directions)         !! as `along` gives it
+    integer, intent(in) :: node
+    real(wp), intent(in) :: own(directions)         !! from `along`
     real(wp) :: vector(directions)
 
     vector = own
@@ -149,9 +149,9 @@ contains
   !> Rotate the stiffness of an element to the DOFs of its nodes.
   pure subroutine turn_stiffness(self, node, n, k)
     class(contact_axes), intent(in) :: self
-    integer, intent(in) :: node(:)                  !! of the element, n/2 and more
-    integer, intent(in) :: n                        !! its freedoms
-    real(wp), intent(inout) :: k(n, n)              !! in x and y, then along the freedoms
+    integer, intent(in) :: node(:)                  !! nodes of the element, at least n/2
+    integer, intent(in) :: n                        !! its DOFs
+    real(wp), intent(inout) :: k(n, n)              !! along x and y; on exit along the DOFs
     real(wp) :: before(n)
     integer :: i, j
 

@@ -65,7 +65,7 @@ contains
   function dissect(model, further, nodes, wanted_last, pairs) result(found)
     type(model_type), intent(in) :: model      !! its nodes, connectivity, and elements around nodes are used
     real(wp), intent(in) :: further(:)         !! the additional coordinate [all nodes]
-    integer, intent(in) :: nodes(:)            !! of the body, or bodies
+    integer, intent(in) :: nodes(:)            !! nodes of the body or bodies
     logical, intent(in) :: wanted_last(:)      !! [all nodes]
     !> Pairs of each node, which join it to others; if absent, only elements join nodes [all nodes]
     type(incidence), intent(in), optional :: pairs

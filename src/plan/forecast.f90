@@ -51,9 +51,9 @@ contains
 
   !> Reject a model that needs more memory than the limit, or than the system has.
   subroutine check_memory(bytes, limit, error)
-    integer(i8), intent(in) :: bytes      !! as forecast
+    integer(i8), intent(in) :: bytes      !! forecast memory
     real(wp), intent(in) :: limit         !! [GB]
-    type(error_type), allocatable, intent(out) :: error   !! not enough of it
+    type(error_type), allocatable, intent(out) :: error   !! memory does not suffice
 
     if (.not. bytes/giga <= limit) then
       call raise(error, status_usage, &
@@ -77,7 +77,7 @@ contains
   !> Bound of the addresses of a run: not all of the forecast memory is touched, and the heap has gaps
   !! [bytes].
   pure integer(i8) function most_memory(bytes)
-    integer(i8), intent(in) :: bytes   !! as forecast
+    integer(i8), intent(in) :: bytes   !! forecast memory
 
     most_memory = 2*bytes + memory_of_libraries
   end function most_memory
@@ -128,7 +128,7 @@ contains
     type(free_motions), intent(in) :: motions
     type(numbering_type), intent(in) :: numbering
     type(forecast_type), intent(inout) :: expected
-    type(incidence) :: of_bodies       ! pairs that have nodes in each body
+    type(incidence) :: of_bodies       ! pairs with nodes in each body
     integer(i8) :: entries, factor, flexibility, last, own, pairs, passing, updates, unit_loads
     integer :: b
 

@@ -31,8 +31,8 @@ module epcont_plan_free_motion
     !> First mode of each body [bodies + 1]
     integer, allocatable :: first(:)
     type(rigid_parts) :: parts
-    !> Displacements and rotation of each part in each mode, and number of columns before those of a mode
-    !! [part_motions, any], [count]
+    !> Displacements and rotation of each part in each mode [part_motions, any], and number of columns before
+    !! those of each mode [count]
     real(wp), allocatable, private :: coefficient(:, :)
     integer, allocatable, private :: before(:)
   contains
@@ -48,7 +48,7 @@ contains
   !> Add rigid-body displacements.
   subroutine add(self, model, motion, displacement)
     class(free_motions), intent(in) :: self
-    type(model_type), intent(in) :: model              !! the scene
+    type(model_type), intent(in) :: model
     real(wp), intent(in) :: motion(:)                  !! amplitude of each mode [count]
     real(wp), intent(inout) :: displacement(:, :)      !! [length] [directions, nodes]
     integer :: k, node
@@ -67,8 +67,8 @@ contains
   !> Displacement of a node in mode k with amplitude one.
   pure function displacement(self, model, node, k) result(u)
     class(free_motions), intent(in) :: self
-    type(model_type), intent(in) :: model   !! the scene
-    integer, intent(in) :: node, k   !! node, and number of the mode
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: node, k   !! node and number of the mode
     real(wp) :: u(directions)
 
     u = 0.0_wp
@@ -81,17 +81,17 @@ contains
   !> Rotation of the part of a node in a mode, times the extent of the body [length].
   pure real(wp) function turn(self, node, k)
     class(free_motions), intent(in) :: self
-    integer, intent(in) :: node, k   !! node, and number of the mode
+    integer, intent(in) :: node, k   !! node and number of the mode
 
     turn = self%coefficient(part_motions, self%before(k) + self%parts%own(self%parts%of_node(node)))
   end function turn
 
-  !> Sizes of the displacements in each mode, independent of the axes: those of the SUPORT node that measures
-  !! both directions (the mean of several; if there is none, of all SUPORT nodes of the body), and those of
-  !! one SUPORT node about another by the rotation of each part [length] [any, count].
+  !> Displacements in each mode that do not depend on the axes: at the SUPORT node that measures both
+  !! directions (the mean, if several do; that of all SUPORT nodes of the body, if none does), and of one
+  !! SUPORT node about another due to the rotation of each part [length] [any, count].
   pure function travels(self, model) result(travel)
     class(free_motions), intent(in) :: self
-    type(model_type), intent(in) :: model   !! the scene
+    type(model_type), intent(in) :: model
     real(wp), allocatable :: travel(:, :)
     integer, allocatable :: node(:)
     real(wp) :: apart
@@ -118,13 +118,13 @@ contains
     end do
   end function travels
 
-  !> Find the rigid-body modes of all bodies. If the SUPORT DOFs of a body do not measure its modes, this is
-  !! an error.
+  !> Find the rigid-body modes of all bodies. SUPORT DOFs that do not measure the modes of a body are an
+  !! error.
   subroutine find_free_motions(model, motions, found)
     type(model_type), intent(in) :: model
     type(free_motions), intent(out) :: motions   !! of all bodies without errors
     type(findings), intent(inout) :: found       !! errors are added
-    type(incidence) :: nodes   ! of each body
+    type(incidence) :: nodes   ! nodes of each body
     integer :: b
 
     motions%parts = find_rigid_parts(model)
@@ -142,7 +142,7 @@ contains
   !> Find the rigid-body modes of one body.
   subroutine examine_body(model, nodes, motions, found)
     type(model_type), intent(in) :: model
-    integer, intent(in) :: nodes(:)                 !! of the body
+    integer, intent(in) :: nodes(:)                 !! nodes of the body
     type(free_motions), intent(inout) :: motions    !! modes are appended
     type(findings), intent(inout) :: found
     real(wp), allocatable :: basis(:, :), factors(:, :), loose(:, :), measured(:, :), square(:, :), unit(:, :)
@@ -185,7 +185,7 @@ contains
           ': its SUPORT freedoms hardly tell its free motions apart', 'SUPORT nodes farther from each other')
         return
       end if
-      ! Rotations were measured by displacements at the extent of the body; from here on they are angles.
+      ! Until here rotations are displacements at the extent of the body; from here on they are angles.
       unit(:, translations + 1:) = unit(:, translations + 1:)*motions%parts%extent(b)
       call motions%append(b, node, component, matmul(basis, unit))
     end if

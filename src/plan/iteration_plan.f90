@@ -1,5 +1,4 @@
-!> Which plastic iteration this scene gets, which rule finds the pairs in contact in each of its solves, and
-!> why.
+!> Choice of the plastic iteration of a model and of the contact solver in each of its solves.
 module epcont_plan_iteration_plan
   use epcont_base_kinds, only: wp
   use epcont_model_controls, only: method_auto, method_newton, method_secant, rule_auto
@@ -8,38 +7,40 @@ module epcont_plan_iteration_plan
   private
   public :: iteration_plan, plan_iteration
 
-  !> TOL of NEWTON, which gets there in a step or two more, and of the methods that pay for every digit.
+  !> Default TOL of NEWTON, which needs one or two more steps for it, and of the other methods, whose number
+  !! of iterations grows with each digit.
   real(wp), parameter :: newton_tolerance = 1.0e-8_wp, secant_tolerance = 0.01_wp
 
-  !> TOL as a part of PARAM ACCURACY. Stopping leaves an error of contact pressures of at most 0.3 TOL by
-  !! NEWTON and 50 TOL by the others (seven scenes of contact beyond yield, TOL from 0.1 to 1.E-4): less than
-  !! a tenth of the accuracy, thus.
+  !> TOL divided by PARAM ACCURACY. Iteration errors of contact pressures are at most 0.3 TOL with NEWTON, and
+  !! 50 TOL with the others (measured on seven models with yielded contact, TOL from 0.1 to 1.E-4). So they
+  !! are below a tenth of the accuracy.
   real(wp), parameter :: newton_part = 1.0_wp/10, secant_part = 1.0_wp/500
 
-  !> The methods but NEWTON stop by displacements, as the paper does. Where a travel or a slender body
-  !! hides the strains in them, stresses may still be far off: they may be by no more than this times TOL.
+  !> Largest stress error divided by TOL, for all methods except NEWTON. These stop by displacements, as in
+  !! the paper. If a prescribed displacement or a slender body dominates the displacements, the stresses may
+  !! still be wrong.
   real(wp), parameter :: looseness = 10.0_wp
 
   type :: iteration_plan
-    logical :: yields = .false.            !! there is something that can yield; else there is no iteration
-    integer :: load_steps = 1              !! more than one only where something can yield
+    logical :: yields = .false.            !! a material can yield; otherwise no iteration is needed
+    integer :: load_steps = 1              !! more than one only if a material can yield
     integer :: method = method_secant
-    logical :: chosen_here = .false.       !! the deck leaves the method to us
-    !> Largest change, and largest estimated error, of a displacement that ends the iteration.
+    logical :: chosen_here = .false.       !! epcont chooses the method, not the deck
+    !> Largest change, and largest estimated error, of a displacement with which the iteration ends
     real(wp) :: tolerance = 0.0_wp
-    integer :: threads = 1                 !! that bodies may be worked on by, side by side
-    logical :: joined = .false.            !! contact by RULE JOINED, else CONRY
-    logical :: rule_chosen_here = .false.  !! the deck leaves that to us
-    logical :: from_first_pivot = .false.  !! each contact problem, not from the last set of contacts
-    real(wp) :: off_curve = 0.0_wp         !! largest distance of a stress from its curve that does, with it
+    integer :: threads = 1                 !! threads that work on bodies in parallel
+    logical :: joined = .false.            !! contact solver JOINED, otherwise CONRY
+    logical :: rule_chosen_here = .false.  !! epcont chooses the contact solver, not the deck
+    logical :: from_first_pivot = .false.  !! contact solves start from no active set, not from the last
+    real(wp) :: off_curve = 0.0_wp         !! largest stress error with which the iteration ends
   end type iteration_plan
 
 contains
 
-  !> What this scene gets.
+  !> Choose the methods.
   pure function plan_iteration(model, joined) result(plan)
-    type(model_type), intent(in) :: model   !! the scene
-    logical, intent(in) :: joined           !! its bodies are one system
+    type(model_type), intent(in) :: model
+    logical, intent(in) :: joined           !! all bodies form one system
     type(iteration_plan) :: plan
     logical :: by_newton
     integer :: e
@@ -52,7 +53,7 @@ contains
       if (plan%yields) plan%load_steps = asked%load_steps
       plan%chosen_here = asked%method == method_auto
       plan%method = asked%method
-      ! NEWTON has no tangent for MUP PAPER, which is there to follow the paper: by its own method, then.
+      ! NEWTON has no tangent for MUP PAPER. That option follows the paper, so the paper's method is used.
       if (plan%chosen_here) plan%method = merge(method_secant, method_newton, asked%paper_ratio)
       by_newton = plan%method == method_newton
       if (asked%tolerance /= 0.0_wp) then

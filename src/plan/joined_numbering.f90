@@ -24,9 +24,9 @@ contains
   !! eliminated. Master DOFs, which are coupled with whole lines of nodes, come last, with the angles of
   !! rotating RBE2.
   subroutine number_joined(model, equation, angles, tied, node, first, first_contact)
-    type(model_type), intent(in) :: model   !! the scene
-    !> Of each DOF; that of its master if it is tied; 0 if fixed; negative: a row of `tied` [directions,
-    !! nodes]
+    type(model_type), intent(in) :: model
+    !> Equation of each DOF; that of its master if it is dependent; 0 if fixed; minus a row of `tied` if it is
+    !! a sum [directions, nodes]
     integer, allocatable, intent(out) :: equation(:, :)
     integer, intent(out) :: angles(:)                !! equation of each angle; 0 if fixed [platens]
     type(sparse_rows), intent(out) :: tied           !! DOFs that are sums of equations
@@ -121,10 +121,10 @@ contains
 
   !> List the springs of all pairs, of all SUPORT DOFs (by nodes, then angles), and of the model.
   type(sparse_rows) function spring_rows(model, equation, angles, tied) result(spring)
-    type(model_type), intent(in) :: model    !! the scene
+    type(model_type), intent(in) :: model
     integer, intent(in) :: equation(:, :)    !! from `number_joined` [directions, nodes]
-    integer, intent(in) :: angles(:)         !! the same [platens]
-    type(sparse_rows), intent(in) :: tied    !! the same
+    integer, intent(in) :: angles(:)         !! from `number_joined` [platens]
+    type(sparse_rows), intent(in) :: tied    !! from `number_joined`
     integer :: i, k, last, longest, row
 
     longest = maxval([1, tied%start(2:) - tied%start(:size(tied%start) - 1)])   ! entries of a DOF
@@ -160,7 +160,7 @@ contains
 
   contains
 
-    !> Add an entry to a row, or all entries of a sum; none if the DOF is fixed.
+    !> Add an entry to a row, or all entries of a sum; no entry if the DOF is fixed.
     recursive subroutine put(number, weight)
       integer, intent(in) :: number
       real(wp), intent(in) :: weight

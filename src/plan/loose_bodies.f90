@@ -12,18 +12,20 @@ module epcont_plan_loose_bodies
   private
   public :: add_loose_body, add_surplus
 
-  !> Of displacements this near to the largest, a message names the first, so that rounding does not choose.
+  !> Displacements larger than this fraction of the largest are equal to it. Messages name the first of these,
+  !! so that rounding does not choose.
   real(wp), parameter :: nearly = 0.999_wp
 
 contains
 
-  !> A body has more SUPORT freedoms than rigid-body motions: name the last one that can go.
+  !> Report a body with more SUPORT DOFs than rigid-body modes, and name the last SUPORT DOF that can be
+  !! removed.
   subroutine add_surplus(model, node, component, dependence, motions, found)
     type(model_type), intent(in) :: model
-    integer, intent(in) :: node(:), component(:)   !! of the SUPORT freedoms of the body
-    real(wp), intent(in) :: dependence(:, :)       !! combinations that measure no motion [SUPORT, any]
-    integer, intent(in) :: motions                 !! how many the body has
-    type(findings), intent(inout) :: found         !! gets an error
+    integer, intent(in) :: node(:), component(:)   !! SUPORT DOFs of the body
+    real(wp), intent(in) :: dependence(:, :)       !! combinations that measure no mode [SUPORT, any]
+    integer, intent(in) :: motions                 !! number of rigid-body modes of the body
+    type(findings), intent(inout) :: found         !! an error is added
     character(len=:), allocatable :: direction, name, remedy
     integer :: last
 
@@ -42,14 +44,14 @@ contains
       ' direction '//direction//' is one too many', remedy)
   end subroutine add_surplus
 
-  !> A body can move: say how, and which freedoms would hold it. The freedom that moves most is chosen, its
-  !! motion is taken out of the others, and so on.
+  !> Report an unconstrained body: its modes, and the DOFs that measure them. The DOF with the largest
+  !! displacement is chosen; its mode is subtracted from the others; then the next DOF is chosen.
   subroutine add_loose_body(model, parts, nodes, loose, found)
     type(model_type), intent(in) :: model
     type(rigid_parts), intent(in) :: parts
-    integer, intent(in) :: nodes(:)          !! of the body
-    real(wp), intent(in) :: loose(:, :, :)   !! its motions that nothing holds [part_motions, own parts, any]
-    type(findings), intent(inout) :: found   !! gets an error
+    integer, intent(in) :: nodes(:)          !! nodes of the body
+    real(wp), intent(in) :: loose(:, :, :)   !! its unconstrained modes [part_motions, own parts, any]
+    type(findings), intent(inout) :: found   !! an error is added
     real(wp) :: motion(directions, size(nodes), size(loose, 3))
     character(len=:), allocatable :: body, cards, text
     logical :: follows(directions, size(nodes))   ! dependent DOFs, which cannot be SUPORT DOFs
@@ -81,10 +83,10 @@ contains
                          'hold it by SPC1, or solve for the motion by SUPORT'//cards)
   end subroutine add_loose_body
 
-  !> Direction, node and motion of the largest displacement that can be a SUPORT freedom.
+  !> Direction, node and mode of the largest displacement of DOFs that can be SUPORT DOFs.
   pure function place_of_most(motion, follows) result(at)
-    real(wp), intent(in) :: motion(:, :, :)   !! [directions, nodes, motions]
-    logical, intent(in) :: follows(:, :)      !! no SUPORT freedom [directions, nodes]
+    real(wp), intent(in) :: motion(:, :, :)   !! [directions, nodes, modes]
+    logical, intent(in) :: follows(:, :)      !! cannot be a SUPORT DOF [directions, nodes]
     integer :: at(3)
 
     associate (moved => merge(0.0_wp, abs(motion), spread(follows, 3, size(motion, 3))))
@@ -92,9 +94,9 @@ contains
     end associate
   end function place_of_most
 
-  !> Scale motion k to 1 at a freedom and take it out of the others, so that they do not move that.
+  !> Scale mode k to 1 at a DOF, and subtract it from the other modes so that they do not move this DOF.
   pure subroutine take_out(motion, k, direction, node)
-    real(wp), intent(inout) :: motion(:, :, :)       !! [directions, nodes, motions]
+    real(wp), intent(inout) :: motion(:, :, :)       !! [directions, nodes, modes]
     integer, intent(in) :: k, direction, node
     integer :: j
 
@@ -104,13 +106,13 @@ contains
     end do
   end subroutine take_out
 
-  !> A motion, as one of the nodes has it. A part shifts if all its nodes move alike.
+  !> Describe a mode at one of the nodes. A part translates if all its nodes have the same displacement.
   pure function words(model, motion, nodes, k, beside) result(text)
     type(model_type), intent(in) :: model
     real(wp), intent(in) :: motion(:, :)   !! [directions, nodes]
-    integer, intent(in) :: nodes(:)        !! of the body
-    integer, intent(in) :: k               !! the one among them
-    logical, intent(in) :: beside(:)       !! nodes of its part
+    integer, intent(in) :: nodes(:)        !! nodes of the body
+    integer, intent(in) :: k               !! position of the node in this list
+    logical, intent(in) :: beside(:)       !! nodes of the same part
     character(len=:), allocatable :: text
     real(wp) :: unit(directions)
 
@@ -119,7 +121,7 @@ contains
       if (sum(maxval(motion, dim=2, mask=mask) - minval(motion, dim=2, mask=mask)) > no_effect) &
         text = 'it turns, '//model%name_of(of_node, nodes(k))//' moving'
     end associate
-    unit = real(nint(motion(:, k)/norm2(motion(:, k))*1.0e4_wp), wp)*1.0e-4_wp   ! without rounding
+    unit = real(nint(motion(:, k)/norm2(motion(:, k))*1.0e4_wp), wp)*1.0e-4_wp   ! rounding removed
     text = text//' along ('//short_real(unit(1))//', '//short_real(unit(2))//')'
   end function words
 end module epcont_plan_loose_bodies

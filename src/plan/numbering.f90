@@ -36,7 +36,7 @@ module epcont_plan_numbering
     integer :: equations = 0               !! without the border
     integer :: contact_equations = 0       !! number of equations that gaps depend on
     logical :: contact_last = .true.       !! the contact equations are the last ones
-    integer :: first_contact = 1           !! the first of them; equations + 1 if there is none
+    integer :: first_contact = 1           !! first contact equation; equations + 1 if the body has none
     logical :: can_yield = .false.
     integer :: solver = solver_band        !! or solver_frontal
     type(front_layout) :: fronts           !! of solver_frontal
@@ -93,7 +93,7 @@ contains
     logical, intent(in) :: joined           !! all bodies as one system
     type(numbering_type) :: numbering
     type(numberer) :: work
-    type(incidence) :: elements, nodes      ! of each body
+    type(incidence) :: elements, nodes      ! elements and nodes of each body
     logical :: fixed(directions, model%nodes)
     integer :: b, i
 
@@ -229,7 +229,8 @@ contains
     end if
     call sweep(model, self%own, [order%node(n)], self%seen, order)
     call sweep(model, self%own, [order%node(n)], self%seen, order)
-    ! The contact comes late in the reversed order, and with it what yields: the rest is factored once.
+    ! The contact, and with it the yielding elements, is late in the reversed order: the part before is
+    ! factored once.
     associate (place => pack([(real(i, wp), i=1, n)], self%axes%pair(order%node) > 0))
       if (sum(place) > 0.5_wp*size(place)*n) call sweep(model, self%own, [order%node(n)], self%seen, order)
     end associate
@@ -281,7 +282,7 @@ contains
   subroutine number_nodes(self, model, b, order)
     class(numberer), intent(inout) :: self
     type(model_type), intent(in) :: model
-    integer, intent(in) :: b                 !! its solver is known, and whether contact DOFs are last
+    integer, intent(in) :: b                 !! has a solver, and says whether contact DOFs are last
     integer, intent(in) :: order(:)
     integer, allocatable :: contact(:)
     integer :: equations
@@ -310,7 +311,7 @@ contains
   subroutine number_freedoms(self, node, wanted, equations)
     class(numberer), intent(inout) :: self
     integer, intent(in) :: node(:)
-    logical, intent(in) :: wanted(:)   !! number DOFs that gaps depend on, the other ones, or both
+    logical, intent(in) :: wanted(:)   !! number the DOFs that gaps depend on, the other DOFs, or both
     integer, intent(inout) :: equations
     integer :: c, i
 

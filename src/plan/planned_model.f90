@@ -1,4 +1,4 @@
-!> The model and the plan of its solution, which all later folders read and none changes.
+!> Model and plan of its solution. Later folders read both; none changes them.
 module epcont_plan_planned_model
   use epcont_model_finding, only: findings
   use epcont_model_model, only: model_type
@@ -16,7 +16,7 @@ module epcont_plan_planned_model
     type(model_type) :: model
     type(free_motions) :: motions          !! rigid-body modes of its bodies
     type(numbering_type) :: numbering      !! of its equations
-    type(iteration_plan) :: iteration      !! how contact and yielding are found
+    type(iteration_plan) :: iteration      !! methods for contact and yielding
     type(forecast_type) :: expected        !! memory and work
     logical :: other_rule = .false.        !! the preferred contact solver has failed: use the other one
     integer :: plan_cases = 1              !! load cases that share the plan
@@ -49,7 +49,7 @@ contains
     call watch%lap(stage_plan)
   end subroutine make_plan
 
-  !> Can the contact be found by another rule than the plan's?
+  !> Can the plan's contact solver be replaced by the other one?
   logical function has_other_rule(self)
     class(planned_model), intent(in) :: self
 

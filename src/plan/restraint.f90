@@ -12,14 +12,14 @@ module epcont_plan_restraint
 
 contains
 
-  !> Rows of hinges, of motions that parts cannot make, of supports and ties, and of springs of one body.
+  !> Rows of hinges, of motions that parts cannot make, and of supports, ties and springs of one body.
   function restraint_rows(model, parts, nodes) result(rows)
     type(model_type), intent(in) :: model
     type(rigid_parts), intent(in) :: parts
-    integer, intent(in) :: nodes(:)         !! of the body
+    integer, intent(in) :: nodes(:)         !! nodes of the body
     real(wp), allocatable :: rows(:, :)
     logical :: bound(directions, size(nodes))
-    integer, allocatable :: hinge(:), own(:), platen(:), spring(:)   ! of the body
+    integer, allocatable :: hinge(:), own(:), platen(:), spring(:)   ! numbers of those of the body
     real(wp) :: of_node(directions, part_motions)
     integer :: b, c, i, k, last
 

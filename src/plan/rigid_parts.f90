@@ -18,7 +18,7 @@ module epcont_plan_rigid_parts
   type :: rigid_parts
     integer :: count = 0
     integer, allocatable :: of_node(:)      !! part of each node [nodes]
-    integer, allocatable :: body(:)         !! of each part [count]
+    integer, allocatable :: body(:)         !! body of each part [count]
     integer, allocatable :: own(:)          !! number of each part among the parts of its body [count]
     !> Axisymmetric parts do not move along x or rotate; nodes without elements do not rotate [part_motions,
     !! count]

@@ -1,39 +1,38 @@
-!> The fewest nodes of a graph that keep two sides of it apart.
+!> Smallest separator: the fewest nodes of a graph whose removal disconnects its left side from its right
+!> side.
 !>
-!> Between the left and the right lies a band. By Menger's theorem the fewest nodes of it without which
-!> nothing leads from the one to the other are as many as ways through it can be laid that do not meet: one
-!> on each. Ways are laid by augmenting (Ford and Fulkerson), the shortest first, many at a time (Dinic
-!> 1970): where a new one comes upon one that is laid it goes back along that, which is led on elsewhere. So
-!> each node has two states that a new way may reach: it has come to it, -node, and it may go on from it to
-!> any neighbour, node.
+!> The separator is chosen within a band between both sides. By Menger's theorem it has as many nodes as there
+!> are node-disjoint paths through the band: one node of each path. Paths are found by augmentation (Ford and
+!> Fulkerson), shortest first and many at a time (Dinic 1970). If a new path meets an old one, it runs back
+!> along the old path, whose remainder is rerouted. So each node has two states: `-node` if a new path has
+!> entered it, and `node` if the path may leave it to any neighbour.
 module epcont_plan_separator
   use epcont_base_incidence, only: incidence
   implicit none
   private
   public :: between, edge, find_separator, left, new_parted_graph, outside, parted_graph, right
 
-  !> Where a node is: not among those that are looked at, in one of the halves, in the band between them, or
-  !! in the separator.
+  !> Position of a node: not in the set, in one of the halves, in the band between them, or in the separator.
   integer, parameter :: outside = 0, left = 1, right = 2, between = 3, edge = 4
 
   type :: parted_graph
     type(incidence) :: beside            !! neighbours of each node
-    integer, allocatable :: side(:)      !! where each node is [nodes]
-    !> Nodes before and behind each on its way, or `the_end`, or `no_way`
+    integer, allocatable :: side(:)      !! position of each node [nodes]
+    !> Previous and next node on the path of each node, or `the_end`, or `no_way`
     integer, allocatable, private :: before(:), behind(:)
-    integer, allocatable, private :: from(:)   !! from where a new way has come to a node
-    integer, allocatable, private :: tried(:)  !! the neighbour to which it went on last
-    !> How far a state is from the right; of nodes that are not in the band `no_way` [-nodes:nodes]
+    integer, allocatable, private :: from(:)   !! node from which a new path entered each node
+    integer, allocatable, private :: tried(:)  !! last neighbour that a new path tried from each node
+    !> Distance of each state from the right side; `no_way` for nodes outside the band [-nodes:nodes]
     integer, allocatable, private :: far(:)
   end type parted_graph
 
   integer, parameter :: no_way = -1, the_end = 0
-  !> From there the right is not reached.
+  !> Distance of states from which the right side cannot be reached
   integer, parameter :: never = huge(1)
 
 contains
 
-  !> A graph of which no node is looked at yet.
+  !> Graph in which all nodes are outside the set.
   pure function new_parted_graph(beside) result(self)
     type(incidence), intent(in) :: beside   !! neighbours of each node
     type(parted_graph) :: self
@@ -46,14 +45,14 @@ contains
     allocate (self%far(-nodes:nodes), source=no_way)
   end function new_parted_graph
 
-  !> Part the band of a set: the fewest nodes to the edge, the others to the halves, which become as even as
-  !! so few allow. Left and right may be joined through the band only.
+  !> Split the band of a set: the fewest nodes become the separator, the others join the halves, which become
+  !! as equal as this permits. Left and right nodes must be connected through the band only.
   subroutine find_separator(self, set)
     type(parted_graph), intent(inout) :: self
-    integer, intent(in) :: set(:)   !! nodes that are left, right, or between; all others are outside
+    integer, intent(in) :: set(:)   !! nodes that are left, right or between; all other nodes are outside
     integer, allocatable :: band(:), beside(:)
-    integer, allocatable :: list(:)             ! states to go on from
-    integer, allocatable :: first(:), last(:)   ! of the band, with neighbours left, and right
+    integer, allocatable :: list(:)             ! states to be continued
+    integer, allocatable :: first(:), last(:)   ! band nodes with left neighbours, and with right neighbours
     integer :: i, laid, ways
 
     band = pack(set, self%side(set) == between)
@@ -76,7 +75,7 @@ contains
     self%far(-band) = no_way
   end subroutine find_separator
 
-  !> The sides that the neighbours of a node are on, as bits.
+  !> Sides of the neighbours of a node, as bits.
   pure integer function sides_beside(self, node) result(sides)
     type(parted_graph), intent(in) :: self
     integer, intent(in) :: node
@@ -88,7 +87,7 @@ contains
     end do
   end function sides_beside
 
-  !> How far each state is from the right, in steps that a new way may go.
+  !> Measure the distance of each state from the right side, in steps of a new path.
   subroutine measure(self, band, last, list)
     type(parted_graph), intent(inout) :: self
     integer, intent(in) :: band(:), last(:)
@@ -136,7 +135,7 @@ contains
     end subroutine reach
   end subroutine measure
 
-  !> Lay a way from a node of the left to the right, if one leads there by steps that each come nearer.
+  !> Add a path from a left node to the right side, if each step of it reduces the distance.
   subroutine lay_way(self, first, list, ways)
     type(parted_graph), intent(inout) :: self
     integer, intent(in) :: first
@@ -158,7 +157,7 @@ contains
         if (self%tried(node) < self%beside%start(node + 1)) then
           next = self%beside%group(self%tried(node))
         else if (self%tried(node) == self%beside%start(node + 1)) then
-          next = node   ! out of it by where its own way comes in
+          next = node   ! leave it by the path that enters it
         else
           deep = deep - 1
           exit
@@ -171,7 +170,7 @@ contains
 
   contains
 
-    !> Come to a node, once, and go on from it, or, if it is on a way, from the one before it there.
+    !> Enter a node, once. Continue from it or, if it is on a path, from the node before it on that path.
     subroutine come_to(node, from)
       integer, intent(in) :: node, from
 
@@ -182,7 +181,7 @@ contains
     end subroutine come_to
   end subroutine lay_way
 
-  !> Join a new way that has got to its last node, and lead on elsewhere those that it came upon.
+  !> Complete a new path at its last node, and reroute the paths that it met.
   subroutine join(self, last)
     type(parted_graph), intent(inout) :: self
     integer, intent(in) :: last
@@ -209,14 +208,14 @@ contains
     end do
   end subroutine join
 
-  !> Part the band where no further way leads to the right. All that new ways get on from is left; where
-  !! they come to a node and no further, it is in the separator. It may be passed where that leads nowhere
-  !! either: the separator behind is as short. So the left grows as long as it is not half of all.
+  !> Split the band if no further path reaches the right side. Nodes that new paths can leave become left;
+  !! nodes that they only enter form the separator. A separator node with no path to the right behind it may
+  !! become left: the next separator is as small. So the left side grows until it has half of all nodes.
   subroutine part_evenly(self, band, first, list, wanted)
     type(parted_graph), intent(inout) :: self
     integer, intent(in) :: band(:), first(:)
     integer, intent(out) :: list(:)
-    integer, intent(in) :: wanted   !! nodes of the band that are to be left
+    integer, intent(in) :: wanted   !! band nodes that shall become left
     integer :: stopped(size(band)), deep, found, i, stops
 
     deep = 0
@@ -261,7 +260,7 @@ contains
       list(deep) = node
     end subroutine go_on_from
 
-    !> To the node before on its way.
+    !> Continue from the previous node on the path.
     subroutine go_back_from(node)
       integer, intent(in) :: node
 
