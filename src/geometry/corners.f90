@@ -4,8 +4,8 @@
 !> Along chords of a curve, neighbouring nodes have similar rotations. At a chamfer one node has a rotation,
 !> and its neighbours have none.
 !>
-!>     rotations  30 30 30 30   circle of twelve edges: smooth     0 30 0      chamfer: a corner
-!>                0 15 30 15 0  arc of two edges: smooth           0 30 30 0   edge across a corner: two corners
+!>     rotations  30 30 30 30   circle of twelve edges: smooth   0 30 0     chamfer: a corner
+!>                0 15 30 15 0  arc of two edges: smooth         0 30 30 0  edge across a corner: two corners
 module epcont_geometry_corners
   use epcont_base_kinds, only: wp
   use epcont_geometry_boundary_line, only: boundary_line
