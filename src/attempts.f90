@@ -16,7 +16,7 @@ module epcont_attempts
   integer, parameter :: most(attempts) = [1, 2, 1, 7]
   logical, parameter :: plans_again(attempts) = [.false., .true., .false., .true.]
 
-  !> Reasons; 0 if there is none.
+  !> Reasons; 0: no reason.
   integer, parameter, public :: &
     because_not_converged = 1, &   !! neither an answer nor a limit load was found
     because_no_contact = 2, &      !! no active set was found

@@ -55,7 +55,7 @@ module epcont_solution
     procedure :: forget
   end type kept_factors
 
-  !> A scene with its answer, and what that is worth. Where a body's stiffness could not be factored
+  !> A model with its answer, and what that is worth. Where a body's stiffness could not be factored
   !! (`answer%failed_body`), or without contact equilibrium (`answer%contact%state`), there are no
   !! displacements.
   type, extends(planned_model) :: solution_type
@@ -64,14 +64,13 @@ module epcont_solution
     type(accuracy_type) :: accuracy
     type(verdict_type) :: verdict
     type(kept_factors) :: kept           !! from load case to load case
-    !> The scene before nodes that came near in this load case got pairs; not allocated if there were none
+    !> The model before nodes that came near in this load case got pairs; not allocated if there were none
     type(planned_model), allocatable :: as_given
     type(attempt_list) :: attempts       !! that were made
     logical, private :: unique = .true.  !! contact forces, as far as the contact rule has to know
   contains
     procedure :: solve
     procedure :: return_to_given
-    procedure, private :: plan_again
     procedure, private :: solve_as_planned
     procedure, private :: follow
     procedure, private :: choose_attempt
@@ -91,7 +90,7 @@ contains
   subroutine solve(self, limit, watch, error)
     class(solution_type), intent(inout) :: self
     real(wp), intent(in) :: limit                         !! of memory [GB]
-    class(observer), intent(inout) :: watch               !! takes the time, and is told of each solve
+    class(observer), intent(inout) :: watch               !! takes the time, and is called after each solve
     type(error_type), allocatable, intent(out) :: error   !! there is not enough memory
     type(accuracy_type) :: none
     integer :: what, why
@@ -116,7 +115,7 @@ contains
   !> Choose the first attempt of the list that has a reason.
   subroutine choose_attempt(self, what, why)
     class(solution_type), intent(inout) :: self
-    integer, intent(out) :: what, why   !! `why` is 0 if there is none
+    integer, intent(out) :: what, why   !! 0: no attempt has a reason
 
     do what = 1, attempts
       why = 0
@@ -152,25 +151,13 @@ contains
     case (more_steps)
       deallocate (self%kept%linear)
       call self%follow(many, watch)
-    case (other_rule)
-      self%other_rule = .not. self%other_rule
-      call self%plan_again(limit, watch, error)
-    case (more_pairs)
-      call self%plan_again(limit, watch, error)
+    case (other_rule, more_pairs)
+      if (what == other_rule) self%other_rule = .not. self%other_rule
+      call self%kept%forget()
+      call self%make_plan(watch)
+      call self%solve_as_planned(limit, watch, error)
     end select
   end subroutine make_attempt
-
-  !> Plan the model as it now is, and solve it.
-  subroutine plan_again(self, limit, watch, error)
-    class(solution_type), intent(inout) :: self
-    real(wp), intent(in) :: limit
-    class(observer), intent(inout) :: watch
-    type(error_type), allocatable, intent(out) :: error
-
-    call self%kept%forget()
-    call self%make_plan(watch)
-    call self%solve_as_planned(limit, watch, error)
-  end subroutine plan_again
 
   !> Is there neither an answer nor a limit load, by a method that was chosen here? What the first solve does
   !> not find, steps do not.
@@ -298,7 +285,7 @@ contains
     self%certificate = found_certificate
   end subroutine refine
 
-  !> Return to the scene without the pairs of nodes that came near in this load case: other load cases are
+  !> Return to the model without the pairs of nodes that came near in this load case: other load cases are
   !! solved as if they were alone.
   subroutine return_to_given(self)
     class(solution_type), intent(inout) :: self
@@ -309,7 +296,7 @@ contains
     call self%kept%forget()
   end subroutine return_to_given
 
-  !> Factors are made anew for the next solve, or are no longer wanted.
+  !> Factors are made again for the next solve, or are no longer wanted.
   subroutine forget(self)
     class(kept_factors), intent(inout) :: self
     type(kept_estimates) :: none

@@ -137,14 +137,13 @@ contains
     n = size(pairs)
     do j = 1, n
       f(j:n, j) = scaled%flexibility_scale*scaled%flexibility(pairs(j:), pairs(j))
-      f(j, j) = f(j, j) + scaled%own_flexibility(pairs(j))
       do t = 1, size(closing, 2)
         if (closing(j, t) /= 0.0_wp) f(j:n, j) = f(j:n, j) + scaled%gamma(t)*closing(j, t)*closing(j:, t)
       end do
     end do
   end subroutine add_pairs
 
-  !> Pairs in the order of their pivots, but for those whose pivots are none.
+  !> Pairs in the order of their pivots, without those whose pivots are zero but for rounding.
   subroutine leave_out_dependent(basis, scaled)
     type(contact_basis), intent(inout) :: basis
     type(scaled_problem), intent(in) :: scaled

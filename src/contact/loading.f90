@@ -83,7 +83,7 @@ contains
     !> All of the load is carried; else there is a ray, or rounding has broken the order of ties.
     logical, intent(out) :: complete
     type(active_set), intent(out) :: set                !! pairs with a basic force at the end are closed
-    !> Growth of the forces where the load cannot grow and nothing gives way; else not allocated [n]
+    !> Growth of the forces where the load cannot grow and nothing deforms; else not allocated [n]
     real(wp), allocatable, intent(out) :: ray(:)
     type(load_tableau) :: tableau
     integer :: count, i

@@ -16,9 +16,9 @@ module epcont_contact_problem
 
   !> What is true of the problem.
   integer, parameter, public :: contact_solved = 0   !! forces, gaps and approach satisfy all conditions
-  !> No R >= 0 carry P: the bodies move off along `escape`.
+  !> No R >= 0 carry P: the bodies are unconstrained along `escape`.
   integer, parameter, public :: contact_no_equilibrium = 1
-  !> The pairs `overlapping` are too close and nothing gives way.
+  !> The pairs `overlapping` are too close and nothing deforms.
   integer, parameter, public :: contact_overlap = 2
   !> No set of touching pairs passed the test: inconclusive because of rounding.
   integer, parameter, public :: contact_stalled = 3
@@ -31,7 +31,7 @@ module epcont_contact_problem
     type(motion_matrix) :: motion               !! A, closing of the gaps by unit rigid motions [n, m]
     real(wp), allocatable :: initial_gap(:)     !! g0, negative: an overlap [length] [n]
     real(wp), allocatable :: load_gap(:)        !! gl, opening by the loads without contact [length] [n]
-    real(wp), allocatable :: resultant(:)       !! P, load of the bodies along their free motions [m]
+    real(wp), allocatable :: resultant(:)       !! P, load of the bodies along their rigid-body modes [m]
     !> Forces about which those of the answer are found, and the gaps under loads and these, without motions:
     !! F has a part in what is between the two alone. Not allocated: none [force], [length] [n]
     real(wp), allocatable :: known_force(:), known_gap(:)
@@ -64,7 +64,7 @@ module epcont_contact_problem
     !> y with P'y > 0 and A y <= 0, if there is no equilibrium; if no set passed, with A y hardly more than
     !! zero, where that is the cause [m]
     real(wp), allocatable :: escape(:)
-    !> Pairs that overlap and cannot give way; or that alone resist such a y [n]
+    !> Pairs that overlap and cannot deform; or that alone resist such a y [n]
     logical, allocatable :: overlapping(:)
     !> Pairs whose force is not unique: `force` is one choice of many [n]
     logical, allocatable :: indeterminate(:)

@@ -16,7 +16,7 @@ module epcont_contact_scaling
   use epcont_flexibility_motion_matrix, only: motion_matrix
   implicit none
   private
-  public :: active_set, scaled_problem, scale_problem, diagonal_of, drop_motions, measure, gaps_by_forces
+  public :: active_set, scaled_problem, scale_problem, diagonal_of, drop_motions, gaps_by_forces
 
   !> The state of each pair: closed, or its force at one of its bounds.
   type :: active_set
@@ -28,7 +28,6 @@ module epcont_contact_scaling
   type :: scaled_problem
     real(wp), pointer, contiguous :: flexibility(:, :) => null()   !! F, as given [n, n]
     real(wp) :: flexibility_scale = 1.0_wp       !! rho/omega, by which entries of F are multiplied
-    real(wp), allocatable :: own_flexibility(:) !! that each pair has besides F [n]
     type(motion_matrix) :: motion               !! A [n, m]
     real(wp), allocatable :: gap(:)             !! g, gaps under load and known forces [n]
     real(wp), allocatable :: known_force(:)     !! those, 0 where the problem has none [n]
@@ -50,7 +49,7 @@ module epcont_contact_scaling
     !> A pivot of F_g up to this part of that is rounding: a hundredth of a negligible one, or that of n sums.
     real(wp) :: rank_tolerance = 0.0_wp
     type(active_set) :: first                   !! that of rigid bodies: its closed pairs hold every motion
-    logical, allocatable :: guess(:)   !! of the pairs in contact; not allocated where there is none [n]
+    logical, allocatable :: guess(:)   !! of the pairs in contact; not allocated: no guess [n]
   end type scaled_problem
 
   !> Pairs whose flexibility is below this part of the softest's are measured by themselves: of bodies a
@@ -94,7 +93,6 @@ contains
       scaled%resultant = problem%resultant/scaled%motion_size/rho
     end associate
     scaled%flexibility => problem%flexibility
-    scaled%own_flexibility = 0*scaled%gap
     scaled%motion = problem%motion%over(scaled%motion_size)
     call take_bounds()
     call measure(scaled)
@@ -113,7 +111,7 @@ contains
       scaled%resultant = scaled%resultant - scaled%motion%carried(scaled%lower)
     end subroutine take_bounds
 
-    !> Force that opens a gap; 0 where nothing gives way.
+    !> Force that opens a gap; 0 where nothing deforms.
     pure real(wp) function force_over(gap) result(force)
       real(wp), intent(in) :: gap
 
@@ -122,7 +120,7 @@ contains
     end function force_over
   end function scale_problem
 
-  !> A size, or another where there is none.
+  !> A size, or another one if it is zero.
   elemental real(wp) function or_else(size, other) result(chosen)
     real(wp), intent(in) :: size, other
 
@@ -150,7 +148,7 @@ contains
     real(wp) :: softest
     integer :: i, j
 
-    own = diagonal_of(scaled%flexibility)*scaled%flexibility_scale + scaled%own_flexibility
+    own = diagonal_of(scaled%flexibility)*scaled%flexibility_scale
     softest = or_else(largest_of(own), 1.0_wp)
     squares = 0.0_wp
     scaled%gamma = spread(0.0_wp, 1, scaled%motion%motions())
@@ -198,7 +196,7 @@ contains
       if (absolute) gap = gap + abs(force(k)*scaled%flexibility(:, k))
       if (.not. absolute) gap = gap + force(k)*scaled%flexibility(:, k)
     end do
-    gap = scaled%flexibility_scale*gap + scaled%own_flexibility*force
+    gap = scaled%flexibility_scale*gap
   end function gaps_by_forces
 
   !> Diagonal of a square matrix.

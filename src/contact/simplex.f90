@@ -6,24 +6,20 @@
 !> On smooth, badly conditioned flexibilities (1e10) pairs close and open again many times while the load
 !> grows: the path takes some n**2/20 pivots, and the tableau's entries, which go up to the condition number
 !> and back, lose as many digits on it. Such a path is not followed to its end: block pivoting decides, which
-!> solves each set by a factor of its own; where forces depend on each other, once each pair has a hair of
-!> flexibility of its own.
+!> solves each set by a factor of its own.
 module epcont_contact_simplex
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: cancelled, negligible, null_component, solved_to
   use epcont_contact_block_pivoting, only: exchange_blocks
   use epcont_contact_loading, only: follow_load
   use epcont_contact_problem, only: contact_overlap, contact_solution, contact_solved, contact_stalled
-  use epcont_contact_scaling, only: active_set, diagonal_of, gaps_by_forces, measure, scaled_problem
+  use epcont_contact_scaling, only: active_set, gaps_by_forces, scaled_problem
   use epcont_contact_state, only: basic_values, contact_state, guess_tolerance, has_right_signs, &
     renew_state, solve_set
   implicit none
   private
   public :: find_contacts
 
-  !> Flexibility of its own, as a part of the largest, that tells pairs apart whose forces depend on each
-  !! other; it opens gaps by less than `solved_to` (tests/contact pass from 1e-12 to 1e-8).
-  real(wp), parameter :: own_flexibility = 1.0e-10_wp
   !> Fresh starts before the problem is given up.
   integer, parameter :: restart_limit = 10
 
@@ -65,7 +61,7 @@ contains
         lifted = lifted + [(1.0_wp + real(k, wp)/size(lifted), k=1, size(lifted))]/2.0_wp**attempt
         lifted(state%pairs) = min(lifted(state%pairs), scaled%upper(state%pairs))
       end if
-      if (attempt > 1) cycle
+      if (attempt > 0) cycle
       call exchange_afresh(found)
       if (found) return
     end do
@@ -102,21 +98,15 @@ contains
       values = bounded_values(rest)
     end function unloaded_values
 
-    !> Block pivoting from nothing, each pair having some flexibility of its own. Nothing is left of it unless
-    !! the set is right without that too.
+    !> Block pivoting from the first set.
     subroutine exchange_afresh(found)
       logical, intent(out) :: found
-      type(scaled_problem) :: softer
       type(contact_state) :: better
       integer :: exchanged
 
-      softer = scaled
-      softer%own_flexibility = spread(attempt*own_flexibility*scaled%flexibility_scale &
-                                      *maxval([diagonal_of(scaled%flexibility), 0.0_wp]), 1, size(scaled%gap))
-      call measure(softer)
       exchanged = solution%pivots
       set = scaled%first
-      call exchange_blocks(softer, set, exchanged)
+      call exchange_blocks(scaled, set, exchanged)
       set%closed = set%closed .or. scaled%first%closed
       call renew_state(better, scaled, set)
       found = has_right_signs(scaled, better, solved_to)

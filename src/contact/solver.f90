@@ -20,7 +20,7 @@ module epcont_contact_solver
 
 contains
 
-  !> Find forces, gaps and motions of a contact problem, or why there are none. Of no answer the cause may be
+  !> Find forces, gaps and motions of a contact problem, or why it has no answer. The cause may be
   !! that pairs hold a motion by so little that rounding of the loads along it is too large a force.
   subroutine solve_contact(problem, solution, start, basis, any_forces)
     type(contact_problem), intent(in), target :: problem   !! in the deck's units

@@ -81,8 +81,7 @@ contains
     real(wp), intent(in) :: approach(:)           !! q [m]
     real(wp), allocatable :: gap(:)
 
-    gap = opening - scaled%motion%times(approach) + gaps_by_forces(scaled, change) &
-          + scaled%own_flexibility*scaled%known_force
+    gap = opening - scaled%motion%times(approach) + gaps_by_forces(scaled, change)
   end function gaps_under
 
   !> The basic variable of each pair: force where it is in the basis, gap elsewhere.
@@ -125,13 +124,13 @@ contains
     right = state%sound .and. all(state%force >= -force_tolerance) .and. &
             all(state%force - scaled%upper <= force_tolerance)
     if (.not. right) return
-    ! At pairs that hardly give way a gap far below the others' tells of a force that is off.
+    ! At pairs that hardly deform a gap far below the others' tells of a force that is off.
     terms = terms_of_gaps(scaled, state)
     widest = force_tolerance + gap_noise
     gap = signed_gaps(state)
     right = all(gap >= -max(scaled%softness*widest, min(widest, cancelled*terms)))
     if (.not. right .or. maxval([state%force, 0.0_wp]) <= 1.0_wp) return
-    ! The largest force, at a stop that hardly gives way, says nothing of gaps that it has no part in.
+    ! The largest force, at a stop that hardly deforms, says nothing of gaps that it has no part in.
     right = all(gap >= -(tolerance*max(terms, 1.0_wp) + gap_noise))
   end function has_right_signs
 

@@ -45,14 +45,14 @@ module epcont_linear_contact_rule
     integer :: threads = 1             !! that share the work
     logical :: keeps = .false.         !! the bodies cannot yield, and a load case may follow
     logical :: explains = .true.       !! it can say why there is no answer, and which forces are not unique
-    logical :: failed = .false.        !! in this load case, to find a contact or all that is to be told of it
+    logical :: failed = .false.        !! to find a contact in this load case
   contains
     procedure, non_overridable :: see_case
     procedure(take_case), deferred :: take_case
     procedure(factor), deferred :: factor
     procedure(solve), deferred :: solve
     procedure :: refine
-    procedure(is_unique), deferred :: is_unique
+    procedure :: is_unique
     procedure(respond), deferred :: respond
     procedure(sensitivity), deferred :: sensitivity
     procedure(compliance), deferred :: compliance
@@ -88,14 +88,6 @@ module epcont_linear_contact_rule
       type(solved_state), intent(inout) :: state
       class(stopwatch), intent(inout) :: watch
     end subroutine solve
-
-    !> Are the contact forces the only ones, as far as the rule has to know?
-    logical function is_unique(self, scene, bodies)
-      import :: contact_rule, factored_bodies, planned_model
-      class(contact_rule), intent(inout) :: self
-      type(planned_model), intent(in) :: scene
-      class(factored_bodies), intent(in) :: bodies
-    end function is_unique
 
     !> Find forces under unit loads, and what the sensitivity depends on. The pairs in contact stay so.
     subroutine respond(self, scene, bodies, state, loads, known)
@@ -148,6 +140,15 @@ contains
 
     refined = .false.
   end subroutine refine
+
+  !> Are the contact forces the only ones? A rule that can say which ones are not unique need not know.
+  logical function is_unique(self, scene, bodies)
+    class(contact_rule), intent(inout) :: self
+    type(planned_model), intent(in) :: scene
+    class(factored_bodies), intent(in) :: bodies
+
+    is_unique = .true.
+  end function is_unique
 
   !> Say which loads are asked for; loads without forces tell nothing.
   pure subroutine ask_for(self, asked)

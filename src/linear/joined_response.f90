@@ -20,7 +20,7 @@ module epcont_linear_joined_response
   !> What a solve leaves of forces of size one, at most, where they open gaps.
   real(wp), parameter :: most_left = 0.1_wp
   !> Openings of gaps that motions explain but for this part of them make no forces: springs of SUPORT
-  !! freedoms leave that much.
+  !! DOFs leave that much.
   real(wp), parameter :: as_motions = 1.0e-5_wp
   !> Motions up to which that is asked of all of them.
   integer, parameter :: few_motions = 40
@@ -114,7 +114,7 @@ contains
   end subroutine take_response
 
   !> Find forces and displacements under loads and openings in one solve; of what is wrong of forces as far as
-  !! known it leaves a thousandth or less. Springs at SUPORT freedoms bear what known displacements say.
+  !! known it leaves a thousandth or less. Springs at SUPORT DOFs carry what known displacements say.
   subroutine solve(found, springs, scene, bodies, at_contact)
     class(frozen_response), intent(inout) :: found
     class(joined_springs), intent(in) :: springs
@@ -154,7 +154,7 @@ contains
     x(:, 2) = x(:, 2)/sum(abs(x(:, 2)))
   end function first_columns
 
-  !> What the first solve has told of the norms, and for each of them the column that is next: of M'D the
+  !> What the first solve says of the norms, and for each of them the column that is next: of M'D the
   !! largest entry is a bound, too.
   subroutine turn(self, scene, problem, state, x)
     class(sensitivity_probe), intent(inout) :: self

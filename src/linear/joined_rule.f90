@@ -82,7 +82,7 @@ contains
     failed_body = merge(0, 1, sound)
   end subroutine factor
 
-  !> Find deformation, approach and contact forces. `failed` where there are none, or motions are neutral.
+  !> Find deformation, approach and contact forces. `failed` if no active set is found.
   subroutine solve(self, scene, bodies, load_factor, start, state, watch)
     class(joined_rule), intent(inout) :: self
     type(planned_model), intent(in) :: scene
@@ -181,7 +181,7 @@ contains
     found = self%probe%found(condition, self%search%correction)
   end function sensitivity
 
-  !> What a half-plane gives way by at each pair.
+  !> What a half-plane deforms by at each pair.
   pure function compliance(self)
     class(joined_rule), intent(in) :: self
     real(wp), allocatable :: compliance(:)

@@ -8,7 +8,7 @@
 !> steps have the springs of the pairs whose force is between its bounds, the active set (Hintermueller, Ito
 !> and Kunisch 2002). Where a step does not change the set, lambda follows R, and gaps that are left fall by
 !> gamma times the flexibility, thousands, with each step: of gamma nothing is left in the answer. SUPORT
-!> freedoms have springs, too, so weak that they matter where no pair holds a body yet; each step has them
+!> DOFs have springs, too, so weak that they matter where no pair holds a body yet; each step has them
 !> where it begins.
 !>
 !> Lambda waits until the set stays: each step is one of that function, cut where full ones run in circles.
@@ -41,7 +41,7 @@ module epcont_linear_joined_search
   !> Forces that change by no more are good enough for displacements to follow: two steps are to come.
   real(wp), parameter :: nearly = 1.0e-3_wp
 
-  !> While the set changes, only what pairs and SUPORT freedoms do is solved for; where it stays, all
+  !> While the set changes, only what pairs and SUPORT DOFs do is solved for; where it stays, all
   !! displacements, from those of the state, whose rounding is all that the answer has.
   type, extends(joined_springs) :: joined_search
     integer :: threads = 1                         !! that share the fronts
@@ -54,7 +54,7 @@ module epcont_linear_joined_search
     !> Forces in balance; gaps; a step adds to them [pairs]
     real(wp), allocatable, private :: borne(:), gap(:), opening(:)
     real(wp), allocatable, private :: pull(:)      !! lambda - gamma g [force] [pairs]
-    !> Forces that the springs of SUPORT freedoms bear, and what a step moves these by [motions]
+    !> Forces that the springs of SUPORT DOFs carry, and what a step moves these by [motions]
     real(wp), allocatable, private :: held(:), moved(:)
     !> Residual at the displacements of the state, and a step from there [directions, nodes]
     real(wp), allocatable, private :: unbalanced(:, :), step(:, :)
@@ -151,7 +151,7 @@ contains
     if (.not. knows_set) call self%begin_set(redundant)
   end subroutine begin
 
-  !> The first set: pairs that are as near as contact may give way, and overlap, if they hold all motions;
+  !> The first set: pairs that are as near as contact may deform, and overlap, if they hold all motions;
   !! else all pairs. Those that are far apart would bend bodies into each other.
   subroutine begin_set(self, redundant)
     class(joined_search), intent(inout) :: self
@@ -261,7 +261,7 @@ contains
     self%bound = self%nearer
   end subroutine choose_set
 
-  !> What is out of balance is solved for: after a step that of pairs and moved SUPORT freedoms alone.
+  !> What is out of balance is solved for: after a step that of pairs and moved SUPORT DOFs alone.
   subroutine find_step(self, scene, bodies)
     class(joined_search), intent(inout) :: self
     type(planned_model), intent(in) :: scene

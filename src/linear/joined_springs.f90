@@ -1,4 +1,4 @@
-!> How stiff the springs of joined bodies are, measured on their elements; what SUPORT freedoms do and bear.
+!> How stiff the springs of joined bodies are, measured on their elements; what SUPORT DOFs do and carry.
 module epcont_linear_joined_springs
   use epcont_assembly_bodies, only: factored_bodies
   use epcont_base_kinds, only: wp
@@ -15,28 +15,28 @@ module epcont_linear_joined_springs
   !> Stiffness of a spring over that of the softer body at its pair. A step leaves 1E-3 of the gaps, mostly
   !! 1E-4; more would cost digits of the factor, of which steps bring back as many each.
   real(wp), parameter :: of_pairs = 1.0e3_wp
-  !> And of a SUPORT freedom, over the largest of a node of the softest body, which may be all that holds its
+  !> And of a SUPORT DOF, over the largest of a node of the softest body, which may be all that holds its
   !! own: so weak that steps hardly feel it, and unit loads not at all.
   real(wp), parameter :: of_suport = 1.0e-9_wp
   !> But over that of its node so strong that a pivot is left where no pair holds the body.
   real(wp), parameter :: least_pivot = 1.0e-13_wp
-  !> What a half-plane gives way by at a force on a node of its boundary, against what is a hundred sides
+  !> What a half-plane deforms by at a force on a node of its boundary, against what is a hundred sides
   !! below it (2 ln(200)/pi), over what the node's own stiffness would let it.
   real(wp), parameter :: half_plane = 3.4_wp
-  !> So much stiffer are springs of SUPORT freedoms where rounding has left no pivot of a body that no pair
+  !> So much stiffer are springs of SUPORT DOFs where rounding has left no pivot of a body that no pair
   !! holds, as often as that may help: they change no answer.
   real(wp), parameter :: stiffer = 1.0e3_wp
   integer, parameter :: most_stiffened = 2
-  !> And so much stiffer are those of pairs where stiff bodies bear each other by soft ones: some pairs give
+  !> And so much stiffer are those of pairs where stiff bodies carry each other by soft ones: some pairs give
   !! way by far less than their softer side there.
   real(wp), parameter :: firmer = 100.0_wp
 
   !> Springs of a joined system.
   type :: joined_springs
     real(wp), allocatable :: gamma(:)      !! of the pairs [force/length] [pairs]
-    real(wp), allocatable :: hold(:)       !! of SUPORT freedoms [force/length] [motions]
+    real(wp), allocatable :: hold(:)       !! of SUPORT DOFs [force/length] [motions]
     logical, allocatable :: closed(:)      !! pairs whose springs are to be in the factor [pairs]
-    !> What a pair gives way by under a force of its own, about [length/force] [pairs]
+    !> What a pair deforms by under a force of its own, about [length/force] [pairs]
     real(wp), allocatable :: compliance(:)
     integer, private :: stiffened = 0      !! how often gamma has grown
     logical :: unique = .false.            !! forces are found to be, with the factor that there is
@@ -90,7 +90,7 @@ contains
     self%gamma = firmer*self%gamma
   end subroutine make_firmer
 
-  !> Springs of SUPORT freedoms, in the factor from now on, and of pairs, in it where these press. What
+  !> Springs of SUPORT DOFs, in the factor from now on, and of pairs, in it where these press. What
   !! nothing resists is held as firmly as its node.
   subroutine new_springs(scene, bodies, redundant, new)
     type(planned_model), intent(in) :: scene          !! numbered as one system
@@ -103,7 +103,7 @@ contains
     call measure(scene, bodies, stiffness, bodies%spring%norm)
     softest = stiffness_of_softest()
     new%gamma = [(of_pairs*softer_side(k), k=1, scene%model%pairs)]
-    where (new%gamma <= 0.0_wp) new%gamma = of_pairs*softest   ! nothing gives way: no entry in the matrix
+    where (new%gamma <= 0.0_wp) new%gamma = of_pairs*softest   ! nothing deforms: no entry in the matrix
     springs = size(scene%numbering%body(1)%spring%start) - 1
     bodies%spring%stiffness = [spread(0.0_wp, 1, springs - size(scene%model%spring)), &
                                scene%model%spring%stiffness]
@@ -134,7 +134,7 @@ contains
       softest = minval(largest, mask=largest > 0.0_wp)
     end function stiffness_of_softest
 
-    !> Stiffness of the softer body at a pair, of those that give way at all; 0: none does.
+    !> Stiffness of the softer body at a pair, of those that deform at all; 0: none does.
     pure real(wp) function softer_side(pair) result(softer)
       integer, intent(in) :: pair
       real(wp) :: side
@@ -154,7 +154,7 @@ contains
     end function softer_side
   end subroutine new_springs
 
-  !> Have the springs of SUPORT freedoms in the next factor.
+  !> Have the springs of SUPORT DOFs in the next factor.
   subroutine hold_suports(scene, hold, bodies)
     type(planned_model), intent(in) :: scene          !! numbered as one system
     real(wp), intent(in) :: hold(:)                   !! [force/length] [motions]
@@ -169,7 +169,7 @@ contains
     end do
   end subroutine hold_suports
 
-  !> What displacements move SUPORT freedoms by [length, or radian] [motions].
+  !> What displacements move SUPORT DOFs by [length, or radian] [motions].
   function suport_values(scene, u) result(value)
     type(planned_model), intent(in) :: scene   !! with its motions
     real(wp), intent(in) :: u(:, :)            !! [length] [directions, nodes]
@@ -184,7 +184,7 @@ contains
     end do
   end function suport_values
 
-  !> Add forces, or moments, on SUPORT freedoms to those on the nodes.
+  !> Add forces, or moments, on SUPORT DOFs to those on the nodes.
   subroutine add_suport_forces(scene, value, force)
     type(planned_model), intent(in) :: scene     !! with its motions
     real(wp), intent(in) :: value(:)             !! [force, or force*length] [motions]
@@ -207,7 +207,7 @@ contains
     platen = findloc(scene%model%platen%leader, scene%motions%node(motion), dim=1)
   end function platen_of
 
-  !> How far the farthest of its nodes is from the leader [length].
+  !> How far the farthest of its nodes is from the master node [length].
   pure real(wp) function longest_arm(scene, motion)
     type(planned_model), intent(in) :: scene
     integer, intent(in) :: motion
@@ -218,7 +218,7 @@ contains
     end associate
   end function longest_arm
 
-  !> The spring of the SUPORT freedom that measures a motion.
+  !> The spring of the SUPORT DOF that measures a motion.
   pure integer function spring_of_motion(scene, motion)
     type(planned_model), intent(in) :: scene   !! numbered as one system
     integer, intent(in) :: motion              !! which

@@ -33,7 +33,7 @@ contains
   !> What does not change with the law.
   subroutine new_linear_problem(scene, plan, linear)
     type(planned_model), intent(in) :: scene       !! what is to be solved
-    type(iteration_plan), intent(in) :: plan       !! how; it may differ from the scene's
+    type(iteration_plan), intent(in) :: plan       !! how; it may differ from the model's
     type(linear_problem), intent(out) :: linear    !! all but its law
 
     call find_materials(scene%model, linear%materials)
@@ -41,7 +41,7 @@ contains
     call choose_rule(scene, plan, linear%rule)
   end subroutine new_linear_problem
 
-  !> Another load case of the scene, with the factors that there are: those of the elastic bodies.
+  !> Another load case of the model, with the factors that there are: those of the elastic bodies.
   subroutine take_case(self, scene)
     class(linear_problem), intent(inout) :: self
     type(planned_model), intent(in) :: scene    !! that it was made for, with that case
@@ -120,7 +120,7 @@ contains
       end if
       state%displacement = state%deformation + load_factor*scene%model%travel
       call scene%motions%add(scene%model, contact%approach, state%displacement)
-      ! A pair without force touches where its gap is none but for rounding, as the displacements have it,
+      ! A pair without force touches if its gap is only rounding, as the displacements have it,
       ! whatever a rule makes of it by the flexibility.
       rounding = negligible*(abs(problem%initial_gap) + abs(travel) + &
                              problem%motion%times(contact%approach, magnitudes=.true.) + &

@@ -35,7 +35,6 @@ module epcont_linear_simplex_rule
     procedure :: factor
     procedure :: solve
     procedure :: refine
-    procedure :: is_unique
     procedure :: respond
     procedure :: sensitivity
     procedure :: compliance
@@ -211,15 +210,6 @@ contains
     state%deformation = state%deformation + step
     state%strain = state%strain + bodies%operator%strains(scene%model, step, 0.0_wp)
   end subroutine deform
-
-  !> The solution says itself which forces are indeterminate.
-  logical function is_unique(self, scene, bodies)
-    class(simplex_rule), intent(inout) :: self
-    type(planned_model), intent(in) :: scene
-    class(factored_bodies), intent(in) :: bodies
-
-    is_unique = .true.
-  end function is_unique
 
   !> Find forces under unit loads, by the contact's own factor of the pairs with a force.
   subroutine respond(self, scene, bodies, state, loads, known)

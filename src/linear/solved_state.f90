@@ -49,7 +49,7 @@ contains
     change = maxval(abs(after - before))/max(maxval(abs(of)), tiny(1.0_wp))
   end function relative_change
 
-  !> Largest change of a contact force, over the largest; 0 where there is none.
+  !> Largest change of a contact force, over the largest; 0 without contact.
   pure real(wp) function force_change(before, after, of) result(change)
     type(contact_solution), intent(in) :: before, after, of
 

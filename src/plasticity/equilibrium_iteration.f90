@@ -21,7 +21,8 @@ module epcont_plasticity_equilibrium_iteration
   private
   public :: equilibrium_iteration
 
-  !> Displacements so many times those of the first solve, with a flat curve: nothing carries the load.
+  !> Displacements so many times those of the first solve, with a perfectly plastic curve: nothing carries the
+  !! load.
   real(wp), parameter :: far_away = 1.0e4_wp
   !> Without mixing, so many solves tell the rate; where they are more, or more is to come than so many times
   !! the last change, it is a slow one. Few, slow or mixed steps say too little of what is to come, and
@@ -36,7 +37,7 @@ module epcont_plasticity_equilibrium_iteration
   real(wp), parameter :: stagnant = 1.0e-3_wp
 
   type :: equilibrium_iteration
-    type(iteration_plan) :: plan                    !! how it is iterated; it may differ from the scene's
+    type(iteration_plan) :: plan                    !! how it is iterated; it may differ from the model's
     type(linear_problem), allocatable :: linear     !! as the last solve left it
     !> With factors of the unloaded state, where another load case will want these and the bodies yield
     type(linear_problem), allocatable :: virgin
@@ -55,7 +56,7 @@ module epcont_plasticity_equilibrium_iteration
     type(error_estimate), private :: estimate
     integer, private :: factored_before = 0         !! bodies, for load cases before
     integer, private :: yielded = 0                 !! elements that yield in the state that the law is about
-    logical, private :: stiff = .false.             !! the scene has been factored
+    logical, private :: stiff = .false.             !! the model has been factored
     logical, private :: elastic = .false.           !! with the law of a state that has not yielded
   contains
     procedure :: begin
@@ -107,7 +108,7 @@ contains
     class(equilibrium_iteration), intent(inout) :: self
     type(planned_model), intent(in) :: scene
     real(wp), intent(in) :: load_factor             !! of the loads
-    class(observer), intent(inout) :: watch         !! takes the time, and is told of each solve
+    class(observer), intent(inout) :: watch         !! takes the time, and is called after each solve
     class(secant_method), allocatable :: method
     type(solved_state), allocatable :: found
     real(wp) :: farthest, least_residual, travel
@@ -136,7 +137,7 @@ contains
       call self%judge(scene, found, watch)
       travel = maxval(abs(found%displacement))
       if (iteration == 1) farthest = far_away*travel
-      ! A state far away is none to show: its numbers may be at the end of their range.
+      ! Do not report a diverged state: its numbers may be close to overflow.
       self%runs_away = .not. self%converged .and. scene%model%has_flat_curve() .and. travel > farthest
       if (self%runs_away) return
       if (.not. self%plan%from_first_pivot) self%touching = found%contact%touching
@@ -259,7 +260,7 @@ contains
   end subroutine keep
 
   !> How far the state found is from the last, and its stresses from the curve. Equilibrium and contact are
-  !! exact in each solve: that distance is all that is left of the scene's equations.
+  !! exact in each solve: that distance is all that is left of the model's equations.
   subroutine measure(self, scene, found)
     class(equilibrium_iteration), intent(inout) :: self
     type(planned_model), intent(in) :: scene

@@ -43,13 +43,13 @@ contains
   !! have it from the one before, and the factors of the unloaded state.
   subroutine follow_loads(scene, plan, keeps, linear, virgin, answer, watch)
     type(planned_model), intent(in) :: scene                   !! what is loaded
-    type(iteration_plan), intent(in) :: plan                   !! how; it may differ from the scene's
+    type(iteration_plan), intent(in) :: plan                   !! how; it may differ from the model's
     logical, intent(in) :: keeps                               !! another load case may follow
     type(linear_problem), allocatable, intent(inout) :: linear   !! as the last solve left it
     !> With factors of the unloaded state, where these will be wanted and the bodies yield
     type(linear_problem), allocatable, intent(inout) :: virgin
     type(followed_loads), intent(out) :: answer                !! what came of it
-    class(observer), intent(inout) :: watch                    !! takes the time, and is told of each solve
+    class(observer), intent(inout) :: watch                    !! takes the time, called after each solve
     type(equilibrium_iteration) :: iteration
     real(wp) :: strained(scene%model%points)   ! e of points that yielded in the last load step, else 0
     integer :: step

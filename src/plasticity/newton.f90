@@ -1,6 +1,6 @@
 !> METHOD NEWTON: consistent tangent, contact exact in each step, line search on the energy.
 !>
-!> Total theory makes the scene a convex minimisation: each step is a direction in which the energy falls, and
+!> Total theory makes the model a convex minimisation: each step is a direction in which the energy falls, and
 !> all points along it satisfy supports and contact, since both its ends do. The search looks for the zero of
 !> the slope (f_int - f).d, since differences of the energy itself drown in rounding.
 module epcont_plasticity_newton
@@ -38,8 +38,8 @@ module epcont_plasticity_newton
 
 contains
 
-  !> Tangent: stress(strain) + D (d strain), D = D_t + blend (D_secant - D_t): a flat curve makes D_t
-  !! semidefinite.
+  !> Tangent: stress(strain) + D (d strain), D = D_t + blend (D_secant - D_t): a perfectly plastic curve makes
+  !! D_t semidefinite.
   pure subroutine linearise(self, p, about, linear)
     class(newton_method), intent(inout) :: self
     integer, intent(in) :: p                         !! the point

@@ -1,5 +1,5 @@
-!> Who may look on while loads are followed: the stopwatch, and whoever is told of each solve. What it does
-!> changes nothing.
+!> What may look on while loads are followed: the stopwatch, and the display of progress after each solve.
+!> What it does changes nothing.
 module epcont_plasticity_observer
   use epcont_base_kinds, only: wp
   use epcont_system_stopwatch, only: stopwatch
