@@ -1,17 +1,15 @@
-!> By how much displaced outlines may overlap, or stand apart where they press on each other, though every
-!> equation holds: what straight sides, displacements linear between nodes and linear kinematics leave open.
+!> Allowed overlap of displaced outlines, or gap between them at a contact force, if every equation holds. Its
+!> sources are straight edges, displacements linear between nodes, and linear kinematics.
 !>
-!> A side of length h allows 3 (s + b + k), and as much again as CGAPs there say otherwise than coordinates:
-!>     s = h theta/8        above its chord lies the smooth curve, to which gaps of pairs are measured; theta
-!>                          the turn at its ends. Where no pair joins the two bodies, there is one at hollow
-!>                          sides alone: their chords lie before the curve, those of others behind it
-!>     b = H |d theta|/8    d theta by how much displacements turn the outline along H; that is h, or where
-!>                          both sides are of lines in contact the longer one: over such a length their gap
-!>                          is zero in the mean
-!>     k = d w + d**2 c/2   sliding by d along a side, as drawn, that turns by w, and where s counts has the
-!>                          curvature c: up to h/10, however far it slides
-!>         + h e**2/2       e the larger of its turn and its stretch, at most 1: beyond it no shape is
-!>                          left to speak of
+!> The allowance of an edge of length h is 3 (s + b + k), plus the difference of CGAP gaps and coordinates:
+!>     s = h theta/8        distance of the smooth curve from its chord; theta is the turn at the ends. Gaps
+!>                          of pairs are measured to this curve. Without pairs only concave edges have this
+!>                          term: their chords lie outside the body
+!>     b = H |d theta|/8    d theta is the rotation of the outline by displacements along H. H is h, or the
+!>                          longer edge if both are on contact lines: the mean gap along it is zero
+!>     k = d w + d**2 c/2   relative tangential displacement d along the undeformed edge, which rotates by w
+!>                          and, if s counts, has the curvature c: at most h/10
+!>         + h e**2/2       e is the larger of rotation and stretch, at most 1
 module epcont_certificate_allowance
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: coincident
@@ -24,31 +22,31 @@ module epcont_certificate_allowance
 
   real(wp), parameter :: &
     factor = 3.0_wp, &
-    !> Where no line says more, sides that turn by more than this meet at a corner.
+    !> Edges that turn by more than this form a corner, unless contact lines continue there.
     corner_angle = 35.0_wp*acos(-1.0_wp)/180.0_wp, &
-    !> Of a side's length: more than this a slide does not explain, however far it goes.
+    !> Largest part of an edge's length that a relative tangential displacement explains.
     most_by_slide = 0.1_wp
 
-  !> How two sides meet.
+  !> How two edges meet.
   type :: meeting_type
-    real(wp) :: slide = 0.0_wp      !! of a point of one along the other, 0 or more [length]
-    real(wp) :: longest = 0.0_wp    !! length of the longer one, where both are of lines in contact [length]
+    real(wp) :: slide = 0.0_wp      !! relative tangential displacement, at least 0 [length]
+    real(wp) :: longest = 0.0_wp    !! length of the longer edge, if both are on contact lines [length]
     logical :: joined = .false.     !! pairs join the two bodies there
   end type meeting_type
 
-  !> Of all sides of the outlines.
+  !> Terms of the allowance of all edges of the outlines.
   type :: allowance_type
-    real(wp), allocatable :: length(:)     !! h, as drawn [length]
+    real(wp), allocatable :: length(:)     !! h, undeformed [length]
     real(wp), allocatable :: sag(:)        !! s [length]
-    real(wp), allocatable :: gap(:)        !! that CGAPs there give, less that of the coordinates [length]
-    logical, allocatable :: hollow(:)      !! the outline is concave at an end of the side, and smooth
-    logical, allocatable :: smooth(:)      !! it does not end at a corner
-    real(wp), allocatable :: bend(:)       !! turn that displacements add where it ends, 0 at corners [rad]
-    real(wp), allocatable :: arch(:)       !! the same along a curved side, from end to end [rad]
-    real(wp), allocatable :: turn(:)       !! w, of the displaced side from that drawn, 0 or more [rad]
-    real(wp), allocatable :: change(:)     !! e, its turn or the size of its stretch, the larger
+    real(wp), allocatable :: gap(:)        !! gap from CGAPs minus gap from coordinates [length]
+    logical, allocatable :: hollow(:)      !! the outline is smooth and concave at an end of the edge
+    logical, allocatable :: smooth(:)      !! its end is not a corner
+    real(wp), allocatable :: bend(:)       !! rotation that displacements add at its end, 0 at corners [rad]
+    real(wp), allocatable :: arch(:)       !! the same along a curved edge, from end to end [rad]
+    real(wp), allocatable :: turn(:)       !! w, rotation of the edge by displacements, at least 0 [rad]
+    real(wp), allocatable :: change(:)     !! e, the larger of its rotation and the size of its stretch
     real(wp), allocatable :: curvature(:)  !! c [1/length]
-    integer, allocatable :: beside(:, :)   !! the sides before and after [2, sides]
+    integer, allocatable :: beside(:, :)   !! edges before and after [2, sides]
   contains
     procedure :: of
     procedure :: of_drawing
@@ -57,23 +55,24 @@ module epcont_certificate_allowance
 
 contains
 
-  !> What a side allows where it meets another [length].
+  !> Find the allowance of an edge that meets another [length].
   pure real(wp) function of(self, side, meeting)
     class(allowance_type), intent(in) :: self
-    integer, intent(in) :: side                 !! of the outlines
-    type(meeting_type), intent(in) :: meeting   !! how it meets that
+    integer, intent(in) :: side                 !! number of the edge
+    type(meeting_type), intent(in) :: meeting   !! how the two edges meet
 
     of = factor*(curve(self, side, meeting)*self%sag(side) &
                  + bend_over(self, side, max(self%length(side), meeting%longest))) &
          + self%of_motion(side, meeting) + self%gap(side)
   end function of
 
-  !> What of that no shorter sides would heal: slides and turns [length].
+  !> Find the part of the allowance that finer meshes do not reduce: tangential displacements and rotations
+  !! [length].
   pure real(wp) function of_motion(self, side, meeting)
     class(allowance_type), intent(in) :: self
-    integer, intent(in) :: side                 !! of the outlines
-    type(meeting_type), intent(in) :: meeting   !! how it meets another
-    real(wp) :: explained   ! by the slide
+    integer, intent(in) :: side                 !! number of the edge
+    type(meeting_type), intent(in) :: meeting   !! how the two edges meet
+    real(wp) :: explained   ! by the tangential displacement
 
     explained = meeting%slide*self%turn(side) &
                 + curve(self, side, meeting)*(0.5_wp*meeting%slide**2*self%curvature(side))
@@ -81,18 +80,17 @@ contains
                         + 0.5_wp*self%length(side)*min(1.0_wp, self%change(side))**2)
   end function of_motion
 
-  !> What of that was there before anything moved, and no more than there was: curves above chords, gaps of
-  !! CGAPs [length].
+  !> Find the allowance for the undeformed state: curves above chords, gaps of CGAPs [length].
   pure real(wp) function of_drawing(self, side, meeting)
     class(allowance_type), intent(in) :: self
-    integer, intent(in) :: side                 !! of the outlines
-    type(meeting_type), intent(in) :: meeting   !! how it meets another
+    integer, intent(in) :: side                 !! number of the edge
+    type(meeting_type), intent(in) :: meeting   !! how the two edges meet
 
     of_drawing = curve(self, side, meeting)*self%sag(side) + self%gap(side)
   end function of_drawing
 
-  !> Does the smooth curve above a side's chord count (1 or 0)? It does where it lies on that side, or pairs
-  !! take it.
+  !> Does the smooth curve above an edge's chord count (1 or 0)? It does if the outline is concave there, or
+  !! if pairs use it.
   pure real(wp) function curve(self, side, meeting)
     type(allowance_type), intent(in) :: self
     integer, intent(in) :: side
@@ -101,7 +99,7 @@ contains
     curve = merge(1.0_wp, 0.0_wp, meeting%joined .or. self%hollow(side))
   end function curve
 
-  !> How far the outline bends over so long a part of it, from a side on, either way [length].
+  !> Find the bend of the outline over this length, from an edge on, in either direction [length].
   pure real(wp) function bend_over(self, side, length) result(bend)
     type(allowance_type), intent(in) :: self
     integer, intent(in) :: side
@@ -115,7 +113,7 @@ contains
       turn = 0.0_wp
       covered = 0.0_wp
       do
-        node = merge(self%beside(1, i), i, way == 1)   ! the side that ends there
+        node = merge(self%beside(1, i), i, way == 1)   ! the edge that ends at this node
         if (.not. self%smooth(node)) exit
         turn = turn + self%bend(node)
         theta = max(theta, abs(turn))
@@ -129,13 +127,13 @@ contains
     bend = length*theta/8.0_wp
   end function bend_over
 
-  !> For all sides of the outlines.
+  !> Find the allowances of all edges.
   pure function new_allowance(model, drawn, now) result(allowance)
     type(model_type), intent(in) :: model           !! model
-    type(outline_shape), intent(in) :: drawn, now   !! the outlines as drawn, and displaced
+    type(outline_shape), intent(in) :: drawn, now   !! undeformed and displaced outlines
     type(allowance_type) :: allowance
     real(wp), dimension(drawn%outline%sides) :: length, sag, bend, arch, turn, change, curvature
-    real(wp) :: joint(drawn%outline%sides)   ! turn as drawn where a side ends, 0 at corners [rad]
+    real(wp) :: joint(drawn%outline%sides)   ! undeformed turn at the end of an edge, 0 at corners [rad]
     logical :: smooth(drawn%outline%sides)
     real(wp) :: own_arch
     integer :: s
@@ -163,8 +161,8 @@ contains
 
   contains
 
-    !> Where lines are in contact: over its chord each side has the curve with the normals of contact at its
-    !! ends. The angle between normal and side is half the turn [rad] [sides].
+    !> Find the turn at edges of contact lines: the contact normals at the ends of an edge define its curve.
+    !! The angle between this normal and the normal of the edge is half the turn [rad] [sides].
     pure function turns_of_lines() result(turn)
       real(wp) :: turn(size(length))
       integer :: k, s
@@ -178,7 +176,7 @@ contains
       end do
     end function turns_of_lines
 
-    !> By how much the gaps of CGAPs between two bodies differ from those of the coordinates [length] [sides].
+    !> Find the differences between CGAP gaps and gaps from coordinates, between two bodies [length] [sides].
     pure function gaps_of_cards() result(gap)
       real(wp) :: gap(size(length)), at_node(model%nodes), gap_drawn
       integer :: k, node(3), s

@@ -1,8 +1,8 @@
-!> Recomputes from displacements and forces alone whether they are an answer.
+!> Check an answer, with its displacements and forces alone as input.
 !>
-!> Shares nothing with the solver: strains come from differences of what the displacements are between the
-!> nodes (epcont_certificate_unit_strains), stresses on the curve from the paper's own equations
-!> (epcont_certificate_yielding), nodal forces from the work of the stresses on unit displacements.
+!> The check shares nothing with the solver. Strains come from differences of the interpolated displacements
+!> (epcont_certificate_unit_strains), stresses on the curve from the paper's equations
+!> (epcont_certificate_yielding), nodal forces from the work of the stresses in unit displacements.
 module epcont_certificate_certificate
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: valid_to
@@ -22,84 +22,85 @@ module epcont_certificate_certificate
   public :: certificate_type, certify
 
   real(wp), parameter :: &
-    !> Roundings that a gap is the sum of.
+    !> Number of rounding errors in a gap.
     roundings = 8.0_wp, &
-    !> Stresses are off by as many times `lost_stress`: an element has several nodes.
+    !> Stress errors are this multiple of `lost_stress`, since an element has several nodes.
     several = 4.0_wp, &
-    !> Largest part of the bodies' give that the rounding of the gaps may be: a travel far beyond it leaves no
-    !! digits.
+    !> Largest rounding error of the gaps, relative to the deformation of the bodies. Much larger
+    !! displacements leave no digits.
     largest_rounding = 1.0e-6_wp
 
-  !> A rigid motion strains an element by so many roundings of its displacements, at most: motions of a chain
-  !! of 40 hinges, sums that cancel, were seen to leave 750.
+  !> Largest strain of an element by a rigid-body displacement, in roundings of its displacements. Chains of
+  !! 40 hinges were seen to reach 750, by cancelling sums.
   real(wp), parameter, public :: most_roundings = 1.0e4_wp
-  !> Bodies give way no less than this: no length over it is beyond the largest number.
+  !> Smallest deformation: no length divided by it overflows.
   real(wp), parameter :: least_length = 1.0e-200_wp
 
   type :: certificate_type
     real(wp) :: equilibrium = 0.0_wp      !! largest unbalanced nodal force / largest sum of element forces
     real(wp) :: smallest_force = 0.0_wp   !! [force]
     real(wp) :: smallest_gap = 0.0_wp     !! [length]
-    real(wp) :: overlap = 0.0_wp          !! largest by which a gap is below zero and its rounding [length]
+    real(wp) :: overlap = 0.0_wp          !! largest penetration of a pair, minus its rounding error [length]
     real(wp) :: force_gap = 0.0_wp        !! largest |R gap| [force*length]
-    real(wp) :: off_curve = 0.0_wp        !! largest distance of a stress from its curve (`measure_stress`)
-    real(wp) :: motion_strain = 0.0_wp    !! largest strain of the rigid motions / its rounding
-    real(wp) :: lost_stress = 0.0_wp      !! largest stress that rounding of displacements makes, relative
+    real(wp) :: off_curve = 0.0_wp        !! largest stress error (`check_stress`)
+    real(wp) :: motion_strain = 0.0_wp    !! largest strain by rigid-body displacements / its rounding error
+    real(wp) :: lost_stress = 0.0_wp      !! largest stress error by rounding of displacements, relative
     real(wp) :: rounding_stress = 0.0_wp  !! the same [stress]
-    real(wp) :: stress_roundings = 0.0_wp !! largest stress / stress that rounding makes there
-    real(wp) :: ties = 0.0_wp             !! what RBE2 that turns, or MPC, is off by / largest displacement
+    real(wp) :: stress_roundings = 0.0_wp !! largest stress / stress error by rounding there
+    real(wp) :: ties = 0.0_wp             !! violation of RBE2 or MPC / largest displacement
     real(wp) :: energy = 0.0_wp           !! |work of the forces - of the stresses| / sum of |terms|
     real(wp) :: force_scale = 1.0_wp      !! largest contact force [force]
-    real(wp) :: length_scale = 1.0_wp     !! work over forces: how far the bodies give way [length]
-    real(wp) :: gap_rounding = 0.0_wp     !! rounding of the gaps of pressed pairs, from their travel [length]
-    real(wp) :: curve_tolerance = valid_to  !! largest `off_curve` that the iteration was asked for
-    real(wp) :: off_curve_limit = valid_to  !! of a valid answer: rounding may add as much again
-    logical :: balanced = .false.         !! all figures but `off_curve` are within the tolerance
-    logical :: valid = .false.            !! that one too
-    type(overlaps_type) :: scene          !! whether bodies pass through each other, where all else is right
+    real(wp) :: length_scale = 1.0_wp     !! work / forces: deformation of the bodies [length]
+    real(wp) :: gap_rounding = 0.0_wp     !! rounding of the gaps of closed pairs, from displacements [length]
+    real(wp) :: curve_tolerance = valid_to  !! largest stress error that the iteration allows
+    real(wp) :: off_curve_limit = valid_to  !! limit for a valid answer: rounding may add as much
+    logical :: balanced = .false.         !! all values except `off_curve` are within tolerance
+    logical :: valid = .false.            !! `off_curve` is within tolerance too
+    type(overlaps_type) :: scene          !! penetration of bodies; searched if all else is valid
   contains
     procedure :: figures
     procedure :: has_spoilt
   end type certificate_type
 
-  !> Elements that a thread takes at once.
+  !> Number of elements that a thread takes at once.
   integer, parameter :: at_once = 4096
 
-  !> Figures that a limit is set to, and what they say.
-  character(len=*), parameter :: off_the_curve = 'stresses are off their curve by'
+  !> Checked values, as sentences of messages.
+  character(len=*), parameter :: off_the_curve = 'stress error'
   character(len=*), parameter, public :: figure_name(9) = [character(len=70) :: &
-    'equilibrium is off by', off_the_curve, 'energy is off by', 'contact forces pull, by', &
-    'gaps overlap, by', 'pressed gaps are open, by', &
-    'the rounding of gaps and travels is, of what the bodies give way,', &
-    'rigid motions strain the bodies; their roundings are', &
-    'what RBE2 or MPC ties is apart by']
+    'equilibrium residual', off_the_curve, 'energy balance', 'tensile contact force', &
+    'penetration', 'contact force at an open gap', &
+    'rounding error of gaps relative to the deformation', &
+    'strain by rigid-body displacements relative to its rounding error', &
+    'violation of RBE2 or MPC']
 
-  !> What is summed up of all elements and pairs.
+  !> Sums over all elements and pairs.
   type :: balance_type
-    real(wp), allocatable :: residual(:, :)      !! out of balance [force] [directions, nodes]
-    !> Sum of the sizes of the elements' forces at each node [force] [nodes]
+    real(wp), allocatable :: residual(:, :)      !! residual [force] [directions, nodes]
+    !> Sum of absolute element forces at each node [force] [nodes]
     real(wp), allocatable :: element_force(:)
     real(wp) :: stored = 0.0_wp, work = 0.0_wp   !! work of the stresses, and of the forces [energy]
-    real(wp) :: terms = 0.0_wp                   !! sum of the sizes of all that these two are sums of
+    real(wp) :: terms = 0.0_wp                   !! sum of absolute terms of these two sums
     type(expansion_type) :: expansion
-    real(wp) :: strained = 0.0_wp                !! volume times the largest strain, of all points [length**3]
+    real(wp) :: strained = 0.0_wp                !! sum of volume times largest strain over all points
+                                                 !! [length**3]
   end type balance_type
 
 contains
 
-  !> Of an answer the certificate takes the displacements, with rigid motions and without, the reactions, the
-  !! stresses at the points, the contact forces and the part of the loads.
+  !> Check an answer. Its inputs are the displacements with and without rigid-body displacements, the
+  !! reactions, the stresses at the integration points, the contact forces and the load factor.
   subroutine certify(model, answer, curve_tolerance, found)
     type(model_type), intent(in) :: model   !! model
-    type(answer_type), intent(in) :: answer   !! what is to be checked
-    real(wp), intent(in) :: curve_tolerance   !! how far off its curve the iteration may leave a stress
-    type(certificate_type), intent(out) :: found   !! the certificate, without its scene
+    type(answer_type), intent(in) :: answer   !! answer to check
+    real(wp), intent(in) :: curve_tolerance   !! largest stress error that the iteration allows
+    type(certificate_type), intent(out) :: found   !! the certificate, without its search for penetration
     real(wp) :: load(directions, model%nodes)
     type(balance_type) :: total
     real(wp) :: forces, largest_force, largest_stress, length
-    real(wp), dimension(size(model%platen)) :: torque, turn   ! of those that turn
+    real(wp), dimension(size(model%platen)) :: torque, turn   ! of the rotating platens
     real(wp) :: given_force   ! largest load or spring force [force]
-    real(wp) :: face          ! of the largest element [length**2]
+    real(wp) :: face          ! face of the largest element [length**2]
     logical :: unstressed     ! stresses and forces are rounding errors of zero
 
     load = answer%load_factor*given_load(model)
@@ -113,12 +114,12 @@ contains
     total%residual = total%residual - load - answer%reaction
     unstressed = given_force == 0.0_wp .and. found%stress_roundings <= most_roundings
     if (unstressed) found%off_curve = 0.0_wp
-    ! A rigid travel says nothing of how exact the gaps must be: only what the bodies give way does.
-    ! Nor does a load that a support takes at once.
+    ! The accuracy of the gaps must match the deformation of the bodies, not rigid-body displacements, and not
+    ! loads that a support takes directly.
     forces = sum(abs(load + answer%reaction)) + sum(abs(answer%contact%force))
     length = ratio(max(abs(total%stored), total%stored - total%expansion%work), forces)
     associate (u => answer%displacement, reaction => answer%reaction)
-      ! Where stops take all loads at once, nothing moves but by rounding of what the forces would push in.
+      ! If supports take all loads, displacements are rounding errors of the indentation by these forces.
       if (maxval(abs(u)) <= roundings*epsilon(1.0_wp)*least_indentation(model, &
           answer)) length = least_indentation(model, answer)
       ! Bodies without forces do not deform: rigid-body displacements close the gaps.
@@ -145,8 +146,8 @@ contains
     found%equilibrium = maxval([ratio(abs(torque - answer%moment), largest_force*longest_arms(model)), &
                                 0.0_wp])
     found%equilibrium = max(found%equilibrium, ratio(maxval(abs(total%residual)), largest_force))
-    ! On its curve no stress does less than no work; as far off it as the iteration may leave it, it can.
-    ! Of bodies that travel far and expand freely all work is that of the stress which rounding makes.
+    ! On its curve a stress does no negative work; within the tolerance of the iteration it may. For bodies
+    ! with large displacements and free expansion, all work is that of rounding errors of stresses.
     found%energy = ratio(max(abs(total%work - total%stored), total%expansion%work - total%stored) - &
         found%rounding_stress*total%strained, &
                          total%terms)
@@ -156,10 +157,10 @@ contains
     found%balanced = all(within_limits(found) .or. figure_name == off_the_curve)
   end subroutine certify
 
-  !> The largest contact force over the largest depth and modulus: how far it pushes in, at least.
+  !> Find the largest contact force over the largest depth and modulus: a lower bound of the indentation.
   pure real(wp) function least_indentation(model, answer) result(length)
     type(model_type), intent(in) :: model        !! the model
-    type(answer_type), intent(in) :: answer      !! what is to be checked
+    type(answer_type), intent(in) :: answer      !! answer to check
     real(wp) :: stiffest   ! [force/length]
     integer :: e
 
@@ -173,12 +174,12 @@ contains
     if (stiffest > 0.0_wp) length = maxval([answer%contact%force, 0.0_wp])/stiffest
   end function least_indentation
 
-  !> Internal forces at the nodes and work of the stresses on the strains; the stresses' largest distance
-  !! from the curve and what roundings and rigid motions strain go into the certificate. Threads share the
-  !! elements by parts, which are summed up one after the other.
+  !> Add the internal forces of elements and the work of their stresses. Put the largest stress error and the
+  !! effects of rounding and rigid-body displacements into the certificate. Threads share the elements in
+  !! fixed parts, which are added in order.
   subroutine add_elements(model, answer, largest_stress, total, found)
     type(model_type), intent(in) :: model        !! the model
-    type(answer_type), intent(in) :: answer      !! what is to be checked
+    type(answer_type), intent(in) :: answer      !! answer to check
     real(wp), intent(in) :: largest_stress       !! of the model [stress]
     type(balance_type), intent(inout) :: total   !! sums to add to
     type(certificate_type), intent(inout) :: found
@@ -200,7 +201,7 @@ contains
     !$omp end parallel do
   end subroutine add_elements
 
-  !> What has been found of elements from `first` on.
+  !> Add the results of elements from `first` on.
   subroutine add_part(model, total, found, first, part)
     type(model_type), intent(in) :: model        !! the model
     type(balance_type), intent(inout) :: total   !! sums to add to
@@ -229,11 +230,11 @@ contains
     found%stress_roundings = max(found%stress_roundings, part%stress_roundings)
   end subroutine add_part
 
-  !> Smallest force and gap, largest product; the work of the pairs' forces, which are taken off the
-  !! residual.
+  !> Find the smallest force and gap and the largest product of pairs. Add the work of their forces, and
+  !! subtract these from the residual.
   subroutine add_pairs(model, answer, load, total, found)
     type(model_type), intent(in) :: model        !! the model
-    type(answer_type), intent(in) :: answer      !! what is to be checked
+    type(answer_type), intent(in) :: answer      !! answer to check
     real(wp), intent(in) :: load(:, :)           !! [force] [directions, nodes]
     type(balance_type), intent(inout) :: total   !! sums to add to
     type(certificate_type), intent(inout) :: found
@@ -266,7 +267,7 @@ contains
     end do
   end subroutine add_pairs
 
-  !> All figures and the largest of each in a valid answer, as `figure_name` has them.
+  !> Find the checked values and their limits, in the order of `figure_name`.
   pure subroutine figures(self, figure, largest)
     class(certificate_type), intent(in) :: self
     real(wp), intent(out) :: figure(:), largest(:)   !! [size(figure_name)]
@@ -280,15 +281,15 @@ contains
                largest_rounding, most_roundings, valid_to]
   end subroutine figures
 
-  !> Is a figure beyond its limit that was not before?
+  !> Is a value beyond its limit now that was within it before?
   pure logical function has_spoilt(self, before)
     class(certificate_type), intent(in) :: self
-    type(certificate_type), intent(in) :: before   !! the certificate of then
+    type(certificate_type), intent(in) :: before   !! the certificate before
 
     has_spoilt = any(within_limits(before) .and. .not. within_limits(self))
   end function has_spoilt
 
-  !> Which figures are no larger than they may be?
+  !> Which values are within their limits?
   pure function within_limits(certificate) result(within)
     class(certificate_type), intent(in) :: certificate
     logical :: within(size(figure_name))

@@ -1,5 +1,5 @@
-!> Stresses of the elements against strains found from displacements alone, and the nodal forces that follow
-!> from the work of the stresses on unit displacements.
+!> Compare stresses of elements with strains found from displacements alone, and find nodal forces from the
+!> work of the stresses in unit displacements.
 module epcont_certificate_element_checks
   use epcont_base_kinds, only: wp
   use epcont_certificate_free_expansion, only: expansion_type, free_strains
@@ -13,7 +13,7 @@ module epcont_certificate_element_checks
   private
   public :: checked_elements, check_elements, ratio
 
-  !> What is found of some elements that follow each other.
+  !> Results of some consecutive elements.
   type :: checked_elements
     real(wp), allocatable :: force(:, :, :)   !! on their nodes [force] [directions, nodes, elements]
     real(wp), allocatable :: work(:)          !! of the stresses [points]
@@ -23,21 +23,21 @@ module epcont_certificate_element_checks
     type(expansion_type) :: expansion
   end type checked_elements
 
-  !> An element at its integration points.
+  !> Strains and volumes at an element's integration points.
   type :: element_points
     real(wp) :: unit(components, directions, most_nodes, most_points)   !! strains by unit displacements
-    real(wp) :: volume(most_points), free(most_points)                  !! and strains of temperatures
+    real(wp) :: volume(most_points), free(most_points)                  !! and thermal strains
   end type element_points
 
 contains
 
-  !> Some elements that follow each other.
+  !> Check some consecutive elements.
   subroutine check_elements(model, answer, largest_stress, first, last, slope, part)
     type(model_type), intent(in) :: model       !! the model
     type(answer_type), intent(in) :: answer     !! its displacements, deformations and stresses
-    real(wp), intent(in) :: largest_stress      !! what stresses are compared with [stress]
-    integer, intent(in) :: first, last          !! the elements
-    real(wp), intent(in) :: slope(directions, most_nodes, most_points, *)   !! of each kind
+    real(wp), intent(in) :: largest_stress      !! reference for stresses [stress]
+    integer, intent(in) :: first, last          !! numbers of the elements
+    real(wp), intent(in) :: slope(directions, most_nodes, most_points, *)   !! of each element type
     type(checked_elements), intent(out) :: part
     type(element_points) :: points
     real(wp) :: force(directions)
@@ -64,7 +64,7 @@ contains
     end do
   end subroutine check_elements
 
-  !> The integration points of an element.
+  !> Check the integration points of an element.
   subroutine check_points(model, answer, largest_stress, e, points, part)
     type(model_type), intent(in) :: model
     type(answer_type), intent(in) :: answer
@@ -73,7 +73,8 @@ contains
     type(element_points), intent(in) :: points
     type(checked_elements), intent(inout) :: part
     real(wp), dimension(directions, most_nodes) :: motion, u
-    real(wp) :: largest, farthest, rounding, strain(components)   ! of `u`, and with `motion`
+    real(wp) :: largest, farthest, rounding, strain(components)   ! strain by `u`, and rigid-body displacement
+                                                                  ! with `motion`
     real(wp) :: before(components, most_points, size(answer%committed))   ! strains of load steps
     integer :: k, n, node, p
     logical :: moves, ring
@@ -90,7 +91,7 @@ contains
     largest = largest_of(directions*n, u)
     farthest = maxval(abs(motion(:, :n)) + abs(u(:, :n)))
     do p = 1, model%kinds(model%kind(e))%points
-      ! Of a strain by unit displacements.
+      ! Rounding error of a strain by unit displacements.
       rounding = epsilon(1.0_wp)*largest_of(components*directions*n, points%unit(1, 1, 1, p))
       strain = strain_by(n, u, points%unit(1, 1, 1, p), ring)
       associate (point => model%first_point(e) + p - 1)
@@ -108,7 +109,7 @@ contains
     end do
   end subroutine check_points
 
-  !> The strains of an element at the end of each load step from which flow theory went on.
+  !> Find the strains of an element at the end of each load step that flow theory continued from.
   subroutine find_strains_before(model, answer, e, points, before)
     type(model_type), intent(in) :: model
     type(answer_type), intent(in) :: answer
@@ -134,19 +135,19 @@ contains
     end do
   end subroutine find_strains_before
 
-  !> How far a stress is off its curve. Of a material that yields: von Mises stress of the difference over
-  !! the curve's stress there, or below yield the yield stress (a larger one than any stress is no measure),
-  !! and the difference of the mean parts, which are elastic, over the largest stress: hydrostatic stress
-  !! says nothing of the curve. Of an elastic one: the largest difference over the largest stress. What
-  !! rounding strains makes a stress that is compared with the same.
+  !> Find the stress error, relative. If the material yields, it is the larger of two: the von Mises stress of
+  !! the difference over the stress on the curve (at least the yield stress, if stresses reach it), and the
+  !! difference of the mean stresses, which are elastic, over the largest stress. If the material is elastic,
+  !! it is the largest difference over the largest stress. Stress errors by rounding of strains have the same
+  !! references.
   subroutine check_stress(model, largest_stress, section, strain, stress, rounding, part)
     type(model_type), intent(in) :: model
     real(wp), intent(in) :: largest_stress
     integer, intent(in) :: section
-    !> At the end of each load step from which flow theory went on, and now [components, any]
+    !> At the end of each load step that flow theory continued from, and now [components, any]
     real(wp), intent(in) :: strain(:, :)
     real(wp), intent(in) :: stress(components)
-    real(wp), intent(in) :: rounding         !! of the strain
+    real(wp), intent(in) :: rounding         !! rounding error of the strain
     type(checked_elements), intent(inout) :: part
     real(wp) :: apart(components), off, on_curve(components), scale, stiffest
 
@@ -160,8 +161,8 @@ contains
       off = max(ratio(von_mises_stress(apart), scale), ratio(abs(sum(apart(:3)))/3.0_wp, largest_stress))
     end if
     part%off_curve = max(part%off_curve, off)
-    ! Stress over the strain along it where nothing gives way to the sides: near a Poisson's ratio of 0.5
-    ! far above E.
+    ! Stress over strain along one axis if lateral strain is fixed: far above E if Poisson's ratio is close to
+    ! 0.5.
     associate (young => model%young(section), nu => model%poisson(section))
       stiffest = young
       if (model%kinematics(section) /= plane_stress) &
@@ -174,7 +175,7 @@ contains
     end associate
   end subroutine check_stress
 
-  !> a/b, 0 where both are 0, or a is below; finite, but of what is no number.
+  !> a/b; 0 if both are 0 or a is negative; finite unless a or b is NaN.
   elemental real(wp) function ratio(a, b)
     real(wp), intent(in) :: a, b
 

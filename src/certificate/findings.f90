@@ -1,4 +1,4 @@
-!> What looking through a scene finds: places where bodies lie in each other, and which of two is the worse.
+!> Results of the search for penetration of bodies, and their comparison.
 module epcont_certificate_findings
   use epcont_base_kinds, only: wp
   use epcont_certificate_allowance, only: meeting_type
@@ -10,53 +10,55 @@ module epcont_certificate_findings
   !> Of places that differ by less than this part the first counts: rounding decides nothing.
   real(wp), parameter :: more = 1.0_wp + 1.0e-9_wp
 
-  !> Where a body lies in another, or in itself.
+  !> Point of a body inside another body, or inside its own.
   type :: overlap_place
-    real(wp) :: ratio = 0.0_wp     !! depth, of what is allowed
+    real(wp) :: ratio = 0.0_wp     !! depth / allowed depth
     real(wp) :: depth = 0.0_wp     !! [length]
     real(wp) :: allowed = 0.0_wp   !! [length]
-    real(wp) :: distance = 0.0_wp  !! of the point from the other outline: mostly the depth [length]
-    real(wp) :: x(directions) = 0.0_wp      !! of the point that lies inside, displaced [length]
-    real(wp) :: drawn(directions) = 0.0_wp  !! where that point was drawn [length]
-    integer :: side = 0            !! of the outlines, on which the point is; 0: there is no such place
-    integer :: other = 0           !! the side of the other body that it is nearest to
-    type(meeting_type) :: meeting  !! of these two
-    logical :: moving = .false.    !! it is for slides and turns that most of the depth is allowed
-    integer :: pair = 0            !! that presses there
-    integer :: node = 0            !! that the point is; 0: none
+    real(wp) :: distance = 0.0_wp  !! from the point to the other outline: usually the depth [length]
+    real(wp) :: x(directions) = 0.0_wp      !! the point inside, displaced [length]
+    real(wp) :: drawn(directions) = 0.0_wp  !! the same point, undeformed [length]
+    integer :: side = 0            !! edge of the point; 0 if there is no such point
+    integer :: other = 0           !! nearest edge of the other body
+    type(meeting_type) :: meeting  !! how these two edges meet
+    logical :: moving = .false.    !! tangential displacements and rotations are most of the allowance
+    integer :: pair = 0            !! its pair in contact
+    integer :: node = 0            !! node at the point; 0 if there is no node
   end type overlap_place
 
-  !> A node that is displaced beyond a line to which its body ends: the axis of rings, or a line of symmetry.
+  !> Node displaced beyond a line at which its body ends: the axis of axisymmetric bodies, or a line of
+  !! symmetry.
   type :: beyond_place
     real(wp) :: depth = 0.0_wp     !! [length]
-    real(wp) :: line = 0.0_wp      !! where the line is [length]
-    integer :: component = 1       !! 1: the line has one x, 2: it has one y
-    integer :: node = 0            !! 0: there is none
+    real(wp) :: line = 0.0_wp      !! coordinate of the line [length]
+    integer :: component = 1       !! 1: the line has constant x, 2: constant y
+    integer :: node = 0            !! 0 if there is no such node
   end type beyond_place
 
   type :: overlaps_type
     logical :: looked_through = .false.
-    type(overlap_place) :: inside          !! deepest in another body, by what is allowed
+    type(overlap_place) :: inside          !! deepest in another body, by depth / allowed depth
     type(overlap_place) :: deepest         !! deepest in another body
     type(overlap_place) :: itself          !! deepest in its own body
-    type(overlap_place) :: apart           !! the depth is that of a gap across which a pair presses
-    type(overlap_place) :: widest          !! the widest of such gaps
-    type(overlap_place) :: beside          !! the depth is how far off the end of the other body a node stands
-    type(overlap_place) :: slid            !! the depth is how far sides slid along each other, pressed
-    type(overlap_place) :: passed          !! deepest in another body on the way through it
-    type(overlap_place) :: deep            !! deepest in another body, by what is told
-    type(overlap_place) :: wide            !! the same of a gap across which a pair presses
-    type(beyond_place) :: axis, mirror     !! farthest beyond the axis of rings, beyond a line of symmetry
+    type(overlap_place) :: apart           !! widest gap at a contact force, by depth / allowed depth
+    type(overlap_place) :: widest          !! widest gap at a contact force
+    type(overlap_place) :: beside          !! depth: distance of a node in contact from the end of the other
+                                           !! body
+    type(overlap_place) :: slid            !! depth: relative tangential displacement in contact
+    type(overlap_place) :: passed          !! deepest in another body along the path of displacement
+    type(overlap_place) :: deep            !! deepest in another body, by the limit for a warning
+    type(overlap_place) :: wide            !! widest gap at a contact force, by the limit for a warning
+    type(beyond_place) :: axis, mirror     !! farthest beyond the axis, and beyond a line of symmetry
     real(wp) :: moved = 0.0_wp             !! largest displacement [length]
-    real(wp) :: change = 0.0_wp            !! largest turn [rad] or stretch of a side
-    integer :: changed_side = 0            !! which one
+    real(wp) :: change = 0.0_wp            !! largest rotation [rad] or stretch of an edge
+    integer :: changed_side = 0            !! its edge
   contains
     procedure :: sound
   end type overlaps_type
 
 contains
 
-  !> Does no body lie in another or pass through one, and no force press where nothing is?
+  !> Is the model free of penetration, and of contact forces across a gap?
   pure logical function sound(self)
     class(overlaps_type), intent(in) :: self
 
@@ -64,23 +66,23 @@ contains
             .and. self%axis%node == 0
   end function sound
 
-  !> Is a place worse, by what is allowed there?
+  !> Is a point worse, by depth / allowed depth?
   pure logical function is_worse(found, than)
     type(overlap_place), intent(in) :: found, than   !! the latter with its ratio
 
     is_worse = found%depth > more*found%allowed*than%ratio
   end function is_worse
 
-  !> Is a place deeper?
+  !> Is a point deeper?
   pure logical function is_deeper(found, than)
-    type(overlap_place), intent(in) :: found, than   !! the two places
+    type(overlap_place), intent(in) :: found, than   !! the two points
 
     is_deeper = found%depth > more*than%depth
   end function is_deeper
 
-  !> A place with its ratio, to be kept.
+  !> Complete a point by its ratio.
   elemental type(overlap_place) function rated(found)
-    type(overlap_place), intent(in) :: found     !! its ratio is not looked at
+    type(overlap_place), intent(in) :: found     !! its ratio is ignored
 
     rated = found
     rated%ratio = found%depth/found%allowed

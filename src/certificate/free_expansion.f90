@@ -1,6 +1,5 @@
-!> What temperatures do to an answer, for its certificate: strains that stresses do not come of, and what the
-!> stresses would be if nothing gave way to these. Where bodies expand freely all stresses, forces and work
-!> are what rounding leaves of that.
+!> Effects of temperatures on the certificate: thermal strains, and the stresses if all thermal expansion were
+!> fixed. If bodies expand freely, all stresses, forces and work are rounding errors of these stresses.
 module epcont_certificate_free_expansion
   use epcont_base_kinds, only: wp
   use epcont_element_element_kind, only: most_nodes, most_points
@@ -10,14 +9,14 @@ module epcont_certificate_free_expansion
   private
   public :: expansion_type, free_strains, held_stress
 
-  !> Stresses, forces and work are compared with no less than such a part of those of bodies that are held.
+  !> The references for stresses, forces and work are at least this part of those with fixed expansion.
   real(wp), parameter, public :: part_of_held = 1.0e-3_wp
 
   type :: expansion_type
-    real(wp) :: work = 0.0_wp         !! of the stresses on free strains
-    ! If nothing gave way:
+    real(wp) :: work = 0.0_wp         !! of the stresses in thermal strains
+    ! If all expansion were fixed:
     real(wp) :: held_force = 0.0_wp   !! the largest at a node [force]
-    real(wp) :: held_work = 0.0_wp    !! of the stresses that would be
+    real(wp) :: held_work = 0.0_wp    !! work of the stresses
   contains
     procedure :: add_element
     procedure :: include
@@ -25,13 +24,12 @@ module epcont_certificate_free_expansion
 
 contains
 
-  !> What a part of the temperatures strains the integration places of an element by, along each axis, where
-  !! it is free to.
+  !> Find the thermal strain along each axis at the integration points of an element.
   pure subroutine free_strains(model, element, load_factor, volume, strain)
     type(model_type), intent(in) :: model        !! model
-    integer, intent(in) :: element               !! which of its elements
-    real(wp), intent(in) :: load_factor          !! of the temperatures
-    real(wp), intent(in) :: volume(most_points)  !! that belong to the places [length**3]
+    integer, intent(in) :: element               !! number of the element
+    real(wp), intent(in) :: load_factor          !! factor of the temperatures
+    real(wp), intent(in) :: volume(most_points)  !! of the integration points [length**3]
     real(wp), intent(out) :: strain(most_points)
     real(wp) :: share(most_nodes), slope(directions, most_nodes)
     integer :: k, p
@@ -40,7 +38,7 @@ contains
     if (.not. allocated(model%temperature)) return
     associate (s => model%section(element), kind => model%kinds(model%kind(element)))
       do p = 1, kind%points
-        call kind%shape(kind%point(:, p), share, slope)   ! derivatives are not looked at
+        call kind%shape(kind%point(:, p), share, slope)   ! derivatives are not used
         do k = 1, kind%nodes
           strain(p) = strain(p) + load_factor*model%expansion(s)*share(k)* &
                       (model%temperature(model%connectivity(k, element)) - model%reference_temperature(s))
@@ -51,10 +49,10 @@ contains
     end associate
   end subroutine free_strains
 
-  !> The largest stress along one axis if nothing gave way to the temperatures [stress].
+  !> Find the largest stress along one axis if all thermal expansion were fixed [stress].
   pure real(wp) function held_stress(model, load_factor) result(stress)
     type(model_type), intent(in) :: model   !! model
-    real(wp), intent(in) :: load_factor     !! of the temperatures
+    real(wp), intent(in) :: load_factor     !! factor of the temperatures
     integer :: e
 
     stress = 0.0_wp
@@ -67,13 +65,13 @@ contains
     end do
   end function held_stress
 
-  !> Add what is of an element.
+  !> Add the contribution of an element.
   pure subroutine add_element(self, young, stress, unit, volume, free)
     class(expansion_type), intent(inout) :: self
     real(wp), intent(in) :: young                 !! E of its section [stress]
-    real(wp), intent(in) :: stress(:, :)          !! at its places [stress] [components, places]
+    real(wp), intent(in) :: stress(:, :)          !! at its points [stress] [components, places]
     real(wp), intent(in) :: unit(:, :, :, :)      !! strains [components, directions, nodes, places]
-    real(wp), intent(in) :: volume(:), free(:)    !! of the places, and their free strains [places]
+    real(wp), intent(in) :: volume(:), free(:)    !! of the points, and their thermal strains [places]
     real(wp) :: force
     integer :: c, k, p
 
@@ -93,10 +91,10 @@ contains
     end do
   end subroutine add_element
 
-  !> Add what is of other elements.
+  !> Add the sums of other elements.
   pure subroutine include(self, others)
     class(expansion_type), intent(inout) :: self
-    type(expansion_type), intent(in) :: others   !! of them
+    type(expansion_type), intent(in) :: others   !! their sums
 
     self%work = self%work + others%work
     self%held_work = self%held_work + others%held_work

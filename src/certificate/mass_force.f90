@@ -1,5 +1,5 @@
-!> Nodal forces of body loads, for the certificate: by other points than those that weigh the nodes (those of
-!> Lobatto, not of Gauss), each with the force there.
+!> Nodal forces of mass loads for the certificate, by other integration points than the solver's (Lobatto
+!> instead of Gauss).
 module epcont_certificate_mass_force
   use epcont_base_kinds, only: wp
   use epcont_certificate_unit_strains, only: slopes_at
@@ -10,27 +10,27 @@ module epcont_certificate_mass_force
   private
   public :: find_body_force, given_load
 
-  !> Lobatto's places along a line, exact to degree 5 and 9, and their weights: from one end to the middle;
-  !! the other half lies opposite.
+  !> Lobatto points on a line, exact to degree 5 and 9, and their weights: from one end to the centre; the
+  !! other half is symmetric.
   real(wp), parameter :: root7 = sqrt(7.0_wp), &
     four(2) = [1.0_wp, sqrt(0.2_wp)], of_four(2) = [1.0_wp, 5.0_wp]/6.0_wp, &
     six(3) = [1.0_wp, sqrt((7.0_wp + 2.0_wp*root7)/21.0_wp), sqrt((7.0_wp - 2.0_wp*root7)/21.0_wp)], &
     of_six(3) = [2.0_wp, 14.0_wp - root7, 14.0_wp + root7]/30.0_wp
   integer, parameter :: most_places = 36
 
-  !> Of a kind of elements.
+  !> Integration points of an element type.
   type :: place_table
     integer :: count = 0
     real(wp) :: part(most_places) = 0.0_wp                 !! of the local area
-    real(wp) :: share(most_nodes, most_places) = 0.0_wp    !! what each node has in a value there
-    real(wp) :: slope(most_nodes, directions, most_places) = 0.0_wp   !! and in its derivatives
+    real(wp) :: share(most_nodes, most_places) = 0.0_wp    !! shape functions of the nodes at a point
+    real(wp) :: slope(most_nodes, directions, most_places) = 0.0_wp   !! their derivatives
   end type place_table
 
 contains
 
-  !> The forces [force] [2, nodes].
+  !> Find the nodal forces of mass loads [force] [2, nodes].
   pure subroutine find_body_force(model, force)
-    type(model_type), intent(in) :: model   !! the scene; of its body loads what is given
+    type(model_type), intent(in) :: model   !! model, with mass loads as given
     real(wp), intent(out) :: force(directions, model%nodes)
     type(place_table) :: table(size(model%kinds))
     integer :: e, k
@@ -44,7 +44,7 @@ contains
     end do
   end subroutine find_body_force
 
-  !> Places in a square, or in a triangle as the square whose upper side is a point.
+  !> Place the points in a square, or in a triangle as a square with a degenerate edge.
   pure subroutine set_places(kind, table)
     type(element_kind), intent(in) :: kind
     type(place_table), intent(out) :: table
@@ -77,7 +77,7 @@ contains
     end do
   end subroutine set_places
 
-  !> The forces on one element.
+  !> Add the nodal forces of one element.
   pure subroutine add_element(model, e, table, force)
     type(model_type), intent(in) :: model
     integer, intent(in) :: e
@@ -108,12 +108,12 @@ contains
     end associate
   end subroutine add_element
 
-  !> What all body loads give a unit of mass at a place.
+  !> Find the acceleration by all mass loads at a point.
   pure function acceleration(model, section, place) result(pull)
     type(model_type), intent(in) :: model
     integer, intent(in) :: section
     real(wp), intent(in) :: place(directions)
-    real(wp) :: gain, omega, pull(directions), radius(directions)   ! radians, not turns
+    real(wp) :: gain, omega, pull(directions), radius(directions)   ! in radians, not revolutions
     integer :: i
 
     pull = 0.0_wp
@@ -130,7 +130,7 @@ contains
     end do
   end function acceleration
 
-  !> The loads of a scene, body forces by the sum above instead of those that were solved for.
+  !> Find the nodal loads of a model, with mass loads from the sum above.
   pure function given_load(model) result(load)
     type(model_type), intent(in) :: model   !! model
     real(wp) :: load(directions, model%nodes), own(directions, model%nodes)

@@ -1,5 +1,5 @@
-!> What a scene is looked through with: the outlines displaced and as drawn, how their sides meet, and what
-!> these allow there.
+!> Data for the search for penetration: displaced and undeformed outlines, the way their edges meet, and the
+!> allowed depth there.
 module epcont_certificate_meeting
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: same_place
@@ -17,43 +17,45 @@ module epcont_certificate_meeting
             part_along, meet, keep, insert
 
   real(wp), parameter :: &
-    !> Bodies deeper in each other, or farther apart where they press, than this part of the largest
-    !! displacement: that is told, though it be allowed.
+    !> Deeper penetration than this part of the largest displacement, or a wider gap at a contact force, gives
+    !! a warning, even if it is allowed.
     told = 0.1_wp, &
-    !> Near a corner the nearest side need not be the one to which a gap is measured: of those so many depths
-    !! off the largest allowance counts.
+    !> Near a corner, the gap may be measured to another edge than the nearest. The largest allowance of edges
+    !! within this many depths is used.
     about = 1.5_wp, &
-    !> The least that is allowed, beside `same_place`, in roundings of the coordinates.
+    !> Smallest allowance, beside `same_place`, in roundings of the coordinates.
     roundings = 16.0_wp
 
   !> A point of a body.
   type :: point_type
-    integer :: side = 0                !! of the outlines
+    integer :: side = 0                !! edge of the outlines
     real(wp) :: s = 0.5_wp             !! along it, from 0 to 1
-    logical :: in_element = .false.    !! it is the middle of that side's element
-    real(wp) :: drawn(directions) = 0.0_wp      !! where it was drawn [length]
+    logical :: in_element = .false.    !! it is the centre of this edge's element
+    real(wp) :: drawn(directions) = 0.0_wp      !! undeformed position [length]
     real(wp) :: motion(directions) = 0.0_wp     !! its displacement [length]
-    real(wp) :: x(directions) = 0.0_wp          !! where it is then [length]
+    real(wp) :: x(directions) = 0.0_wp          !! displaced position [length]
   end type point_type
 
-  !> What is worked with.
+  !> Data of the search.
   type :: search_type
-    type(outline_shape) :: drawn, now      !! the outlines as drawn, and displaced
-    !> Displacements of begin, end, middle of each side [length] [directions, 3, sides]
+    type(outline_shape) :: drawn, now      !! undeformed and displaced outlines
+    !> Displacements of start, end and mid-side node of each edge [length] [directions, 3, sides]
     real(wp), allocatable :: motion(:, :, :)
     type(allowance_type) :: allowance
-    type(point_type), allocatable :: middle(:)    !! a point within each part [parts]
-    !> Of a circle whose outline is as long as the part's: however it lies, it is the same [length] [parts]
+    type(point_type), allocatable :: middle(:)    !! a point inside each part [parts]
+    !> Diameter of a circle with the length of the part's outline; it does not depend on the orientation
+    !! [length] [parts]
     real(wp), allocatable :: width(:)
-    real(wp), allocatable :: line_length(:)       !! of sides of lines as drawn, 0 of others [length] [sides]
+    real(wp), allocatable :: line_length(:)       !! undeformed edges of contact lines, 0 for others [length]
+                                                  !! [sides]
     integer, allocatable :: mate(:)        !! part with which pairs join each node [nodes]
-    real(wp) :: least = 0.0_wp             !! what is allowed between any two sides [length]
+    real(wp) :: least = 0.0_wp             !! allowance between any two edges [length]
     real(wp) :: moved = 0.0_wp             !! largest displacement [length]
   end type search_type
 
 contains
 
-  !> For a scene that has outlines.
+  !> Prepare the search in a model with outlines.
   pure function new_search(model, displacement) result(search)
     type(model_type), intent(in) :: model        !! model
     real(wp), intent(in) :: displacement(:, :)   !! [length] [directions, nodes]
@@ -63,7 +65,7 @@ contains
     associate (outline => model%body_outline, x => model%x, own => model%around%members())
       search%drawn = new_outline_shape(outline, x)
       search%now = new_outline_shape(outline, x + displacement)
-      ! A middle that is not there has that of the first node, for which nobody asks.
+      ! Edges without a mid-side node get the displacement of the first node, which is not used.
       search%motion = reshape(displacement(:, [max(outline%node, 1)]), [directions, 3, outline%sides])
       do k = 1, outline%parts
         associate (first => outline%first(k), last => outline%first(k + 1) - 1)
@@ -88,7 +90,7 @@ contains
 
   contains
 
-    !> The middle of the element that a side is of.
+    !> Find the centre of the element of an edge.
     pure type(point_type) function middle_of(side) result(point)
       integer, intent(in) :: side
       integer, allocatable :: corner(:)
@@ -103,32 +105,32 @@ contains
     end function middle_of
   end function new_search
 
-  !> A point of the outlines.
+  !> Find a point of the outlines.
   pure type(point_type) function point_on(search, side, s) result(point)
     type(search_type), intent(in) :: search   !! the outlines
-    integer, intent(in) :: side               !! of the outlines
+    integer, intent(in) :: side               !! number of the edge
     real(wp), intent(in) :: s                 !! along the side, from 0 to 1
 
     point = point_type(side, s, .false., search%drawn%at(side, s), motion_at(search, side, s), &
                        search%now%at(side, s))
   end function point_on
 
-  !> The sides of a part whose boxes are looked for.
+  !> Find the edges of a part that a query of boxes returns.
   pure function sides_meeting(shape, part, query) result(side)
-    type(outline_shape), intent(in) :: shape   !! the outlines, drawn or displaced
+    type(outline_shape), intent(in) :: shape   !! undeformed or displaced outlines
     integer, intent(in) :: part                !! of the outlines
-    class(box_query), intent(in) :: query      !! which boxes
+    class(box_query), intent(in) :: query      !! queried boxes
     integer, allocatable :: side(:)
 
     side = shape%side_tree(part)%meeting(query)
     side = side + (shape%outline%first(part) - 1)
   end function sides_meeting
 
-  !> Displacement of a place of a side [length].
+  !> Find the displacement at a point of an edge [length].
   pure function motion_at(search, side, s) result(motion)
     type(search_type), intent(in) :: search   !! the outlines
-    integer, intent(in) :: side               !! of the outlines
-    real(wp), intent(in) :: s                 !! from 0 to 1
+    integer, intent(in) :: side               !! number of the edge
+    real(wp), intent(in) :: s                 !! along the edge, from 0 to 1
     real(wp) :: motion(directions)
 
     associate (own => search%motion(:, :, side))
@@ -138,11 +140,11 @@ contains
     end associate
   end function motion_at
 
-  !> How much of a motion goes along a side, either way [length].
+  !> Find the component of a displacement along an edge, without sign [length].
   pure real(wp) function part_along(shape, side, s, motion) result(part)
-    type(outline_shape), intent(in) :: shape   !! the outlines, drawn or displaced
-    integer, intent(in) :: side                !! of the outlines
-    real(wp), intent(in) :: s                  !! where on it, from 0 to 1
+    type(outline_shape), intent(in) :: shape   !! undeformed or displaced outlines
+    integer, intent(in) :: side                !! number of the edge
+    real(wp), intent(in) :: s                  !! along the edge, from 0 to 1
     real(wp), intent(in) :: motion(directions)          !! [length]
     real(wp) :: along(directions)
 
@@ -150,13 +152,13 @@ contains
     part = abs(dot_product(along, motion))/max(norm2(along), tiny(1.0_wp))
   end function part_along
 
-  !> A point at the place of another outline, or of its own, that it is near to, and what is allowed there: by
-  !! the two sides, and at a node by the one with which the side shares that, too.
+  !> Describe how a point meets a nearby point of an outline, with the allowance of both edges; at a node, of
+  !! both edges that share it.
   pure type(overlap_place) function meet(search, point, place) result(found)
     type(search_type), intent(in) :: search   !! the outlines
     type(point_type), intent(in) :: point     !! displaced
-    type(near_place), intent(in) :: place     !! the nearest one of the other outline
-    integer, allocatable :: own(:), other(:)   ! sides
+    type(near_place), intent(in) :: place     !! nearest point of the outline
+    integer, allocatable :: own(:), other(:)   ! edges
     real(wp) :: longest(2), moved(directions)
 
     found = overlap_place(depth=place%distance, distance=place%distance, x=point%x, drawn=point%drawn, &
@@ -172,7 +174,7 @@ contains
 
   contains
 
-    !> A side, and at a node the one with which it shares that.
+    !> Find an edge, and at a node the other edge that shares it.
     pure function sides_at(side, s) result(sides)
       integer, intent(in) :: side
       real(wp), intent(in) :: s
@@ -183,17 +185,17 @@ contains
       if (s >= 1.0_wp) sides = [side, search%now%outline%after(side)]
     end function sides_at
 
-    !> Along a side as drawn, from which gaps are measured, either way. At a node it is the lesser of those
-    !! along its two sides: on which of them a point is, rounding decides.
+    !> Find the relative displacement along an undeformed edge, from which gaps are measured, without sign. At
+    !! a node it is the lesser of those along its two edges, since rounding chooses between them.
     pure real(wp) function slide_along(sides, s) result(slide)
       integer, intent(in) :: sides(:)
-      real(wp), intent(in) :: s         !! on the first
+      real(wp), intent(in) :: s         !! on the first edge
 
       slide = part_along(search%drawn, sides(1), s, moved)
       if (size(sides) > 1) slide = min(slide, part_along(search%drawn, sides(2), 1.0_wp - s, moved))
     end function slide_along
 
-    !> What the one of these sides that allows more does.
+    !> Find the largest allowance of these edges.
     pure real(wp) function most_allowed(sides) result(allowed)
       integer, intent(in) :: sides(:)
       integer :: k
@@ -201,8 +203,8 @@ contains
       allowed = maxval([(search%allowance%of(sides(k), found%meeting), k=1, size(sides))])
     end function most_allowed
 
-    !> Does a pair join the two bodies at one of two sides, or of the sides beside them? Pairs end with lines,
-    !! the smooth curve one side later. A body is joined with itself.
+    !> Does a pair join the two bodies at one of two edges, or at their neighbours? The smooth curve continues
+    !! one edge beyond the last pair. A body is joined to itself.
     pure logical function is_joined(side, other)
       integer, intent(in) :: side, other
 
@@ -214,7 +216,7 @@ contains
     end function is_joined
   end function meet
 
-  !> Does a pair join the two bodies at one of two sides?
+  !> Does a pair join the two bodies at one of two edges?
   pure logical function is_paired(search, side, other)
     type(search_type), intent(in) :: search
     integer, intent(in) :: side, other
@@ -225,12 +227,13 @@ contains
     end associate
   end function is_paired
 
-  !> Keep a place if it is the worst by what is allowed, the deepest, or the worst by what is not told.
-  !! Allowed is what sides about it allow, where more was found than the nearest two do. Where bodies may have
-  !! overlapped as drawn, that is taken off, if no pair is to close it.
+  !> Keep a point if it is the worst by its allowance, the deepest, or the worst by the limit for a warning.
+  !! If it exceeds the allowance of its two edges, the allowance of edges around it is used. An initial
+  !! overlap that no pair closes is subtracted.
   pure subroutine keep(search, found, worst, deepest, not_told)
     type(search_type), intent(in) :: search                          !! the outlines
-    type(overlap_place), intent(in) :: found                         !! from `meet`; its depth may be another
+    type(overlap_place), intent(in) :: found                         !! from `meet`; its depth may have
+                                                                     !! changed
     type(overlap_place), intent(inout) :: worst, deepest, not_told   !! those kept so far
     type(overlap_place) :: place, telling
 
@@ -255,8 +258,8 @@ contains
 
   contains
 
-    !> The most that a side at the place allows, or others of its part that are about as near to that as the
-    !! two there to each other [length].
+    !> Find the largest allowance of the edge at the point and of edges of its part that are about as near to
+    !! this point as the other outline [length].
     pure real(wp) function allowance_about(side) result(allowed)
       integer, intent(in) :: side
       type(near_place) :: near
@@ -274,7 +277,7 @@ contains
       end do
     end function allowance_about
 
-    !> What the bodies overlapped there as drawn, if no pair is to close that; else nothing [length].
+    !> Find the initial overlap at the point, if no pair closes it; else 0 [length].
     pure real(wp) function overlap_as_drawn() result(overlap)
       type(near_place) :: before
 
@@ -285,10 +288,10 @@ contains
     end function overlap_as_drawn
   end subroutine keep
 
-  !> Put a number into an ascending list.
+  !> Insert a number into an ascending list.
   pure subroutine insert(number, list)
-    real(wp), intent(in) :: number                    !! what is put in
-    real(wp), allocatable, intent(inout) :: list(:)   !! made longer by one
+    real(wp), intent(in) :: number                    !! number to insert
+    real(wp), allocatable, intent(inout) :: list(:)   !! extended by one
 
     list = [pack(list, list <= number), number, pack(list, list > number)]
   end subroutine insert

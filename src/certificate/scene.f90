@@ -5,9 +5,10 @@
 !> points, and between two crossings with the other outline. The depth of a point is its distance from the
 !> other outline.
 !>
-!> Pairs with a contact force have three figures: the gap between the displaced outlines along the normal,
-!> the distance of the node beside the end of the other body, and the relative tangential displacement. Last,
-!> nodes may be displaced beyond a line at which their body ends: the axis of rings, or a line of symmetry.
+!> Pairs with a contact force have three values: the gap between the displaced outlines along the normal, the
+!> distance of the node beside the end of the other body, and the relative tangential displacement. Last,
+!> nodes may be displaced beyond a line at which their body ends: the axis of axisymmetric bodies, or a line
+!> of symmetry.
 module epcont_certificate_scene
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: no_effect
@@ -71,9 +72,9 @@ contains
 
   !> Check the points of an edge against the bodies whose boxes it meets.
   subroutine look_at_side(search, scene, near, side)
-    type(search_type), intent(in) :: search      !! its outlines
-    type(overlaps_type), intent(inout) :: scene     !! what is found is added
-    integer, intent(inout) :: near              !! side nearest to the point before
+    type(search_type), intent(in) :: search      !! outlines
+    type(overlaps_type), intent(inout) :: scene     !! results are added
+    integer, intent(inout) :: near              !! edge nearest to the previous point
     integer, intent(in) :: side
     real(wp), allocatable :: crossing(:), s(:)
     integer, allocatable :: others(:), parts(:)
@@ -100,9 +101,9 @@ contains
 
   !> Check a point of a body against another body.
   subroutine look_at_point(search, scene, near, point, part)
-    type(search_type), intent(in) :: search      !! its outlines
-    type(overlaps_type), intent(inout) :: scene     !! what is found is added
-    integer, intent(inout) :: near              !! side nearest to the point before
+    type(search_type), intent(in) :: search      !! outlines
+    type(overlaps_type), intent(inout) :: scene     !! results are added
+    integer, intent(inout) :: near              !! edge nearest to the previous point
     type(point_type), intent(in) :: point
     integer, intent(in) :: part
     type(near_place) :: place
@@ -116,8 +117,8 @@ contains
 
   !> Check the points of an edge against another edge of its own body that they were in front of.
   subroutine look_at_itself(search, scene, side, other)
-    type(search_type), intent(in) :: search      !! its outlines
-    type(overlaps_type), intent(inout) :: scene     !! what is found is added
+    type(search_type), intent(in) :: search      !! outlines
+    type(overlaps_type), intent(inout) :: scene     !! results are added
     integer, intent(in) :: side, other
     type(near_place) :: place
     type(point_type) :: point
@@ -133,7 +134,7 @@ contains
         if (place%s <= 0.0_wp .or. place%s >= 1.0_wp .or. .not. search%now%is_inside(place, point%x)) cycle
         if (2.0_wp*place%distance > norm2(search%now%chord(side))) cycle
         found = meet(search, point, place)
-        ! How far it was drawn behind that side: where the body lies between the two, all of its thickness.
+        ! Undeformed depth behind this edge: if the body is between the two, its whole thickness.
         drawn = cross_product(was%chord(other), point%drawn - was%x(:, 1, other))/norm2(was%chord(other))
         if (drawn <= found%allowed .and. is_worse(found, scene%itself)) scene%itself = rated(found)
       end do
@@ -144,8 +145,8 @@ contains
   subroutine look_at_pairs(model, force, search, scene)
     type(model_type), intent(in) :: model        !! the model
     real(wp), intent(in) :: force(:)             !! contact forces [pairs]
-    type(search_type), intent(in) :: search      !! its outlines
-    type(overlaps_type), intent(inout) :: scene     !! what is found is added
+    type(search_type), intent(in) :: search      !! outlines
+    type(overlaps_type), intent(inout) :: scene     !! results are added
     real(wp) :: least
     integer :: k, side, side_of(model%nodes)
 
@@ -170,8 +171,8 @@ contains
   !> Check node B of a pair against the outline of node A.
   subroutine look_at_pair(model, search, scene, pair, point, part)
     type(model_type), intent(in) :: model        !! the model
-    type(search_type), intent(in) :: search      !! its outlines
-    type(overlaps_type), intent(inout) :: scene     !! what is found is added
+    type(search_type), intent(in) :: search      !! outlines
+    type(overlaps_type), intent(inout) :: scene     !! results are added
     integer, intent(in) :: pair, part
     type(point_type), intent(in) :: point
     type(near_place) :: place
@@ -183,7 +184,7 @@ contains
     found%pair = pair
     slid = found
     apart = point%motion - motion_at(search, place%side, place%s)
-    ! At a corner the nearest side may be the one that is not pressed: to close a gap is no slide.
+    ! At a corner the nearest edge may not be in contact: closing of a gap is not tangential.
     slid%depth = min(part_along(search%now, place%side, place%s, apart), &
                      abs(cross_product(model%normal(:, pair), apart)))
     slid%allowed = max(part_of_side*maxval(search%allowance%length([found%side, found%other])), &
@@ -194,20 +195,20 @@ contains
     off = abs(cross_product(point%x - place%x, model%normal(:, pair)))
     if (off <= found%depth) then
       call keep(search, found, scene%apart, scene%widest, scene%wide)
-    else   ! the other body ends before it
+    else   ! the other body ends before the node
       found%depth = off
       found%allowed = found%allowed + slid%allowed
       if (is_worse(found, scene%beside)) scene%beside = rated(found)
     end if
   end subroutine look_at_pair
 
-  !> Of rings: the node of least radius, if that is below 0. Of all bodies: the node farthest beyond a line
-  !! along which all of an end of its body is held across and somewhere free.
+  !> Find nodes beyond a line. In axisymmetric models: the node with the least radius, if negative. In all
+  !! models: the node farthest beyond a line of symmetry at an end of its body.
   subroutine look_beyond(model, displacement, search, scene)
     type(model_type), intent(in) :: model        !! the model
     real(wp), intent(in) :: displacement(:, :)   !! [length] [directions, nodes]
-    type(search_type), intent(in) :: search      !! its outlines
-    type(overlaps_type), intent(inout) :: scene     !! what is found is added
+    type(search_type), intent(in) :: search      !! outlines
+    type(overlaps_type), intent(inout) :: scene     !! results are added
     type(beyond_place) :: found
     integer :: c, node, part, way
 
@@ -226,13 +227,13 @@ contains
     end do
   end subroutine look_beyond
 
-  !> The node farthest beyond the end of a part towards lower coordinates (`way` 1), or towards higher ones
-  !! (-1), where all that was drawn on that line is held there, and is free to slide along it somewhere;
-  !! else none, 0 deep.
+  !> Find the node farthest beyond the end of a part towards lower (`way` 1) or higher coordinates (-1). All
+  !! undeformed nodes on this line must be fixed normal to it, and one or more free along it; otherwise the
+  !! depth is 0.
   pure type(beyond_place) function beyond_end(model, displacement, search, part, c, way) result(place)
     type(model_type), intent(in) :: model        !! the model
     real(wp), intent(in) :: displacement(:, :)   !! [length] [directions, nodes]
-    type(search_type), intent(in) :: search      !! its outlines
+    type(search_type), intent(in) :: search      !! outlines
     integer, intent(in) :: part, c, way
     real(wp), allocatable :: u(:), x(:)
     real(wp) :: edge
@@ -257,7 +258,7 @@ contains
   pure function crossings(now, side, other) result(place)
     type(outline_shape), intent(in) :: now
     integer, intent(in) :: side, other
-    real(wp), allocatable :: place(:)   !! along the side
+    real(wp), allocatable :: place(:)   !! along the edge
     real(wp) :: part(2)   ! of both chords
     integer, allocatable :: near(:)
     integer :: k

@@ -1,5 +1,5 @@
-!> What ties freedoms to each other, as the certificate sees it: from the cards' own words (leaders, arms,
-!> coefficients), not from the sums that the solver makes of them.
+!> Springs, RBE2 and MPC for the certificate: from the data of the cards (master nodes, lever arms,
+!> coefficients), not from the solver's sums.
 module epcont_certificate_tied
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: cancelled
@@ -12,13 +12,14 @@ module epcont_certificate_tied
 
 contains
 
-  !> Springs pull at their ends, by how far these move apart.
+  !> Add the forces of springs at their ends.
   pure subroutine check_springs(model, displacement, residual, sizes, stored)
     type(model_type), intent(in) :: model         !! model
     real(wp), intent(in) :: displacement(:, :)    !! [length] [directions, nodes]
-    real(wp), intent(inout) :: residual(:, :)     !! forces on the nodes are added [force] [directions, nodes]
-    real(wp), intent(inout) :: sizes(:)           !! their sizes are, except of rounding [force] [nodes]
-    real(wp), intent(inout) :: stored             !! pull times stretch is [force*length]
+    real(wp), intent(inout) :: residual(:, :)     !! forces are added [force] [directions, nodes]
+    real(wp), intent(inout) :: sizes(:)           !! absolute forces are added, except rounding [force]
+                                                  !! [nodes]
+    real(wp), intent(inout) :: stored             !! spring energy is added [force*length]
     real(wp) :: apart, pull, u(2)
     integer :: i, k
 
@@ -40,11 +41,11 @@ contains
     end do
   end subroutine check_springs
 
-  !> A tied freedom hands its forces to those that it follows, which may follow others.
+  !> Move the forces on dependent DOFs to their master DOFs, which may depend on others.
   pure subroutine gather_ties(model, residual, torque)
     type(model_type), intent(in) :: model         !! model
     real(wp), intent(inout) :: residual(:, :)     !! [force] [directions, nodes]
-    real(wp), intent(out) :: torque(:)            !! on platens that turn [force*length] [platens]
+    real(wp), intent(out) :: torque(:)            !! on rotating platens [force*length] [platens]
     integer :: c, k, leader, node
     logical :: handed
 
@@ -69,12 +70,12 @@ contains
     end do
   end subroutine gather_ties
 
-  !> A platen that turns takes the forces of its followers, and their moment.
+  !> Move the forces on dependent nodes of a rotating platen, and their moment, to its master node.
   pure subroutine gather_platen(model, platen, residual, torque, handed)
     type(model_type), intent(in) :: model
     type(turning_platen), intent(in) :: platen
     real(wp), intent(inout) :: residual(:, :), torque
-    logical, intent(inout) :: handed              !! there was something to hand on
+    logical, intent(inout) :: handed              !! a force was moved
     real(wp) :: arm(directions)
     integer :: i
 
@@ -90,7 +91,7 @@ contains
     end do
   end subroutine gather_platen
 
-  !> The first freedom of an equation hands its force to the others.
+  !> Move the force on the dependent DOF of an equation to the other DOFs.
   pure subroutine gather_equation(equation, residual, handed)
     type(linear_equation), intent(in) :: equation
     real(wp), intent(inout) :: residual(:, :)
@@ -108,13 +109,13 @@ contains
     end do
   end subroutine gather_equation
 
-  !> Whether followers are where their leader and one angle take them, that of the farthest of them, and
-  !! whether equations hold.
+  !> Check the positions of dependent nodes against their master node and one rotation angle, from the
+  !! farthest of them, and check the equations.
   pure subroutine check_ties(model, displacement, turn, apart)
     type(model_type), intent(in) :: model         !! model
     real(wp), intent(in) :: displacement(:, :)    !! [length] [directions, nodes]
-    real(wp), intent(out) :: turn(:)              !! the angles [radian] [platens]
-    real(wp), intent(out) :: apart                !! the most that any is off by, of the largest displacement
+    real(wp), intent(out) :: turn(:)              !! rotation angles [rad] [platens]
+    real(wp), intent(out) :: apart                !! largest violation / largest displacement
     integer :: i, k
 
     apart = 0.0_wp
@@ -130,7 +131,7 @@ contains
     if (apart > 0.0_wp) apart = apart/maxval(abs(displacement))
   end subroutine check_ties
 
-  !> Those of one platen.
+  !> Check the dependent nodes of one platen.
   pure subroutine check_platen(model, platen, displacement, turn, apart)
     type(model_type), intent(in) :: model
     type(turning_platen), intent(in) :: platen
@@ -148,7 +149,7 @@ contains
     apart = max(apart, maxval(abs(moved(1, :) + turn*arm(2, :))), maxval(abs(moved(2, :) - turn*arm(1, :))))
   end subroutine check_platen
 
-  !> The longest arm of each platen that turns [length] [platens].
+  !> Find the longest lever arm of each rotating platen [length] [platens].
   pure function longest_arms(model) result(length)
     type(model_type), intent(in) :: model         !! model
     real(wp) :: length(size(model%platen))

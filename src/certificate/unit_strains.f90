@@ -1,6 +1,5 @@
-!> Strains of an element from its displacements: of the table of elements only what a displacement is between
-!> the nodes and where the integration points are; derivatives are differences, which are exact for the
-!> polynomials met.
+!> Strains of an element from its displacements. From the table of elements only shape functions and
+!> integration points are used; derivatives are differences, which are exact for these polynomials.
 module epcont_certificate_unit_strains
   use epcont_base_kinds, only: wp
   use epcont_element_element_kind, only: element_kind, most_nodes, most_points
@@ -10,14 +9,14 @@ module epcont_certificate_unit_strains
   private
   public :: find_slopes, largest_face, largest_of, slopes_at, strain_by, unit_strains
 
-  !> Half the step of the differences, which is one: exact for quadratics whatever its size.
+  !> Half the step of the differences: exact for quadratic polynomials whatever its size.
   real(wp), parameter :: half_step = 0.5_wp
 
 contains
 
   !> Derivatives of the shape functions at each integration point of an element type.
   pure subroutine find_slopes(kind, slope)
-    type(element_kind), intent(in) :: kind                       !! of elements
+    type(element_kind), intent(in) :: kind                       !! element type
     real(wp), intent(out) :: slope(directions, most_nodes, most_points)   !! [local directions, nodes, points]
     integer :: p
 
@@ -28,7 +27,7 @@ contains
 
   !> Derivatives of the shape functions at a point, by differences.
   pure function slopes_at(kind, point) result(slope)
-    type(element_kind), intent(in) :: kind        !! of elements
+    type(element_kind), intent(in) :: kind        !! element type
     real(wp), intent(in) :: point(directions)     !! local coordinates
     real(wp) :: slope(directions, most_nodes)     !! [local directions, nodes]
     real(wp) :: after(most_nodes), before(most_nodes), step(directions), unused(directions, most_nodes)
@@ -43,12 +42,12 @@ contains
     end do
   end function slopes_at
 
-  !> Strains xx, yy, zz, xy (engineering) that a unit displacement of each freedom gives at the integration
-  !! places of an element, and the volumes that belong to them.
+  !> Find the strains xx, yy, zz, xy (engineering) at the integration points of an element by a unit
+  !! displacement of each DOF, and the volumes of these points.
   pure subroutine unit_strains(model, element, slope, strain, volume)
     type(model_type), intent(in) :: model        !! model
-    integer, intent(in) :: element               !! which of its elements
-    real(wp), intent(in) :: slope(directions, most_nodes, most_points)   !! of its kind, from `find_slopes`
+    integer, intent(in) :: element               !! number of the element
+    real(wp), intent(in) :: slope(directions, most_nodes, most_points)   !! of its type, from `find_slopes`
     !> [1/length] [components, directions, nodes, points]
     real(wp), intent(out) :: strain(components, directions, most_nodes, most_points)
     real(wp), intent(out) :: volume(most_points)                     !! [length**3]
@@ -62,8 +61,8 @@ contains
     end do
     associate (s => model%section(element), kind => model%kinds(model%kind(element)))
       do p = 1, kind%points
-        ! d x/d local, one column each; from the first node, so that a place far from the origin takes no
-        ! digits.
+        ! d x/d local, one column each; relative to the first node, so that a distance from the origin takes
+        ! no digits.
         side = 0.0_wp
         do k = 2, n
           side(:, 1) = side(:, 1) + (x(:, k) - x(:, 1))*slope(1, k, p)
@@ -90,7 +89,7 @@ contains
     end associate
   end subroutine unit_strains
 
-  !> Kinds that would lock have the mean change of volume everywhere.
+  !> Use the mean change of volume at all points, for element types that would lock.
   pure subroutine average_dilatation(strain, volume)
     real(wp), intent(inout) :: strain(:, :, :, :)
     real(wp), intent(in) :: volume(:)
@@ -107,7 +106,7 @@ contains
     end do
   end subroutine average_dilatation
 
-  !> Largest diameter of an element, times its depth [length**2].
+  !> Find the largest product of an element's diameter and depth [length**2].
   pure real(wp) function largest_face(model) result(face)
     type(model_type), intent(in) :: model   !! the model
     real(wp), dimension(directions) :: least, most
@@ -125,7 +124,7 @@ contains
     end do
   end function largest_face
 
-  !> The largest size of some numbers.
+  !> Find the largest absolute value.
   pure real(wp) function largest_of(count, number) result(largest)
     integer, intent(in) :: count
     real(wp), intent(in) :: number(count)
@@ -137,12 +136,12 @@ contains
     end do
   end function largest_of
 
-  !> Strain at one place of an element. What its nodes share along y, and in a plane along x, is a travel
-  !! without strain, and comes off first so that it leaves no rounding.
+  !> Find the strain at one point of an element. A translation (along y, and in plane models along x) is
+  !! subtracted first, so that it leaves no rounding error.
   pure function strain_by(nodes, displacement, unit, ring) result(strain)
     integer, intent(in) :: nodes
     real(wp), intent(in) :: displacement(directions, nodes)         !! of its nodes
-    real(wp), intent(in) :: unit(components, directions, nodes)     !! by a unit of each
+    real(wp), intent(in) :: unit(components, directions, nodes)     !! by a unit displacement of each
     logical, intent(in) :: ring
     real(wp) :: strain(components), apart(directions)
     integer :: k

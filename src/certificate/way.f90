@@ -1,9 +1,7 @@
-!> Bodies that pass through each other on their way, though they are apart where they come to: nodes go
-!> straight from where they were drawn to where they are, as those of the other outline do, and may enter it
-!> and come out again.
+!> Bodies that pass through each other along the path of displacement, although they are apart at its end. All
+!> nodes move along straight paths; a node may enter the other outline and come out again.
 !>
-!> The tree of the displaced sides knows how far each has moved, and so which of them a point meets on its
-!> way.
+!> A tree of the displaced edges stores how far each has moved, and so finds the edges on the path of a point.
 module epcont_certificate_way
   use epcont_base_kinds, only: wp
   use epcont_certificate_findings, only: is_worse, overlap_place, rated, overlaps_type
@@ -17,34 +15,35 @@ module epcont_certificate_way
   private
   public :: look_at_ways
 
-  !> Faces by which a node enters and leaves look against each other, within 26 degrees (cosine): it passes
-  !! through what is between them. Else it cuts a corner, and only by more than a side is that told from what
-  !! a path does that is not straight.
+  !> A node passes through a body if the faces where it enters and leaves are opposite, within 26 degrees
+  !! (cosine). Otherwise it cuts a corner; then only a path inside longer than an edge counts, since true
+  !! paths are not straight.
   real(wp), parameter :: opposite = -0.9_wp
 
-  !> A body of which a side turns [rad] or is stretched by more than this has no way that is straight, and no
-  !! shape on it.
+  !> If an edge rotates [rad] or stretches by more than this, the path of its body is not straight and is not
+  !! checked.
   real(wp), parameter :: shapeless = 1.0_wp
 
-  !> So many times farther the nearest place is looked for in each round.
+  !> Growth of the search radius for the nearest point in each round.
   real(wp), parameter :: widening = 8.0_wp
 
-  !> How parts move.
+  !> Displacements of the parts.
   type :: ways_type
     real(wp), allocatable :: mean(:, :)      !! displacement of each part [length] [directions, parts]
-    real(wp), allocatable :: spread_of(:)    !! what its nodes' differ by from that [length] [parts]
-    logical, allocatable :: straight(:)      !! it keeps a shape on its way [parts]
-    type(box_tree) :: part_tree              !! where each part is on its way
-    type(outline_shape) :: between           !! some sides, as far on their way as was asked last
+    real(wp), allocatable :: spread_of(:)    !! largest difference of its nodes from this displacement
+                                             !! [length] [parts]
+    logical, allocatable :: straight(:)      !! its path is checked [parts]
+    type(box_tree) :: part_tree              !! boxes around the path of each part
+    type(outline_shape) :: between           !! some edges at the last requested time
   end type ways_type
 
 contains
 
-  !> The paths of all nodes of the outlines, and of a point within each part: of two bodies with one outline
-  !! no node goes inside.
+  !> Follow the paths of all nodes of the outlines, and of a point inside each part, since no node enters a
+  !! body with the same outline.
   subroutine look_at_ways(search, scene)
     type(search_type), intent(in) :: search    !! the outlines
-    type(overlaps_type), intent(inout) :: scene   !! what is found is added
+    type(overlaps_type), intent(inout) :: scene   !! results are added
     type(ways_type) :: ways
     integer :: part, side
 
@@ -62,7 +61,7 @@ contains
     end associate
   end subroutine look_at_ways
 
-  !> How the parts move.
+  !> Find the displacements of the parts.
   subroutine find_ways(search, ways)
     type(search_type), intent(in) :: search    !! the outlines
     type(ways_type), intent(inout) :: ways    !! of the parts
@@ -77,10 +76,10 @@ contains
       associate (first => search%now%outline%first(p), last => search%now%outline%first(p + 1) - 1, &
                  tree => search%now%side_tree(p))
         ways%straight(p) = all(search%allowance%change(first:last) <= shapeless)
-        u = search%motion(:, 1, first:last)   ! what middles bulge besides is allowed three times over
+        u = search%motion(:, 1, first:last)   ! mid-side nodes: covered by three times the allowance
         ways%mean(:, p) = 0.5_wp*(minval(u, dim=2) + maxval(u, dim=2))
         ways%spread_of(p) = maxval(norm2(u - spread(ways%mean(:, p), 2, size(u, 2)), dim=1))
-        ! From where it was drawn to where it is.
+        ! From the undeformed to the displaced position.
         low(:, p) = tree%low(:, 1) - max(0.0_wp, maxval(u, dim=2))
         high(:, p) = tree%high(:, 1) - min(0.0_wp, minval(u, dim=2))
       end associate
@@ -90,12 +89,12 @@ contains
     allocate (ways%between%x, mold=search%now%x)
   end subroutine find_ways
 
-  !> The path of one point, past all parts that it comes near to.
+  !> Follow the path of one point past all nearby parts.
   subroutine walk(search, scene, ways, point)
     type(search_type), intent(in) :: search    !! the outlines
-    type(overlaps_type), intent(inout) :: scene   !! what is found is added
+    type(overlaps_type), intent(inout) :: scene   !! results are added
     type(ways_type), intent(inout) :: ways    !! of the parts
-    type(point_type), intent(in) :: point   !! a node, or the middle of an element
+    type(point_type), intent(in) :: point   !! a node, or the centre of an element
     integer, allocatable :: parts(:)
     integer :: b
 
@@ -106,16 +105,16 @@ contains
     end do
   end subroutine walk
 
-  !> The path of one point past another part: between two crossings of its outline it may be inside.
+  !> Follow the path of one point past another part; between two crossings of its outline it may be inside.
   subroutine look_at_way(search, scene, ways, point, part)
     type(search_type), intent(in) :: search    !! the outlines
-    type(overlaps_type), intent(inout) :: scene   !! what is found is added
+    type(overlaps_type), intent(inout) :: scene   !! results are added
     type(ways_type), intent(inout) :: ways    !! of the parts
     type(point_type), intent(in) :: point
     integer, intent(in) :: part
     real(wp), allocatable :: time(:)
     integer, allocatable :: sides(:)
-    real(wp) :: length   ! at most so far goes it along the other outline
+    real(wp) :: length   ! largest length of its path along the other outline
     integer :: k
 
     associate (start => point%drawn + ways%mean(:, part), stop => point%x, wide => ways%spread_of(part))
@@ -136,8 +135,8 @@ contains
     end do
   end subroutine look_at_way
 
-  !> When a point passes between the ends of a side that moves too. Curved sides are two chords. The area
-  !! between the point and a chord is a square function of time; on the chord it vanishes.
+  !> Find the times at which a point crosses a moving edge. Curved edges are two chords. The area between the
+  !! point and a chord is a quadratic function of time; it is zero on the chord.
   pure subroutine cross_side(search, point, side, time)
     type(search_type), intent(in) :: search    !! the outlines
     type(point_type), intent(in) :: point
@@ -163,10 +162,10 @@ contains
     end do
   end subroutine cross_side
 
-  !> Is a point inside a part between two times, deeper than at these, and than is allowed?
+  !> Is a point inside a part between two times, deeper than at these times, and deeper than allowed?
   subroutine look_between(search, scene, ways, point, part, time, length)
     type(search_type), intent(in) :: search    !! the outlines
-    type(overlaps_type), intent(inout) :: scene   !! what is found is added
+    type(overlaps_type), intent(inout) :: scene   !! results are added
     type(ways_type), intent(inout) :: ways    !! of the parts
     type(point_type), intent(in) :: point
     integer, intent(in) :: part
@@ -178,14 +177,14 @@ contains
 
     middle = 0.5_wp*(time(1) + time(2))
     within = (time(2) - time(1))*length
-    place = nearest_place(search, ways, point, part, middle, 0.5_wp*within)   ! no farther is the crossing
+    place = nearest_place(search, ways, point, part, middle, 0.5_wp*within)   ! the crossing is not farther
     if (place%side == 0 .or. .not. place%inside) return
     found = meet(search, point, place)
     if (found%depth <= found%allowed) return
     do i = 1, 2
       ends(i) = nearest_place(search, ways, point, part, time(i), within + place%distance)
       if (ends(i)%inside) found%depth = min(found%depth, place%distance - ends(i)%distance)
-      along(:, i) = search%now%tangent(ends(i)%side, ends(i)%s)   ! of the side where it enters, or leaves
+      along(:, i) = search%now%tangent(ends(i)%side, ends(i)%s)   ! of the edges where it enters and leaves
     end do
     if (found%depth <= found%allowed) return
     if (dot_product(along(:, 1), along(:, 2)) > opposite*norm2(along(:, 1))*norm2(along(:, 2)) .and. &
@@ -196,8 +195,8 @@ contains
     if (is_worse(found, scene%passed)) scene%passed = rated(found)
   end subroutine look_between
 
-  !> The place of a part that is nearest to a point at a time, of those within reach; side 0: none. About as
-  !! near as its own side is long it mostly is.
+  !> Find the point of a part nearest to a point at a time, within reach; side 0 if there is no such point.
+  !! The search starts with the length of its own edge.
   type(near_place) function nearest_place(search, ways, point, part, time, reach) result(best)
     type(search_type), intent(in) :: search    !! the outlines
     type(ways_type), intent(inout) :: ways    !! of the parts
@@ -214,7 +213,7 @@ contains
     do
       near = sides_meeting(search%now, part, motion_query(point%x - within, point%x + within, &
                                                           point%motion, [time, time]))
-      ! At a node both sides say what is inside.
+      ! At a node both edges decide whether the point is inside.
       sides = [near, search%now%outline%before(near), search%now%outline%after(near)]
       ways%between%x(:, :, sides) = search%drawn%x(:, :, sides) + time*search%motion(:, :, sides)
       do k = 1, size(near)
@@ -227,7 +226,7 @@ contains
     if (best%side > 0) best%inside = ways%between%is_inside(best, x)
   end function nearest_place
 
-  !> The real roots of a + b t + c t**2 between -1 and 1; 2 stands for one that is not there.
+  !> Real roots of a + b t + c t**2 between -1 and 1; 2 stands for a root outside.
   pure function roots_of_square(a, b, c) result(root)
     real(wp), intent(in) :: a, b, c
     real(wp) :: root(2), discriminant, q
@@ -235,7 +234,7 @@ contains
     root = 2.0_wp
     discriminant = b**2 - 4.0_wp*a*c
     if (discriminant < 0.0_wp) return
-    q = -0.5_wp*(b + sign(sqrt(discriminant), b))   ! no difference of near numbers
+    q = -0.5_wp*(b + sign(sqrt(discriminant), b))   ! no difference of nearly equal numbers
     if (abs(a) <= abs(q) .and. q /= 0.0_wp) root(1) = a/q
     if (abs(q) <= abs(c) .and. c /= 0.0_wp) root(2) = q/c
   end function roots_of_square

@@ -1,6 +1,5 @@
-!> The stress that belongs to a strain, from the paper's equations as they stand: the uniaxial curve over
-!> total strain, Poisson's ratio mu of the secant body, and bisection for the equivalent strain. The solver
-!> shifts the curve instead.
+!> Stress of a strain by the paper's equations: the uniaxial curve over total strain, the secant body's
+!> Poisson's ratio mu, and bisection for the equivalent strain. The solver shifts the curve instead.
 module epcont_certificate_yielding
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: components, plane_stress
@@ -10,7 +9,7 @@ module epcont_certificate_yielding
   private
   public :: stress_after, stress_on_curve, von_mises_stress
 
-  !> Halvings that leave nothing of an interval.
+  !> Number of bisections that reduce an interval to rounding.
   integer, parameter :: halvings = 60
 
 contains
@@ -18,7 +17,7 @@ contains
   !> Stress xx, yy, zz, xy of a strain xx, yy, zz, xy (engineering) [stress].
   pure function stress_on_curve(model, section, strain) result(stress)
     type(model_type), intent(in) :: model   !! its sections, their curves and PARAM MUP
-    integer, intent(in) :: section          !! of the model
+    integer, intent(in) :: section          !! a section of the model
     real(wp), intent(in) :: strain(components)       !! xx, yy, zz, xy (engineering)
     real(wp) :: stress(components), across, lambda, mu, secant, shear, total
 
@@ -43,8 +42,8 @@ contains
 
   contains
 
-    !> The strain of the curve that eps_i of the strain is, taken with its own mu; that of yield stands for
-    !! all below.
+    !> Find the strain on the curve with the equivalent strain eps_i of this strain, with the mu of that
+    !! point; below yield, the yield strain.
     pure real(wp) function strain_on_curve() result(low)
       real(wp) :: high, middle
       integer :: k
@@ -65,7 +64,7 @@ contains
       end do
     end function strain_on_curve
 
-    !> Is the strain's eps_i (2-2), taken with the mu of a point of the curve, beyond that point?
+    !> Is the strain's eps_i (2-2), with the mu of a point of the curve, beyond this point?
     pure logical function is_beyond(total)
       real(wp), intent(in) :: total
       real(wp) :: across, mu
@@ -76,7 +75,7 @@ contains
                                + (across - strain(1))**2) + 0.75_wp*strain(4)**2)/(1.0_wp + mu) > total
     end function is_beyond
 
-    !> Exact for a secant body, or (2-4).
+    !> Poisson's ratio mu: exact for a secant body, or by (2-4).
     pure real(wp) function poisson_ratio(total)
       real(wp), intent(in) :: total
 
@@ -89,7 +88,7 @@ contains
       end associate
     end function poisson_ratio
 
-    !> Strain across the plane: what it is, or in plane stress that of a secant body without stress there.
+    !> Find the strain normal to the plane; in plane stress it is that of a secant body without normal stress.
     pure real(wp) function strain_across(mu)
       real(wp), intent(in) :: mu
 
@@ -98,10 +97,10 @@ contains
     end function strain_across
   end function stress_on_curve
 
-  !> Stress after several load steps of flow theory with isotropic hardening [stress].
+  !> Find the stress after several load steps of flow theory with isotropic hardening [stress].
   pure function stress_after(model, section, strain) result(stress)
     type(model_type), intent(in) :: model     !! its sections and their curves
-    integer, intent(in) :: section            !! of the model: one that yields
+    integer, intent(in) :: section            !! a yielding section of the model
     real(wp), intent(in) :: strain(:, :)      !! xx, yy, zz, xy (engineering) [components, load steps]
     real(wp) :: stress(components), plastic(components), hardened
     integer :: step
@@ -113,13 +112,13 @@ contains
     end do
   end function stress_after
 
-  !> One load step: bisection for the part of the strain deviator, beyond the plastic strain before, that is
-  !! elastic at its end.
+  !> Integrate one load step: bisection for the elastic part of the strain deviator at its end.
   pure subroutine return_to_curve(model, section, strain, plastic, hardened, stress)
     type(model_type), intent(in) :: model
     integer, intent(in) :: section
     real(wp), intent(in) :: strain(components)
-    real(wp), intent(inout) :: plastic(components), hardened   !! plastic strain, and its equivalent so far
+    real(wp), intent(inout) :: plastic(components), hardened   !! plastic strain, and its equivalent, before
+                                                               !! the step
     real(wp), intent(out) :: stress(components)
     real(wp) :: bulk, deviator(components), equivalent, high, low, mean, part, shear
     integer :: k
@@ -137,7 +136,7 @@ contains
       else
         low = part
       end if
-      if (low == high) exit   ! all of it
+      if (low == high) exit   ! all elastic
       part = 0.5_wp*(low + high)
     end do
     call divide(part, mean, deviator, equivalent)
@@ -149,8 +148,8 @@ contains
 
   contains
 
-    !> Mean and deviator of the strain beyond the plastic one; across a sheet it is that of a body with a part
-    !! of the shear modulus.
+    !> Split the elastic strain into mean and deviator; in plane stress the normal strain is that of a body
+    !! with a part of the shear modulus.
     pure subroutine divide(part, mean, deviator, equivalent)
       real(wp), intent(in) :: part
       real(wp), intent(out) :: mean, deviator(components), equivalent
@@ -166,7 +165,7 @@ contains
     end subroutine divide
   end subroutine return_to_curve
 
-  !> Yield stress at an equivalent plastic strain; the last slope of the curve goes on [stress].
+  !> Find the yield stress at an equivalent plastic strain; the last slope of the curve continues [stress].
   pure real(wp) function stress_when_hardened(curve, young, hardened) result(stress)
     type(uniaxial_curve), intent(in) :: curve
     real(wp), intent(in) :: young, hardened
@@ -179,8 +178,8 @@ contains
     end associate
   end function stress_when_hardened
 
-  !> Equivalent stress (2-1), from the largest component: squares of very small or large ones are beyond the
-  !! range of numbers.
+  !> Find the equivalent stress (2-1), scaled by the largest component, since squares may overflow or
+  !! underflow.
   pure real(wp) function von_mises_stress(stress)
     real(wp), intent(in) :: stress(components)   !! xx, yy, zz, xy
     real(wp) :: part(components), largest
@@ -193,7 +192,8 @@ contains
         + (part(3) - part(1))**2) + 3.0_wp*part(4)**2)
   end function von_mises_stress
 
-  !> Stress at a total strain; the last slope goes on. From the lower point up: nothing cancels.
+  !> Find the stress at a total strain; the last slope continues. It is computed from the lower point, without
+  !! cancellation.
   pure real(wp) function stress_at(curve, total)
     type(uniaxial_curve), intent(in) :: curve
     real(wp), intent(in) :: total

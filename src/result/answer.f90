@@ -1,4 +1,4 @@
-!> The answer to a scene: displacements, contact and stresses, and how they were found.
+!> The answer of a model: displacements, contact and stresses, and how they were found.
 module epcont_result_answer
   use epcont_base_kinds, only: wp
   use epcont_plasticity_load_path, only: followed_loads
@@ -11,35 +11,36 @@ module epcont_result_answer
   private
   public :: answer_type
 
-  !> Where more of a pivot is lost, the factors may be too stiff to tell what is wrong.
+  !> If rounding takes a larger part of a pivot, the factors may be too stiff to show the error.
   real(wp), parameter :: largest_mended = 1.0e-4_wp
 
   type, extends(followed_loads) :: answer_type
     real(wp), allocatable :: reaction(:, :)          !! of the supports [force] [2, nodes]
-    real(wp), allocatable :: angle(:)                !! of platens that turn [radian] [platens]
-    real(wp), allocatable :: moment(:)               !! of their supports [force*length] [platens]
-    ! Of the elements: means over their points, by volume.
+    real(wp), allocatable :: angle(:)                !! of rotating platens [rad] [platens]
+    real(wp), allocatable :: moment(:)               !! reactions of their supports [force*length] [platens]
+    ! Of the elements: means over their integration points, by volume.
     real(wp), allocatable :: stress(:, :)            !! xx, yy, zz, xy [stress] [4, elements]
     real(wp), allocatable :: equivalent_stress(:)    !! von Mises [stress] [elements]
     real(wp), allocatable :: equivalent_strain(:)    !! (2-2) [elements]
-    real(wp), allocatable :: secant_modulus(:)       !! E' of the curve at that strain [stress] [elements]
-    ! At the integration point of each element where it is largest.
+    real(wp), allocatable :: secant_modulus(:)       !! E' of the curve at this strain [stress] [elements]
+    ! At the integration point of each element with the largest von Mises stress.
     real(wp), allocatable :: largest_stress(:)       !! von Mises [stress] [elements]
-    integer, allocatable :: largest_at(:)            !! that point [elements]
-    !> Beyond the yield point, at any of its points [elements]
+    integer, allocatable :: largest_at(:)            !! this point [elements]
+    !> Yielded at one integration point or more [elements]
     logical, allocatable :: plastic(:)
     logical, allocatable :: beyond(:)                !! beyond the end of the material's table [elements]
-    !> At the pairs; negative: no boundary there [stress] [pairs]
+    !> At the pairs; negative if no boundary belongs to a pair [stress] [pairs]
     real(wp), allocatable :: pressure(:)
-    !> Pressure on the master line less that on the slave line (`compare_sides`) [stress] [pairs]
+    !> Pressure on the master line minus pressure on the slave line (`compare_sides`) [stress] [pairs]
     real(wp), allocatable :: apart(:)
-    type(contact_zone), allocatable :: zones(:)      !! runs of touching pairs
+    type(contact_zone), allocatable :: zones(:)      !! runs of pairs in contact
     type(line_pressure), allocatable :: lines(:)     !! of each line contact
-    type(body_force), allocatable :: bodies(:)       !! what contact exerts on each that has elements
-    real(wp) :: shortfall = 0.0_wp                   !! of stresses from the curve by (2-4), at most, relative
+    type(body_force), allocatable :: bodies(:)       !! contact resultants on bodies with elements
+    real(wp) :: shortfall = 0.0_wp                   !! largest part by which (2-4) leaves a stress below the
+                                                     !! curve
     type(locking_type) :: locking                    !! of three-node elements
-    type(gradient_type) :: gradient                  !! of displacements that are not small
-    !> Of displacements and forces by refinement's last step, relative
+    type(gradient_type) :: gradient                  !! large displacement gradients
+    !> Change of displacements and forces by the last step of refinement, relative
     real(wp) :: last_correction = huge(1.0_wp)
   contains
     procedure :: largest_pressure
@@ -49,8 +50,7 @@ module epcont_result_answer
 
 contains
 
-  !> The largest pressure of all pairs; negative where those that touch have none, since no boundary belongs
-  !! to them [stress].
+  !> Find the largest pressure of all pairs; negative if no boundary belongs to the pairs in contact [stress].
   pure real(wp) function largest_pressure(self)
     class(answer_type), intent(in) :: self
 
@@ -58,8 +58,8 @@ contains
     if (any(self%contact%touching)) largest_pressure = maxval(self%pressure, mask=self%contact%touching)
   end function largest_pressure
 
-  !> What rounding has taken of the weakest pivot; or, where the answer was refined by factors that tell the
-  !! error, of the answer.
+  !> Find the part of the weakest pivot that rounding has taken; or, if the answer was refined with factors
+  !! that show the error, the part of the answer.
   pure real(wp) function lost(self)
     class(answer_type), intent(in) :: self
 
@@ -67,8 +67,8 @@ contains
     if (lost <= largest_mended) lost = min(lost, self%last_correction)
   end function lost
 
-  !> What rounding may have taken of displacements and forces, at most: by the condition, or by what a step of
-  !! refinement changed.
+  !> Find an upper bound of the rounding error of displacements and forces, from the condition number or from
+  !! the last step of refinement.
   pure real(wp) function rounding(self)
     class(answer_type), intent(in) :: self
 

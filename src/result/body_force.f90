@@ -1,4 +1,4 @@
-!> What contact exerts on each body as a whole, and what each pair counts in it.
+!> Contact resultants on bodies, and the factor of each pair in them.
 module epcont_result_body_force
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: cancelled
@@ -9,17 +9,17 @@ module epcont_result_body_force
   private
   public :: body_force, find_body_forces, resultants, shares_of_pairs
 
-  !> The resultant of contact on a body that has elements. In rings it has no x: hoops take what acts along
-  !! radii.
+  !> Contact resultant on a body with elements. In axisymmetric models it has no x, since hoop stresses carry
+  !! radial forces.
   type :: body_force
     integer :: body = 0                    !! number of the body
-    integer :: node = 0                    !! its first
+    integer :: node = 0                    !! its first node
     real(wp) :: resultant(directions) = 0.0_wp      !! [force]
   end type body_force
 
 contains
 
-  !> Those of all bodies that have elements.
+  !> Find the contact resultants on all bodies with elements.
   pure function find_body_forces(model, force) result(found)
     type(model_type), intent(in) :: model   !! model
     real(wp), intent(in) :: force(:)        !! [force] [pairs]
@@ -42,7 +42,7 @@ contains
     end associate
   end function find_body_forces
 
-  !> Of forces at the pairs on each body [force] [2, bodies].
+  !> Find the resultants of pair forces on each body [force] [2, bodies].
   pure function resultants(model, force) result(sums)
     type(model_type), intent(in) :: model   !! model
     real(wp), intent(in) :: force(:)        !! [force] [pairs]
@@ -57,7 +57,7 @@ contains
     end do
   end function resultants
 
-  !> What a unit force at each pair adds to one component of the resultant on a body [pairs].
+  !> Find the factor of each pair force in one component of the resultant on a body [pairs].
   pure function shares_of_pairs(model, body, c) result(share)
     type(model_type), intent(in) :: model   !! model
     integer, intent(in) :: body, c          !! the body, the component

@@ -13,33 +13,33 @@ module epcont_result_contact_line
   public :: contact_line, find_contact_line, outer_sides, shares_of_nodes
 
   real(wp), parameter :: &
-    !> An edge belongs to the contact line where it lies within 45 degrees of the tangent, both of a square's
-    !! corner's too.
+    !> An edge belongs to the contact line if it is within 45 degrees of the tangent; at a square's corner
+    !! both edges are.
     along_tangent = sqrt(0.5_wp)*(1.0_wp + 1.0e-6_wp), &
 
-    !> A normal is across a line of symmetry where this part of it, or more, is along the line.
+    !> A line of symmetry is normal to the contact if the normal has at least this part along it.
     along_line = 0.9_wp, &
-    !> A node of the other body is on the same line of symmetry within this part of a side.
+    !> A node of the other body is on the same line of symmetry within this part of an edge.
     beside_line = 1.0e-3_wp, &
 
-    !> A pair of the master stands at the place of one that is nearer than this part of the way from node to
-    !! node.
+    !> A master pair stands at the same point as another pair if their distance is less than this part of the
+    !! distance of nodes.
     close = 0.22_wp
 
   !> The pairs as a line along the boundary.
   type :: contact_line
-    !> Area of each pair: half of its edges, as seen along the normal, times thickness; 0: no edges. A
-    !! pressure on the edges exerts along the normal what it would on that area. [pairs]
+    !> Area of each pair: half of its edges, projected along the normal, times thickness; 0 without edges.
+    !! Pressure times area is the normal force. [pairs]
     real(wp), allocatable :: tributary(:)
-    integer, allocatable :: neighbour(:, :) !! pairs at the other ends of its edges, 0: none [2, pairs]
-    !> Of the area, towards each neighbour; of a middle node not set [2, pairs]
+    integer, allocatable :: neighbour(:, :) !! pairs at the other ends of its edges; 0 if none [2, pairs]
+    !> Parts of the area towards each neighbour; not set for mid-side nodes [2, pairs]
     real(wp), allocatable :: part(:, :)
-    logical, allocatable :: middle(:)       !! the middle node of an edge [pairs]
-    !> Of the boundary at each pair: B, or A where B has no elements [pairs]
+    logical, allocatable :: middle(:)       !! mid-side node of an edge [pairs]
+    !> Boundary node of each pair: B, or A if B has no elements [pairs]
     integer, allocatable :: node(:)
-    real(wp), allocatable :: x(:, :)        !! where that is [length] [2, pairs]
+    real(wp), allocatable :: x(:, :)        !! position of this node [length] [2, pairs]
     logical, allocatable :: mirrored(:)     !! the line ends at the pair, on a line of symmetry [pairs]
-    !> The pairs at each place: those so near to each other that the force is divided between them by chance.
+    !> The pairs at each point: pairs so close that rounding divides the force between them.
     type(incidence) :: at_place
   contains
     procedure :: distance
@@ -128,10 +128,10 @@ contains
     end associate
   end subroutine find_edges
 
-  !> Is a pair, at which its line ends, on a line of symmetry? Its node is held along the boundary there,
-  !! and so is the other body where it ends at the same line, or all over if it is rigid; a body that goes
-  !! on beyond the line is not mirrored. One of the two is held along the boundary alone: one held all over,
-  !! or tied by RBE2, does not tell.
+  !> Is a pair at the end of its line on a line of symmetry? Its node is fixed along the boundary. The other
+  !! body is fixed too at its end on this line, or everywhere if rigid; a body that continues beyond the line
+  !! is not mirrored. One of the two nodes is fixed along the boundary only: a node that is fully fixed, or in
+  !! an RBE2, proves nothing.
   pure logical function is_on_symmetry(model, pair, node, side)
     type(model_type), intent(in) :: model        !! the model
     integer, intent(in) :: pair, node
@@ -159,7 +159,7 @@ contains
     is_on_symmetry = guided .and. (ends .or. rigid)
   end function is_on_symmetry
 
-  !> Is a node held by itself along the boundary, and free across it?
+  !> Is a node fixed along the boundary by a support, and free normal to it?
   pure logical function is_guided(model, along, node)
     type(model_type), intent(in) :: model        !! the model
     integer, intent(in) :: along, node
@@ -167,7 +167,7 @@ contains
     is_guided = model%held(along, node) .and. .not. model%is_held(3 - along, node)
   end function is_guided
 
-  !> Does a side lie along the tangent?
+  !> Is an edge along the tangent?
   pure logical function is_along(model, side, n)
     type(model_type), intent(in) :: model        !! the model
     integer, intent(in) :: side(3)
@@ -178,8 +178,8 @@ contains
     end associate
   end function is_along
 
-  !> The pair of an edge at one of its nodes; of several the one whose normal is closest to that of the edge.
-  !! 0 if there is none.
+  !> Find the pair of an edge at one of its nodes; if there are several, the pair with a normal closest to the
+  !! edge's. 0 if there is no pair.
   pure integer function pair_of_side(work, side, node) result(pair)
     type(survey_type), intent(in) :: work
     integer, intent(in) :: side(3), node   !! 0 if there is no such node
@@ -221,7 +221,7 @@ contains
     associate (model => work%model)
       x = model%x(:, work%line%node(pair))
       if (pair < contact%first_of_master) return
-      ! The entries after that of the node itself.
+      ! weights of the opposite edge
       associate (first => model%row_start(pair) + 1, last => model%row_start(pair + 1) - 1)
         x = -matmul(model%x(:, model%row_node(first:last)), model%row_weight(first:last))
       end associate
@@ -303,11 +303,11 @@ contains
     end do
   end subroutine add_piece
 
-  !> The sides of the outline at a node: nodes at their start, their end, and between or 0, and whose they are
-  !! [4, any].
+  !> Find the edges of the outline at a node: start node, end node, mid-side node (or 0), and element [4,
+  !! any].
   pure function outer_sides(model, node) result(sides)
     type(model_type), intent(in) :: model   !! model
-    integer, intent(in) :: node             !! any
+    integer, intent(in) :: node             !! any node
     integer, allocatable :: sides(:, :)
     integer :: i, k, side(3)
 
@@ -325,7 +325,7 @@ contains
 
   contains
 
-    !> Has another element this side? Few have both of its corners.
+    !> Has another element this edge? Few have both of its corners.
     pure logical function is_shared(side, element)
       integer, intent(in) :: side(:), element
       integer :: i
@@ -341,12 +341,12 @@ contains
     end function is_shared
   end function outer_sides
 
-  !> What a uniform pressure on a side gives to each of its nodes, along a normal or in all, over that
-  !! pressure: their parts of its area [length**2].
+  !> Find the area of an edge that belongs to each of its nodes: nodal forces of a unit pressure, along a
+  !! normal or in total [length**2].
   pure function shares_of_nodes(model, element, side, normal) result(share)
     type(model_type), intent(in) :: model          !! model
-    integer, intent(in) :: element, side(3)        !! the side's, and its nodes
-    real(wp), intent(in), optional :: normal(directions)    !! from where it is seen
+    integer, intent(in) :: element, side(3)        !! of the edge; its nodes
+    real(wp), intent(in), optional :: normal(directions)    !! projection
     real(wp) :: share(3)
     type(edge_point) :: point(edge_point_count)
     real(wp) :: seen
@@ -361,7 +361,7 @@ contains
     end do
   end function shares_of_nodes
 
-  !> Between the places of two pairs [length].
+  !> Distance of two pairs [length].
   pure real(wp) function distance(self, a, b)
     class(contact_line), intent(in) :: self
     integer, intent(in) :: a, b   !! the pairs
@@ -369,8 +369,8 @@ contains
     distance = norm2(self%x(:, a) - self%x(:, b))
   end function distance
 
-  !> Pairs that touch, and those without an area beside them: a corner on the axis of rings, which bears
-  !! nothing that would tell whether it touches. [pairs]
+  !> Which pairs are in contact, or at a corner on the axis between such pairs? Such a corner has no area and
+  !! so no force that shows its state. [pairs]
   pure function in_contact(self, touching) result(within)
     class(contact_line), intent(in) :: self
     logical, intent(in) :: touching(:)   !! [pairs]

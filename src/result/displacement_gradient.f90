@@ -1,5 +1,5 @@
-!> How far displacements are from small: what of the bodies turns or stretches so much that equilibrium and
-!> contact on the undeformed shape are no longer those of the deformed one.
+!> Size of displacement gradients: rotations and stretches so large that equilibrium and contact on the
+!> undeformed shape differ from those on the deformed shape.
 module epcont_result_displacement_gradient
   use epcont_base_kinds, only: wp
   use epcont_model_model, only: model_type
@@ -7,21 +7,20 @@ module epcont_result_displacement_gradient
   private
   public :: gradient_type, find_gradients
 
-  !> Norm of the displacement gradient that is no longer small: a turn by 4 degrees, a stretch by 10 %.
+  !> Norm of a displacement gradient that is not small: a rotation by 4 degrees, a stretch by 10 %.
   real(wp), parameter :: large_gradient = 0.1_wp
-  !> Part of the volume that may be beyond it: at a corner, or at the end of a contact, some element always
-  !! is.
+  !> Part of the volume that may exceed it: at a corner, or at the end of a contact, some element always does.
   real(wp), parameter :: negligible_part = 0.01_wp
 
   type :: gradient_type
-    real(wp) :: part = 0.0_wp         !! of the volume, beyond that; 0 where it is negligible
-    integer :: worst = 0              !! element of the largest
+    real(wp) :: part = 0.0_wp         !! of the volume with large gradients; 0 if negligible
+    integer :: worst = 0              !! element of the largest gradient
     real(wp) :: largest = 0.0_wp
   end type gradient_type
 
 contains
 
-  !> Where gradients are large, and how large the largest is.
+  !> Find large gradients, and the largest.
   pure function find_gradients(model, volume, displacement) result(found)
     type(model_type), intent(in) :: model       !! model
     real(wp), intent(in) :: volume(:)           !! of the integration points [points]
@@ -45,8 +44,8 @@ contains
 
   contains
 
-    !> Norm (Frobenius) of the displacement gradient, by the corners of an element; of rings the stretch
-    !! around, if that is more.
+    !> Norm (Frobenius) of the displacement gradient from the corners of an element; in axisymmetric models
+    !! the hoop strain, if larger.
     pure real(wp) function norm_at(e) result(norm)
       integer, intent(in) :: e
       real(wp) :: p(2), q(2), radius, s(2), t(2)
@@ -54,7 +53,7 @@ contains
 
       n = model%corners(e)
       associate (node => model%connectivity(:n, e), x => model%x, u => displacement)
-        ! In a quadrilateral along its diagonals, in a triangle along two sides: gradient (s t) = (p q).
+        ! From the diagonals of a quadrilateral, or two edges of a triangle: gradient (s t) = (p q).
         t = x(:, node(n - 1)) - x(:, node(max(1, n - 3)))
         q = u(:, node(n - 1)) - u(:, node(max(1, n - 3)))
         s = x(:, node(n)) - x(:, node(n - 2))

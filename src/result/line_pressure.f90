@@ -1,6 +1,5 @@
-!> Contact of two lines seen from both sides: the pressure on the slave line, and on the master line what its
-!> nodes receive, over the boundary that belongs to them. How far one is from the other tells what the two
-!> meshes make of it.
+!> Contact of two lines from both sides: the pressure on the slave line, and the nodal forces on the master
+!> line over the boundary that belongs to each node. Their difference is a measure of mesh error.
 module epcont_result_line_pressure
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: no_area
@@ -12,11 +11,11 @@ module epcont_result_line_pressure
   public :: line_pressure, compare_sides
 
   type :: line_pressure
-    integer :: touching = 0             !! pairs
+    integer :: touching = 0             !! number of pairs
     real(wp) :: force = 0.0_wp          !! sum of their forces [force]
     real(wp) :: on_slave = 0.0_wp       !! largest pressure [stress]
     real(wp) :: on_master = 0.0_wp      !! largest pressure [stress]
-    !> Largest, at a touching pair, as a part of the largest on the slave line
+    !> Largest difference at a pair in contact / largest pressure on the slave line
     real(wp) :: difference = 0.0_wp
   end type line_pressure
 
@@ -28,7 +27,7 @@ contains
     logical, intent(in) :: touching(:)              !! [pairs]
     real(wp), intent(in) :: force(:), pressure(:)   !! [force], [stress] [pairs]
     type(line_pressure), allocatable, intent(out) :: found(:)
-    !> Pressure on the master line less that on the slave line; 0 at an open pair, and at one of no lines
+    !> Pressure on the master line minus pressure on the slave line; 0 at open pairs, and at pairs of CGAPs
     !! [stress] [pairs]
     real(wp), allocatable, intent(out) :: apart(:)
     integer :: c
@@ -45,7 +44,7 @@ contains
       type(line_contact), intent(in) :: contact
       type(line_pressure), intent(out) :: found
       real(wp), intent(inout) :: apart(:)   !! [pairs]
-      !> By the nodes of the master, over their area in the end
+      !> Of the master nodes: area and force, in the end pressure
       real(wp), allocatable :: area(:), received(:)
       integer :: corner(2), first, i, k, last, middle
 
@@ -64,8 +63,7 @@ contains
       end do
       where (area > 0.0_wp) received = received/area
       do i = 1, size(contact%master%element)
-        ! Corners on the axis of rings, which no boundary belongs to, have the pressure of the middle beside
-        ! them.
+        ! Corners on the axis have no boundary; they get the pressure of the mid-side node beside them.
         corner = contact%master%segment(:2, i)
         middle = contact%master%segment(3, i)
         if (middle == 0) cycle
@@ -86,11 +84,11 @@ contains
       end do
     end subroutine compare
 
-    !> The boundary along a line that belongs to each of its nodes: what a pressure of 1 gives to it, 0 where
-    !! that is rounding or curvature [length**2] [nodes from the first to the last of some].
+    !> Find the area of each node of a line: the nodal force of a unit pressure, 0 if that is rounding or
+    !! curvature [length**2] [nodes from the first to the last of some].
     pure subroutine find_areas(line, nodes, area)
       class(boundary_line), intent(in) :: line
-      integer, intent(in) :: nodes(:)   !! that there must be room for
+      integer, intent(in) :: nodes(:)   !! define the range of nodes
       real(wp), allocatable, intent(out) :: area(:)
       real(wp) :: share(3)
       integer :: i, k

@@ -1,6 +1,5 @@
-!> Three-node elements in a material that hardly changes its volume: elastic with Poisson's ratio near one
-!> half, or far beyond yield. They cannot follow and are too stiff; their mean stresses scatter from element
-!> to element.
+!> Locking: three-node elements in a nearly incompressible material (elastic with Poisson's ratio near 0.5, or
+!> far in the plastic range). They are too stiff, and their mean stresses scatter from element to element.
 module epcont_result_locking
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: plane_stress
@@ -9,18 +8,18 @@ module epcont_result_locking
   private
   public :: locking_type, find_locking
 
-  !> Poisson's ratio of the secant body from which on volume hardly changes.
+  !> The material is nearly incompressible from this Poisson's ratio of the secant body on.
   real(wp), parameter, public :: high_poisson = 0.45_wp
 
   type :: locking_type
-    integer :: elements = 0            !! three-node elements beyond that ratio
-    !> Of their mean stress about that of their neighbours, r.m.s. over equivalent stress, r.m.s.
+    integer :: elements = 0            !! number of three-node elements beyond this ratio
+    !> Scatter of their mean stress about that of their neighbours, r.m.s. over equivalent stress, r.m.s.
     real(wp) :: scatter = 0.0_wp
   end type locking_type
 
 contains
 
-  !> How many such elements there are, and how much their mean stress scatters.
+  !> Count these elements, and find the scatter of their mean stress.
   pure function find_locking(model, volume, stress, equivalent_stress, secant_modulus) result(locking)
     type(model_type), intent(in) :: model           !! model
     real(wp), intent(in) :: volume(:)               !! of the integration points [points]

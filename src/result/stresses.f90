@@ -25,9 +25,9 @@ contains
   subroutine recover_stresses(model, linear, applied, answer)
     type(model_type), intent(in) :: model        !! model
     type(linear_problem), intent(in) :: linear     !! of the last solve
-    real(wp), intent(in) :: applied(:, :)        !! nodal forces of loads and pairs [force] [2, nodes]
-    type(answer_type), intent(inout) :: answer   !! its state is given
-    real(wp), allocatable :: force(:, :)   ! that the elements need at the nodes [force] [2, nodes]
+    real(wp), intent(in) :: applied(:, :)        !! nodal forces of loads and contact [force] [2, nodes]
+    type(answer_type), intent(inout) :: answer   !! with its state
+    real(wp), allocatable :: force(:, :)   ! internal forces at the nodes [force] [2, nodes]
     real(wp) :: shortfall
     integer :: c, e, leader, node
 
@@ -63,7 +63,7 @@ contains
 
   contains
 
-    !> Of the force on a freedom that is a sum, to those of its terms that are held.
+    !> Move the force on a dependent DOF to those of its master DOFs that are fixed.
     subroutine add_to_terms(row, force)
       integer, intent(in) :: row
       real(wp), intent(in) :: force
@@ -81,13 +81,13 @@ contains
     end subroutine add_to_terms
   end subroutine recover_stresses
 
-  !> Of one element: means over its points, and the largest stress.
+  !> Find stresses of one element: means over its points, and the largest stress.
   pure subroutine recover_element(model, linear, e, answer, shortfall)
     type(model_type), intent(in) :: model
     type(linear_problem), intent(in) :: linear
     integer, intent(in) :: e
     type(answer_type), intent(inout) :: answer
-    real(wp), intent(inout) :: shortfall   !! the largest part by which (2-4) leaves a stress below the curve
+    real(wp), intent(inout) :: shortfall   !! largest part by which (2-4) leaves a stress below the curve
     type(point_state) :: point
     real(wp) :: mises(most_points), modulus, share, whole
     integer :: p
@@ -110,7 +110,7 @@ contains
         modulus = law%young
         point%total = mises(p - first + 1)/modulus
         if (allocated(answer%point)) point = answer%point(p)
-        if (point%plastic) then   ! the curve's; of several increments stress over strain
+        if (point%plastic) then   ! from the curve; stress over strain if there are several increments
           modulus = 1.0_wp/(1.0_wp/point%modulus + law%shift)
           if (allocated(linear%materials%committed)) modulus = mises(p - first + 1)/point%total
         end if
@@ -127,7 +127,7 @@ contains
     end associate
   end subroutine recover_element
 
-  !> By what part (2-4) leaves a stress below the curve.
+  !> Find the part by which (2-4) leaves a stress below the curve.
   pure real(wp) function below_curve(uniaxial, elastic, point) result(part)
     type(uniaxial_curve), intent(in) :: uniaxial
     type(elasticity), intent(in) :: elastic
@@ -140,17 +140,17 @@ contains
     part = 1.0_wp - point%modulus/on_curve%modulus
   end function below_curve
 
-  !> Where the largest of some stresses is; of equal ones, but for rounding, the first.
+  !> Find the largest of some stresses; if equal up to rounding, the first.
   pure integer function first_largest(stress) result(k)
     real(wp), intent(in) :: stress(:)   !! [stress] [any]
 
     k = findloc(stress >= maxval(stress)*(1.0_wp - least_difference), .true., dim=1)
   end function first_largest
 
-  !> Coordinates of an integration point [length].
+  !> Find the coordinates of an integration point [length].
   pure function place_of_point(model, point) result(x)
     type(model_type), intent(in) :: model   !! model
-    integer, intent(in) :: point            !! by its number
+    integer, intent(in) :: point            !! its number
     real(wp) :: x(directions)
 
     associate (e => model%point_element(point), kind => model%kinds(model%kind(model%point_element(point))))

@@ -1,4 +1,4 @@
-!> Zones in contact: runs of neighbouring pairs that touch, and how wide they are.
+!> Contact zones: runs of neighbouring pairs in contact, and their widths.
 module epcont_result_zones
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
@@ -9,38 +9,39 @@ module epcont_result_zones
   private
   public :: contact_zone, find_zones
 
-  !> A pressure that is not below this part of the largest at an end does not fall towards it: half, which
-  !! pressures that rise evenly may have there, but for rounding.
+  !> The pressure falls towards an end if it is below this part of the largest pressure there: half, minus
+  !! rounding, since a linear pressure may have half.
   real(wp), parameter, public :: falls = 0.5_wp - no_effect
 
-  !> A run of neighbouring pairs that touch.
+  !> A run of neighbouring pairs in contact.
   type :: contact_zone
     integer :: first = 0, last = 0          !! pairs at its ends
     real(wp) :: force = 0.0_wp              !! [force]
     real(wp) :: max_pressure = 0.0_wp       !! [stress]
-    real(wp) :: half_width_pairs = 0.0_wp   !! half of the length between its last pairs [length]
-    real(wp) :: half_width = -1.0_wp        !! to where the pressure vanishes; negative: unknown [length]
+    real(wp) :: half_width_pairs = 0.0_wp   !! half of the distance of its last pairs [length]
+    real(wp) :: half_width = -1.0_wp        !! half of the length between the points of zero pressure;
+                                            !! negative: unknown [length]
     integer, allocatable :: pairs(:)        !! from end to end
-    real(wp), allocatable :: along(:)       !! place of each, from the first on [length] [its pairs]
+    real(wp), allocatable :: along(:)       !! distance of each from the first [length] [its pairs]
     integer, allocatable :: beyond(:)       !! pairs next to those at its ends
-    !> From each end to the first open pair; 0: the end is the last candidate [length]
+    !> Distance from each end to the first open pair; 0 if the end is the last candidate [length]
     real(wp) :: open(2) = 0.0_wp
-    real(wp) :: vanishes(2) = 0.0_wp        !! to where the pressure vanishes, at most up to there [length]
+    real(wp) :: vanishes(2) = 0.0_wp        !! distance to the point of zero pressure, at most `open` [length]
   end type contact_zone
 
 contains
 
-  !> The zones, in the order of their first pairs.
+  !> Find the zones, in the order of their first pairs.
   function find_zones(line, touching, force, pressure) result(zones)
     type(contact_line), intent(in) :: line          !! of the pairs
     logical, intent(in) :: touching(:)              !! the pairs `in_contact` [pairs]
     real(wp), intent(in) :: force(:), pressure(:)   !! [force], [stress] [pairs]
     type(contact_zone), allocatable :: zones(:)
     type(partition) :: sets
-    type(incidence) :: at                         !! each node: the pairs there
+    type(incidence) :: at                         !! pairs at each node
     integer, allocatable :: number(:), start(:)   !! set of each pair; first pair of each zone
     integer, allocatable :: next(:)
-    logical :: met(size(touching))                !! in a run
+    logical :: met(size(touching))                !! already in a run
     integer :: count, k, pair, z
 
     sets = new_partition(size(touching))
@@ -66,14 +67,14 @@ contains
     end do
   end function find_zones
 
-  !> One zone: its pairs from end to end, beginning with the end met first in the deck.
+  !> Find one zone: its pairs from end to end, from the end that comes first in the deck.
   function zone_from(line, touching, pressure, at, number, met, start) result(zone)
     type(contact_line), intent(in) :: line          !! of the pairs
     logical, intent(in) :: touching(:)              !! the pairs `in_contact` [pairs]
     real(wp), intent(in) :: pressure(:)             !! [stress] [pairs]
-    type(incidence), intent(in) :: at               !! each node: the pairs there
+    type(incidence), intent(in) :: at               !! pairs at each node
     integer, intent(in) :: number(:)                !! set of each pair [pairs]
-    logical, intent(inout) :: met(:)                !! in a run [pairs]
+    logical, intent(inout) :: met(:)                !! already in a run [pairs]
     integer, intent(in) :: start
     type(contact_zone) :: zone
     integer, allocatable :: run(:)
@@ -96,7 +97,7 @@ contains
     end do
     call extend(line, touching, pressure, run(n:1:-1), zone%open(1), zone%vanishes(1), falling(1))
     call extend(line, touching, pressure, run, zone%open(2), zone%vanishes(2), falling(2))
-    ! From a line of symmetry on, it is half of the zone.
+    ! a line of symmetry cuts the zone in half
     counts = .not. line%mirrored(run([1, n])) .or. all(line%mirrored(run([1, n])))
     associate (half => merge(0.5_wp, 1.0_wp, all(counts)))
       zone%half_width_pairs = half*zone%along(n)
@@ -105,7 +106,7 @@ contains
     end associate
   end function zone_from
 
-  !> The neighbours of a pair that touch, or those that do not.
+  !> Find the neighbours of a pair that are in contact, or those that are open.
   pure function beside(line, touching, pair, touches) result(next)
     type(contact_line), intent(in) :: line          !! of the pairs
     logical, intent(in) :: touching(:)              !! the pairs `in_contact` [pairs]
@@ -117,13 +118,13 @@ contains
     next = pack(next, touching(next) .eqv. touches)
   end function beside
 
-  !> The touching pairs from `start` as far as they go in one direction, those at one node after each other.
+  !> Find the pairs in contact from `start` on in one direction; pairs at the same node follow each other.
   function run_from(line, touching, at, number, met, start) result(run)
     type(contact_line), intent(in) :: line          !! of the pairs
     logical, intent(in) :: touching(:)              !! the pairs `in_contact` [pairs]
-    type(incidence), intent(in) :: at               !! each node: the pairs there
+    type(incidence), intent(in) :: at               !! pairs at each node
     integer, intent(in) :: number(:)                !! set of each pair [pairs]
-    logical, intent(inout) :: met(:)                !! in a run [pairs]
+    logical, intent(inout) :: met(:)                !! already in a run [pairs]
     integer, intent(in) :: start
     integer, allocatable :: next(:), run(:)
     integer :: found(size(number)), last, n
@@ -144,20 +145,20 @@ contains
     met(run) = .false.
   end function run_from
 
-  !> How far beyond the last pair of a run the pressure vanishes: near the edge p**2 is linear. Not beyond
-  !! the first open pair; not at all where that end is the last candidate, or the pressure does not fall
-  !! towards it.
+  !> Find the distance from the last pair of a run to the point of zero pressure: near the edge p**2 is
+  !! linear. It is at most the distance of the first open pair, and zero if the end is the last candidate or
+  !! the pressure does not fall towards it.
   pure subroutine extend(line, touching, pressure, run, open, vanishes, falling)
     type(contact_line), intent(in) :: line          !! of the pairs
     logical, intent(in) :: touching(:)              !! the pairs `in_contact` [pairs]
     real(wp), intent(in) :: pressure(:)             !! [stress] [pairs]
     integer, intent(in) :: run(:)
-    !> To the first open pair; to where the pressure vanishes [length]
+    !> Distances to the first open pair, and to the point of zero pressure [length]
     real(wp), intent(out) :: open, vanishes
     logical, intent(out) :: falling
     integer, allocatable :: next(:)   !! open pairs
     real(wp) :: drop
-    integer :: before, n   !! the last of the run, and the one at the node before
+    integer :: before, n   !! the last pair of the run, and the pair at the node before
 
     n = size(run)
     before = findloc(line%node(run) /= line%node(run(n)), .true., dim=1, back=.true.)
