@@ -134,7 +134,7 @@ class Walls(Extremes):
         answers = {}
         for rule in ("CONRY", "JOINED"):
             result = answers[rule] = self.valid(re.sub("(?m)^BEGIN BULK.*$", f"BEGIN BULK\nPARAM,RULE,{rule}", text, count=1))
-            self.assertEqual("joined bodies:" in result.listing, rule == "JOINED")
+            self.assertEqual("contact solver JOINED:" in result.listing, rule == "JOINED")
         for name in names:
             self.near(getattr(answers["JOINED"], name), getattr(answers["CONRY"], name), 1e-9)
         return answers["JOINED"]

@@ -187,7 +187,7 @@ class LoadCases(unittest.TestCase):
 
     def test_wanted_accuracy(self):
         """Of all cases the worst is named."""
-        for accuracy, words in (("0.1", "0.1000, worst in SUBCASE 1: not reached: the error of the mesh is estimated at 1.7E-01"),
+        for accuracy, words in (("0.1", "0.1000, worst in SUBCASE 1: not reached: the estimated mesh error is 1.7E-01"),
                                 ("0.5", "0.5000, reached in all")):
             deck = of_factors(INPUT / "hertz/hertz44_elastic.dat", [0.5, 1.0, 0.25], param=f"PARAM,ACCURACY,{accuracy}\n")
             last = run(deck)[1]["listing"].decode().splitlines()[-1]
