@@ -69,7 +69,8 @@ contains
         outcome%status = error%status
         outcome%sentence = in_array_words(error%message)
       else
-        solution%model%pair_id = [(k, k=1, solution%model%pairs)]   ! those of lines have numbers of nodes
+        ! those of lines have numbers of nodes
+        solution%model%contact%pair_id = [(k, k=1, solution%model%contact%pairs)]
         outcome = judge(solution)
         outcome%sentence = in_array_words(outcome%sentence)
         outcome%has_answer = outcome%has_answer .and. solution%answer%carried

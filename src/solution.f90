@@ -15,7 +15,7 @@ module epcont_solution
   use epcont_flexibility_flexibility, only: pair_forces
   use epcont_linear_linear_problem, only: linear_problem
   use epcont_model_controls, only: method_newton
-  use epcont_model_model, only: line_contact
+  use epcont_model_contact_rows, only: line_contact
   use epcont_plan_forecast, only: check_memory
   use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_plan_planned_model, only: planned_model
@@ -107,7 +107,7 @@ contains
     end do
     if (self%answer%failed_body == 0 .and. self%answer%contact%state == contact_solved) &
       call self%assess_answer(watch)
-    self%verdict = find_verdict(self%answer, self%certificate, self%model%contact_is_off)
+    self%verdict = find_verdict(self%answer, self%certificate, self%model%contact%contact_is_off)
     if (.not. self%kept%another) call self%kept%forget()
     if (allocated(self%kept%virgin) .and. allocated(self%kept%linear)) deallocate (self%kept%linear)
   end subroutine solve
@@ -319,7 +319,8 @@ contains
       if (kept%linear%materials%yields .and. .not. allocated(answer%point)) &
         answer%point = kept%linear%materials%states(answer%strain)
       associate (force => answer%contact%force, volume => kept%linear%operator%volume)
-        call recover_stresses(model, kept%linear, answer%load_factor*model%load + pair_forces(model, force), &
+        call recover_stresses(model, kept%linear, &
+                              answer%load_factor*model%loads%load + pair_forces(model, force), &
                               answer)
         answer%locking = find_locking(model, volume, answer%stress, answer%equivalent_stress, &
             answer%secant_modulus)

@@ -88,17 +88,17 @@ contains
       call find_unit_loads(scene, linear, answer, kept%loads, same)
     else
       kept%loads = none%loads
-      allocate (kept%loads%contact%force(scene%model%pairs, 0), kept%loads%contact%unit(0))
+      allocate (kept%loads%contact%force(scene%model%contact%pairs, 0), kept%loads%contact%unit(0))
     end if
     if (.not. same) then
       if (allocated(kept%field)) deallocate (kept%field)
-      allocate (kept%field(scene%model%bodies))
+      allocate (kept%field(scene%model%mesh%bodies))
     end if
     motions = scene%motions%count
     accuracy%point_load = find_point_loads(scene)
     allocate (accuracy%approach(motions), source=-1.0_wp)
     allocate (accuracy%body_force(directions, size(answer%bodies)), source=-1.0_wp)
-    allocate (accuracy%approach_unbounded(motions), accuracy%weak(scene%model%pairs), source=.false.)
+    allocate (accuracy%approach_unbounded(motions), accuracy%weak(scene%model%contact%pairs), source=.false.)
     allocate (accuracy%zone(0))
     call accuracy%assess_mesh(scene, linear, kept, answer, field)
     if (answer%condition < huge(1.0_wp)) call linear%estimate_condition(answer%condition)
@@ -158,9 +158,9 @@ contains
     real(wp), intent(in) :: load_factor            !! factor of the temperatures
 
     energy = 0.0_wp
-    if (allocated(scene%model%free_strain)) &
-      energy = sum(linear%operator%volume*scene%model%young(linear%materials%of_point)* &
-                   (load_factor*scene%model%free_strain)**2)
+    if (allocated(scene%model%loads%free_strain)) &
+      energy = sum(linear%operator%volume*scene%model%sections%young(linear%materials%of_point)* &
+                   (load_factor*scene%model%loads%free_strain)**2)
   end function held_energy
 
   !> Estimate the errors of the largest pressures and half-widths.
@@ -237,8 +237,8 @@ contains
     type(unit_loads), intent(in) :: loads          !! of this load case
     type(answer_type), intent(in) :: answer        !! of the last solve
     real(wp), intent(in) :: off(:)   !! errors of sums, from errors of gaps [force] [any]
-    real(wp) :: turned, turned_on(directions, scene%model%bodies)
-    logical :: given(directions, scene%model%bodies)
+    real(wp) :: turned, turned_on(directions, scene%model%mesh%bodies)
+    logical :: given(directions, scene%model%mesh%bodies)
     integer :: c, i
 
     given = .false.
@@ -261,25 +261,26 @@ contains
   pure function find_point_loads(scene) result(is_one)
     type(planned_model), intent(in) :: scene       !! solved model
     logical :: is_one(scene%motions%count)
-    real(wp) :: on_body(directions, scene%model%bodies), own(directions, scene%model%nodes)
-    integer :: c, followers(directions, scene%model%nodes), i, j
+    real(wp) :: on_body(directions, scene%model%mesh%bodies), own(directions, scene%model%mesh%nodes)
+    integer :: c, followers(directions, scene%model%mesh%nodes), i, j
 
     on_body = 0.0_wp
     followers = 0
     associate (model => scene%model)
-      own = model%load
-      if (allocated(model%body_force)) own = own - model%body_force   ! mass forces do not act on single nodes
-      do i = 1, model%nodes
-        on_body(:, model%body(i)) = on_body(:, model%body(i)) + abs(model%load(:, i))
+      own = model%loads%load
+      ! mass forces do not act on single nodes
+      if (allocated(model%loads%body_force)) own = own - model%loads%body_force
+      do i = 1, model%mesh%nodes
+        on_body(:, model%mesh%body(i)) = on_body(:, model%mesh%body(i)) + abs(model%loads%load(:, i))
         do c = 1, directions
-          followers(c, model%leader(c, i)) = followers(c, model%leader(c, i)) + 1
+          followers(c, model%constraints%leader(c, i)) = followers(c, model%constraints%leader(c, i)) + 1
         end do
       end do
       do j = 1, size(is_one)
         associate (node => scene%motions%node(j), c => scene%motions%component(j))
           is_one(j) = .false.
           if (c == angle) cycle
-          is_one(j) = abs(own(c, node)) > concentrated*on_body(c, model%body(node)) .and. &
+          is_one(j) = abs(own(c, node)) > concentrated*on_body(c, model%mesh%body(node)) .and. &
                       followers(c, node) == 1 .and. first_element(model, node) > 0
         end associate
       end do
@@ -292,7 +293,7 @@ contains
     type(planned_model), intent(in) :: scene       !! solved model
     type(patch_table), intent(in) :: table         !! of its elements
     logical, intent(in) :: point_load(:)           !! [motions]
-    logical :: beside(scene%model%elements)
+    logical :: beside(scene%model%mesh%elements)
     integer, allocatable :: patch(:)
     integer :: j
 
@@ -312,7 +313,7 @@ contains
     type(contact_line), intent(in) :: line         !! of its pairs
     type(answer_type), intent(in) :: answer        !! of the last solve
     logical, allocatable :: weak(:)
-    real(wp) :: off(scene%model%pairs)   !! error of the pressure [stress]
+    real(wp) :: off(scene%model%contact%pairs)   !! error of the pressure [stress]
     real(wp), allocatable :: compliance(:)
     integer :: k, z
 

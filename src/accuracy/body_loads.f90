@@ -156,16 +156,17 @@ contains
     type(force_fields), intent(out) :: loads
     integer :: c, i, k, n
 
-    n = sum(model%row_start(pair + 1) - model%row_start(pair))
+    n = sum(model%contact%row_start(pair + 1) - model%contact%row_start(pair))
     allocate (loads%node(n), loads%force(directions, size(batch%force, 2), n))
     n = 0
     do k = 1, size(pair)
-      do i = model%row_start(pair(k)), model%row_start(pair(k) + 1) - 1
-        if (model%body(model%row_node(i)) /= b) cycle
+      do i = model%contact%row_start(pair(k)), model%contact%row_start(pair(k) + 1) - 1
+        if (model%mesh%body(model%contact%row_node(i)) /= b) cycle
         n = n + 1
-        loads%node(n) = model%row_node(i)
+        loads%node(n) = model%contact%row_node(i)
         do c = 1, directions
-          loads%force(c, :, n) = model%row_weight(i)*model%normal(c, pair(k))*batch%force(k, :)
+          loads%force(c, :, n) = model%contact%row_weight(i)*model%contact%normal(c, pair(k))*batch%force(k, &
+            :)
         end do
       end do
     end do

@@ -91,13 +91,13 @@ contains
     work%answer => answer
     work%table => table
     work%unit_loads => unit_loads
-    allocate (field%smooth(components, table%places), field%element(scene%model%elements), &
+    allocate (field%smooth(components, table%places), field%element(scene%model%mesh%elements), &
               field%missing(size(unit_loads%unit)), source=0.0_wp)
-    pairs = new_incidence(scene%model%bodies_of_pairs(), scene%model%bodies)
+    pairs = new_incidence(scene%model%bodies_of_pairs(), scene%model%mesh%bodies)
     allocate (work%total(4, size(unit_loads%unit)), source=0.0_wp)
     kept = 0.0_wp
-    elements = scene%model%elements_of_bodies()
-    do b = 1, scene%model%bodies
+    elements = scene%model%mesh%elements_of_bodies()
+    do b = 1, scene%model%mesh%bodies
       work%b = b
       work%element = elements%of(b)
       if (size(work%element) == 0) cycle
@@ -204,7 +204,7 @@ contains
     integer :: i
 
     do i = 1, size(element)
-      associate (e => element(i), kind => work%scene%model%kinds(work%scene%model%kind(element(i))))
+      associate (e => element(i), kind => work%scene%model%mesh%kinds(work%scene%model%mesh%kind(element(i))))
         if (kind%points == 1) then
           call find_strains(work, e, fields, sample(1, work%samples%before(e) + 1))
         else if (kind%degree == 1) then
@@ -232,8 +232,9 @@ contains
 
     errors = new_element_errors(size(work%now%u, 2))
     do i = 1, size(element)
-      associate (e => element(i), kind => work%scene%model%kinds(work%scene%model%kind(element(i))), &
-                 first => work%scene%model%first_point(element(i)))
+      associate (e => element(i), &
+                 kind => work%scene%model%mesh%kinds(work%scene%model%mesh%kind(element(i))), &
+                 first => work%scene%model%mesh%first_point(element(i)))
         if (kind%points == 1) then
           strain(:, 1) = sample(:, work%samples%before(e) + 1)
         else
@@ -243,7 +244,7 @@ contains
         call errors%find_stress(kind, work%linear%materials, first, work%answer%point)
         field%element(e) = errors%energy(0)
         if (size(work%now%u, 2) > 0) call sums%add(errors, &
-            work%linear%materials%section(work%scene%model%section(e)))
+            work%linear%materials%section(work%scene%model%mesh%section(e)))
       end associate
     end do
   end subroutine compare_elements
@@ -254,7 +255,7 @@ contains
     integer, intent(in) :: e
     integer :: own(most_nodes), k
 
-    do k = 1, work%scene%model%node_count(e)
+    do k = 1, work%scene%model%mesh%node_count(e)
       own(k) = work%table%own(work%table%place(k, e))
     end do
   end function places_of
@@ -266,8 +267,8 @@ contains
     real(wp), intent(inout) :: strain(components*(1 + size(work%now%u, 2)), *)   !! at its points
     integer :: p
 
-    do p = work%scene%model%first_point(e), work%scene%model%first_point(e + 1) - 1
-      strain(:components, p - work%scene%model%first_point(e) + 1) = work%answer%strain(:, p)
+    do p = work%scene%model%mesh%first_point(e), work%scene%model%mesh%first_point(e + 1) - 1
+      strain(:components, p - work%scene%model%mesh%first_point(e) + 1) = work%answer%strain(:, p)
     end do
     call work%linear%operator%add_fields(work%scene%model, e, places_of(work, e), fields, work%now%u, strain)
   end subroutine find_strains
@@ -280,7 +281,8 @@ contains
     integer :: p
 
     strain(:components) = 0.0_wp
-    associate (first => work%scene%model%first_point(e), last => work%scene%model%first_point(e + 1) - 1, &
+    associate (first => work%scene%model%mesh%first_point(e), &
+               last => work%scene%model%mesh%first_point(e + 1) - 1, &
                volume => work%linear%operator%volume)
       do p = first, last
         strain(:components) = strain(:components) + volume(p)/sum(volume(first:last))*work%answer%strain(:, p)

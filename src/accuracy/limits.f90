@@ -54,7 +54,7 @@ contains
     mirror = nowhere
     ends = [zone%first, zone%last]
     do k = 1, 2
-      across = merge(1, 2, abs(model%normal(2, ends(k))) > abs(model%normal(1, ends(k))))
+      across = merge(1, 2, abs(model%contact%normal(2, ends(k))) > abs(model%contact%normal(1, ends(k))))
       if (line%mirrored(ends(k))) mirror(across, k) = line%x(across, ends(k))
     end do
     ! a corner on the axis carries no force by itself
@@ -63,10 +63,11 @@ contains
       associate (pair => within(k), least => tip_matters*largest*line%compliance(within(k)))
         if (least <= 0.0_wp) cycle
         if (gap_bends(pair, least)) return
-        if (pair <= model%single_pairs()) cycle   ! their gap shows any bend
-        do i = model%row_start(pair) + 1, model%row_start(pair + 1) - 1
-          if (abs(model%row_weight(i)) < least_weight) cycle
-          if (outline_bends(model%row_node(i), least) .and. .not. is_flush(model%row_node(i))) return
+        if (pair <= model%contact%single_pairs()) cycle   ! their gap shows any bend
+        do i = model%contact%row_start(pair) + 1, model%contact%row_start(pair + 1) - 1
+          if (abs(model%contact%row_weight(i)) < least_weight) cycle
+          if (outline_bends(model%contact%row_node(i), least) .and. &
+              .not. is_flush(model%contact%row_node(i))) return
         end do
       end associate
     end do
@@ -127,7 +128,7 @@ contains
       here = turn_at(model, node, nowhere)
       is_flush = here%angle > corner .and. &
                  any([(corner_inside(model, line%node(ends(k))) > 0.0_wp .and. &
-                       norm2(line%x(:, ends(k)) - model%x(:, node)) <= flush*here%reach, k=1, 2)])
+                       norm2(line%x(:, ends(k)) - model%mesh%x(:, node)) <= flush*here%reach, k=1, 2)])
     end function is_flush
   end function has_tip
 
@@ -150,9 +151,9 @@ contains
       end associate
     end do
     if (any(turn%beside == 0)) return
-    turn%reach = norm2(model%x(:, turn%beside(1)) - model%x(:, turn%beside(2)))
-    piece(:, 1) = model%x(:, node) - model%x(:, turn%beside(1))
-    piece(:, 2) = model%x(:, turn%beside(2)) - model%x(:, node)
+    turn%reach = norm2(model%mesh%x(:, turn%beside(1)) - model%mesh%x(:, turn%beside(2)))
+    piece(:, 1) = model%mesh%x(:, node) - model%mesh%x(:, turn%beside(1))
+    piece(:, 2) = model%mesh%x(:, turn%beside(2)) - model%mesh%x(:, node)
     do c = 1, 2
       do k = 1, 2
         if (turn%beside(k) == 0) cycle
@@ -172,8 +173,8 @@ contains
       integer, intent(in) :: c   !! direction normal to the line
       integer, intent(in) :: other
 
-      associate (x => model%x(c, [node, other]), held => model%held(:, [node, other]), &
-                 near => coincident*norm2(model%x(:, node) - model%x(:, other)))
+      associate (x => model%mesh%x(c, [node, other]), held => model%constraints%held(:, [node, other]), &
+                 near => coincident*norm2(model%mesh%x(:, node) - model%mesh%x(:, other)))
         along_symmetry = any(abs(mirror(c, :) - x(1)) <= near .and. abs(mirror(c, :) - x(2)) <= near)
         if (abs(x(1) - x(2)) > near) return
         along_symmetry = along_symmetry .or. all(held(c, :)) .and. .not. any(held(3 - c, :)) &
@@ -196,11 +197,12 @@ contains
 
     inside = 0.0_wp
     rigid = .true.
-    do i = model%row_start(pair), model%row_start(pair + 1) - 1
-      associate (node => model%row_node(i))
-        if (abs(model%row_weight(i)) < least_weight) cycle
+    do i = model%contact%row_start(pair), model%contact%row_start(pair + 1) - 1
+      associate (node => model%contact%row_node(i))
+        if (abs(model%contact%row_weight(i)) < least_weight) cycle
         side = merge(1, 2, node == line%node(pair))
-        if (side == 2) rigid = rigid .and. (size(model%around%of(node)) == 0 .or. all(model%held(:, node)))
+        if (side == 2) rigid = rigid .and. (size(model%mesh%around%of(node)) == 0 .or. &
+                                            all(model%constraints%held(:, node)))
         inside(side) = max(inside(side), corner_inside(model, node))
       end associate
     end do

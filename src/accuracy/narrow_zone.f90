@@ -64,10 +64,10 @@ contains
 
       force_of_depth = 0.0_wp
       do k = 1, 2
-        node = model%pair_node(k, zone%peak)
+        node = model%contact%pair_node(k, zone%peak)
         element = first_element(model, node)
         if (element == 0) cycle
-        depth = model%depth(element, model%x(1, node))
+        depth = model%depth(element, model%mesh%x(1, node))
         if (depth > 0.0_wp) force_of_depth = force(zone%peak)/depth
       end do
     end function force_of_depth
@@ -108,11 +108,11 @@ contains
         beside = pack(line%neighbour(:, k), line%neighbour(:, k) > 0)
         aside = maxval([0.0_wp, (0.5_wp*line%distance(k, beside(i))/bearing(zones(z)), i=1, size(beside))])
         do i = 1, 2   ! A is pushed against the normal, B along it
-          body = model%body(model%pair_node(i, k))
+          body = model%mesh%body(model%contact%pair_node(i, k))
           do m = motions%first(body), motions%first(body + 1) - 1
             if (answer%contact%motion_free(m)) cycle   ! undetermined mode
             load(m, z) = load(m, z) + (2*i - 3)*sum(force(pairs))*aside/motions%parts%extent(body) &
-                         *motions%turn(model%pair_node(i, k), m)
+                         *motions%turn(model%contact%pair_node(i, k), m)
           end do
         end do
       end associate
@@ -132,13 +132,13 @@ contains
     logical, intent(in) :: given(:, :)
     real(wp), intent(out) :: total                      !! change of the total contact force [force]
     !> Change of the resultant on each body [force]
-    real(wp), intent(out) :: of_body(directions, model%bodies)
+    real(wp), intent(out) :: of_body(directions, model%mesh%bodies)
     real(wp) :: along, least, more
     real(wp), dimension(directions) :: change, own, on
-    real(wp), dimension(directions, model%bodies) :: lean, resultant
+    real(wp), dimension(directions, model%mesh%bodies) :: lean, resultant
     logical :: is_narrow
     integer :: b, body(2), i, k, z
-    real(wp) :: smooth_normal(directions, model%pairs)
+    real(wp) :: smooth_normal(directions, model%contact%pairs)
 
     smooth_normal = smooth_normals(model)
     total = 0.0_wp
@@ -152,19 +152,21 @@ contains
         is_narrow = bearing_pairs(model, force(pairs)) <= narrow
         do i = 1, size(pairs)
           k = pairs(i)
-          body = model%body(model%pair_node(:, k))
+          body = model%mesh%body(model%contact%pair_node(:, k))
           own = -smooth_normal(:, k)
           on = kept(resultant(:, body), given(:, body) .and. abs(resultant(:, body)) > least)
           ! The contacts of an axisymmetric body that can move along its axis may balance each other: each
           ! pair keeps its axial force.
-          if (model%has_rings() .and. any(given(2, body)) .and. force(k)*abs(model%normal(2, k)) > least) &
-            on = [0.0_wp, force(k)*model%normal(2, k)]
+          if (model%has_rings() .and. any(given(2, body)) .and. &
+              force(k)*abs(model%contact%normal(2, k)) > least) &
+            on = [0.0_wp, force(k)*model%contact%normal(2, k)]
           if (all(own == 0.0_wp) .or. norm2(on) <= least) cycle
           ! The pair keeps its force along `on`, if it has any.
           along = 0.0_wp
           if (is_narrow .or. abs(dot_product(on, own)) >= bears_on*norm2(on)) &
-            along = excess(dot_product(on, model%normal(:, k)), dot_product(on, own), no_effect*norm2(on))
-          change = (1.0_wp + along)*own - model%normal(:, k)
+            along = excess(dot_product(on, model%contact%normal(:, k)), dot_product(on, own), &
+                           no_effect*norm2(on))
+          change = (1.0_wp + along)*own - model%contact%normal(:, k)
           if (is_narrow) total = total + askew*force(k)*abs(along)
           if (.not. is_narrow) more = more + force(k)*along
           do b = 1, 2   ! A is pushed against the normal, B along it
@@ -189,21 +191,21 @@ contains
       real(wp) :: way
       integer, allocatable :: pairs(:)
       integer :: bodies(4)                !! of the pair and of the strongest pair
-      integer :: strongest(model%pairs)   !! strongest pair at the point of each pair
+      integer :: strongest(model%contact%pairs)   !! strongest pair at the point of each pair
 
       associate (force => answer%contact%force)
         do k = 1, size(line%at_place%start) - 1
           pairs = line%at_place%of(k)
           strongest(pairs) = pairs(maxloc(force(pairs), dim=1))
         end do
-        do k = 1, model%pairs
+        do k = 1, model%contact%pairs
           if (force(k) <= 0.0_wp .or. strongest(k) == k) cycle
-          body = model%body(model%pair_node(:, k))
+          body = model%mesh%body(model%contact%pair_node(:, k))
           ! The normal is opposite if the pairs stand on different lines.
-          way = merge(1.0_wp, -1.0_wp, any(model%body(model%pair_node(:, strongest(k))) == body))
-          change = force(k)*abs(model%normal(:, k) - way*model%normal(:, strongest(k)))
+          way = merge(1.0_wp, -1.0_wp, any(model%mesh%body(model%contact%pair_node(:, strongest(k))) == body))
+          change = force(k)*abs(model%contact%normal(:, k) - way*model%contact%normal(:, strongest(k)))
           total = total + norm2(change)
-          bodies = model%body([model%pair_node(:, [k, strongest(k)])])
+          bodies = model%mesh%body([model%contact%pair_node(:, [k, strongest(k)])])
           do b = 1, size(bodies)
             if (all(bodies(:b - 1) /= bodies(b))) of_body(:, bodies(b)) = of_body(:, bodies(b)) + change
           end do
@@ -237,15 +239,16 @@ contains
   !! without lines [directions, pairs].
   function smooth_normals(model) result(normal)
     type(model_type), intent(in) :: model
-    real(wp) :: normal(directions, model%pairs)
-    integer :: place(2, model%nodes)   ! of a node in the current line: as end of which edge; 0 if it is not
+    real(wp) :: normal(directions, model%contact%pairs)
+    ! of a node in the current line: as end of which edge; 0 if it is not
+    integer :: place(2, model%mesh%nodes)
                                        ! there
     integer :: c
 
     normal = 0.0_wp
     place = 0
-    do c = 1, size(model%line_contact)
-      associate (contact => model%line_contact(c))
+    do c = 1, size(model%contact%line_contact)
+      associate (contact => model%contact%line_contact(c))
         call take_normals(contact%slave, contact%first, min(contact%first_of_master - 1, contact%last))
         call take_normals(contact%master, max(contact%first_of_master, contact%first), contact%last)
       end associate
@@ -266,7 +269,7 @@ contains
         end do
       end do
       do pair = first, last
-        associate (at => place(:, model%pair_node(2, pair)))
+        associate (at => place(:, model%contact%pair_node(2, pair)))
           if (at(1) == 0) cycle
           if (at(1) < 3) then
             if (line%corner(at(1), at(2))) cycle

@@ -29,23 +29,23 @@ contains
   function new_patch_table(model) result(table)
     type(model_type), intent(in) :: model   !! model
     type(patch_table) :: table
-    logical :: free(0:model%nodes)   ! on an outline
+    logical :: free(0:model%mesh%nodes)   ! on an outline
     integer :: p
 
     call split_places(table%place, table%node)
     table%places = size(table%node)
-    if (table%places == model%nodes) then
-      table%around = model%around
+    if (table%places == model%mesh%nodes) then
+      table%around = model%mesh%around
     else
       table%around = new_incidence(table%place, table%places)
     end if
     free = .false.
-    free([model%body_outline%node]) = .true.
-    associate (full => model%around%start, own => table%around%start, node => table%node)
+    free([model%mesh%body_outline%node]) = .true.
+    associate (full => model%mesh%around%start, own => table%around%start, node => table%node)
       table%inside = [(.not. free(node(p)) .and. own(p + 1) - own(p) == full(node(p) + 1) - full(node(p)), &
                        p=1, table%places)]
     end associate
-    table%of_body = new_incidence(reshape(model%body(table%node), [1, table%places]), model%bodies)
+    table%of_body = new_incidence(reshape(model%mesh%body(table%node), [1, table%places]), model%mesh%bodies)
     call number_own()
 
   contains
@@ -55,7 +55,7 @@ contains
       integer :: b, k
 
       allocate (table%own(table%places))
-      do b = 1, model%bodies
+      do b = 1, model%mesh%bodies
         associate (first => table%of_body%start(b))
           do k = first, table%of_body%start(b + 1) - 1
             table%own(table%of_body%group(k)) = k - first + 1
@@ -71,21 +71,21 @@ contains
       integer, allocatable :: next(:), section(:)   !! of each point: next point of its node, its section
       integer :: at, e, k, places
 
-      place = model%connectivity
-      node = [(k, k=1, model%nodes)]
-      if (all(model%section == model%section(1))) return
+      place = model%mesh%connectivity
+      node = [(k, k=1, model%mesh%nodes)]
+      if (all(model%mesh%section == model%mesh%section(1))) return
       node = [node, spread(0, 1, size(place))]
       allocate (next(size(node)), source=0)
-      places = model%nodes
-      section = [(minval(model%section(model%around%of(k))), k=1, places), node(places + 1:)]
-      do e = 1, model%elements
-        do k = 1, model%node_count(e)
+      places = model%mesh%nodes
+      section = [(minval(model%mesh%section(model%mesh%around%of(k))), k=1, places), node(places + 1:)]
+      do e = 1, model%mesh%elements
+        do k = 1, model%mesh%node_count(e)
           at = place(k, e)
-          do while (section(at) /= model%section(e))
+          do while (section(at) /= model%mesh%section(e))
             if (next(at) == 0) then
               places = places + 1
               next(at) = places
-              section(places) = model%section(e)
+              section(places) = model%mesh%section(e)
               node(places) = place(k, e)
             end if
             at = next(at)
@@ -110,7 +110,7 @@ contains
       allocate (found(most_at_first))
       count = 0
       do i = start(place), start(place + 1) - 1
-        do k = 1, model%corners(group(i))
+        do k = 1, model%mesh%corners(group(i))
           associate (corner => table%place(k, group(i)))
             do j = start(corner), start(corner + 1) - 1
               if (any(found(:count) == group(j))) cycle

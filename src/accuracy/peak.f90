@@ -78,7 +78,7 @@ contains
 
     above = 0.0_wp
     associate (first => lbound(seen%row, 2), last => ubound(seen%row, 2))
-      side = model%kinds(seen%kind)%degree
+      side = model%mesh%kinds(seen%kind)%degree
       do k = max(seen%peak - side*beside_peak, first + side + 1), min(seen%peak + side*beside_peak, &
           last - side - 1)
         associate (x => seen%row(1, k - side:k + side:side), y => seen%row(2, k - side:k + side:side))

@@ -51,11 +51,12 @@ contains
     integer :: i, last
 
     samples%element = element
-    if (.not. allocated(samples%before)) allocate (samples%before(model%elements))   ! once for all bodies
+    ! once for all bodies
+    if (.not. allocated(samples%before)) allocate (samples%before(model%mesh%elements))
     last = 0
     do i = 1, size(element)
       samples%before(element(i)) = last
-      last = last + model%kinds(model%kind(element(i)))%samples
+      last = last + model%mesh%kinds(model%mesh%kind(element(i)))%samples
     end do
     if (allocated(samples%x)) deallocate (samples%x)
     allocate (samples%x(2, last))
@@ -72,16 +73,17 @@ contains
       integer, intent(in) :: e
       integer :: k
 
-      associate (node => model%connectivity(:model%node_count(e), e), kind => model%kinds(model%kind(e)), &
+      associate (node => model%mesh%connectivity(:model%mesh%node_count(e), e), &
+                 kind => model%mesh%kinds(model%mesh%kind(e)), &
                  before => samples%before(e))
         if (kind%degree > 1) then
           do k = 1, kind%samples
-            samples%x(:, before + k) = matmul(model%x(:, node), kind%sample_values(:kind%nodes, k))
+            samples%x(:, before + k) = matmul(model%mesh%x(:, node), kind%sample_values(:kind%nodes, k))
           end do
         else
           samples%x(:, before + 1) = 0.0_wp
           do k = 1, kind%nodes   ! intrinsic `sum` copies the sections: several times as long
-            samples%x(:, before + 1) = samples%x(:, before + 1) + model%x(:, node(k))
+            samples%x(:, before + 1) = samples%x(:, before + 1) + model%mesh%x(:, node(k))
           end do
           samples%x(:, before + 1) = samples%x(:, before + 1)/kind%nodes
         end if
@@ -152,7 +154,7 @@ contains
     if (.not. work%any_curved) return
     do j = 1, size(samples%element)
       e = samples%element(j)
-      do k = work%model%corners(e) + 1, work%model%node_count(e)
+      do k = work%model%mesh%corners(e) + 1, work%model%mesh%node_count(e)
         work%fits(work%table%own(work%table%place(k, e))) = 0
       end do
     end do
@@ -166,7 +168,7 @@ contains
 
     has_curved = .false.
     do k = 1, size(elements)
-      has_curved = has_curved .or. work%model%kinds(work%model%kind(elements(k)))%degree > 1
+      has_curved = has_curved .or. work%model%mesh%kinds(work%model%mesh%kind(elements(k)))%degree > 1
     end do
   end function has_curved
 
@@ -208,7 +210,7 @@ contains
     if (curved) then
       call fit_quadratic(work, samples, strain, smooth, i, patch)
     else
-      associate (x => work%model%x(:, work%table%node(work%places(i))))
+      associate (x => work%model%mesh%x(:, work%table%node(work%places(i))))
         call fit_linear(work, samples, strain, patch, x(1), x(2), smooth(:, :work%fields, i))
       end associate
     end if
@@ -274,7 +276,7 @@ contains
     integer :: e, j, k, n, p, s
 
     p = work%places(i)
-    centre = work%model%x(:, work%table%node(p))
+    centre = work%model%mesh%x(:, work%table%node(p))
     reach = 0.0_wp
     n = 0
     do k = 1, size(patch)   ! treat all samples and directions alike, so that rotated models give rotated
@@ -302,10 +304,10 @@ contains
     smooth(:, :work%fields, i) = coefficient(:, :, 1)
     do j = work%table%around%start(p), work%table%around%start(p + 1) - 1
       e = work%table%around%group(j)
-      associate (place => work%table%place(:, e), corners => work%model%corners(e))
-        do k = corners + 1, work%model%node_count(e)
+      associate (place => work%table%place(:, e), corners => work%model%mesh%corners(e))
+        do k = corners + 1, work%model%mesh%node_count(e)
           if (place(k - corners) /= p .and. place(mod(k - corners, corners) + 1) /= p) cycle
-          term = terms((work%model%x(:, work%table%node(place(k))) - centre)/reach)
+          term = terms((work%model%mesh%x(:, work%table%node(place(k))) - centre)/reach)
           associate (own => work%table%own(place(k)))
             do n = 1, quadratic
               smooth(:, :work%fields, own) = smooth(:, :work%fields, own) + coefficient(:, :, n)*term(n)
@@ -322,7 +324,7 @@ contains
     type(recovery_type), intent(in) :: work
     integer, intent(in) :: element
 
-    samples_of = work%model%kinds(work%model%kind(element))%samples
+    samples_of = work%model%mesh%kinds(work%model%mesh%kind(element))%samples
   end function samples_of
 
   !> Terms of a quadratic polynomial at a point.

@@ -48,8 +48,8 @@ contains
 
     surface%contact_line = line
     surface%smooth_pressure = smooth_pressure
-    surface%compliance = [(surface_compliance(model, k), k=1, model%pairs)]
-    associate (bends => reshape([(bend_at(k), k=1, model%pairs)], [2, model%pairs]))
+    surface%compliance = [(surface_compliance(model, k), k=1, model%contact%pairs)]
+    associate (bends => reshape([(bend_at(k), k=1, model%contact%pairs)], [2, model%contact%pairs]))
       surface%bend = bends(1, :)
       surface%curvature = bends(2, :)
     end associate
@@ -69,7 +69,7 @@ contains
           if (other == 0) cycle
           long(k) = line%distance(other, pair)
           if (long(k) == 0.0_wp) cycle   ! two pairs at a joint have one point
-          slope(k) = (model%initial_gap(other) - model%initial_gap(pair))/long(k)
+          slope(k) = (model%contact%initial_gap(other) - model%contact%initial_gap(pair))/long(k)
         end associate
       end do
       if (any(long == 0.0_wp)) then
@@ -100,9 +100,10 @@ contains
     integer, allocatable :: there(:)
 
     element = 0
-    there = model%around%of(node)
+    there = model%mesh%around%of(node)
     if (size(there) > 0) &
-      element = there(minloc(model%section(there)*size(model%kinds) + model%kind(there), dim=1))
+      element = there(minloc(model%mesh%section(there)*size(model%mesh%kinds) + model%mesh%kind(there), &
+                             dim=1))
   end function first_element
 
   !> Find the elements that determine the compliance at a node: those with the section of the first. Empty if
@@ -113,12 +114,13 @@ contains
     integer, allocatable :: elements(:)
     integer :: i
 
-    elements = model%around%of(node)
+    elements = model%mesh%around%of(node)
     if (size(elements) == 0) return
-    elements = pack(elements, model%section(elements) == model%section(first_element(model, node)))
-    if (.not. all(model%is_held([1, 2], node))) then
+    elements = pack(elements, model%mesh%section(elements) == model%mesh%section(first_element(model, node)))
+    if (.not. all(model%constraints%is_held([1, 2], node))) then
       do i = 1, size(elements)
-        if (.not. model%is_rigid(model%connectivity(:model%node_count(elements(i)), elements(i)))) return
+        if (.not. model%constraints%is_rigid(model%mesh%connectivity(:model%mesh%node_count(elements(i)), &
+                                                                     elements(i)))) return
       end do
     end if
     elements = [integer ::]
@@ -131,7 +133,7 @@ contains
     type(model_materials), intent(in) :: materials     !! of its sections
     real(wp), intent(in) :: smooth(:, :)               !! recovered strains [components, places: first the
                                                        !! nodes']
-    real(wp) :: pressure(model%pairs)
+    real(wp) :: pressure(model%contact%pairs)
     type(point_state) :: state
     real(wp) :: side(2), weight(2)
     logical :: seen(2)
@@ -139,20 +141,20 @@ contains
     integer :: i, k, n
 
     pressure = 0.0_wp
-    do k = 1, model%pairs
+    do k = 1, model%contact%pairs
       side = 0.0_wp
       weight = 0.0_wp
-      do i = model%row_start(k), model%row_start(k + 1) - 1
-        elements = elements_behind(model, model%row_node(i))
+      do i = model%contact%row_start(k), model%contact%row_start(k + 1) - 1
+        elements = elements_behind(model, model%contact%row_node(i))
         if (size(elements) == 0) cycle
-        state = materials%state_at(model%first_point(elements(1)), smooth(:, model%row_node(i)))
+        state = materials%state_at(model%mesh%first_point(elements(1)), smooth(:, model%contact%row_node(i)))
         ! the first node of the row is on one body, the others share the other
-        n = merge(1, 2, i == model%row_start(k))
-        associate (normal => model%normal(:, k), stress => state%stress)
-          side(n) = side(n) - model%row_weight(i)*(stress(1)*normal(1)**2 + stress(2)*normal(2)**2 + &
+        n = merge(1, 2, i == model%contact%row_start(k))
+        associate (normal => model%contact%normal(:, k), stress => state%stress)
+          side(n) = side(n) - model%contact%row_weight(i)*(stress(1)*normal(1)**2 + stress(2)*normal(2)**2 + &
               2.0_wp*stress(4)*normal(1)*normal(2))
         end associate
-        weight(n) = weight(n) + model%row_weight(i)
+        weight(n) = weight(n) + model%contact%row_weight(i)
       end do
       seen = abs(weight) > least_weight
       if (any(seen)) pressure(k) = sum(side/merge(weight, 1.0_wp, seen), mask=seen)/count(seen)
@@ -169,13 +171,13 @@ contains
     integer :: i, k, section
 
     side = 0.0_wp
-    do i = model%row_start(pair), model%row_start(pair + 1) - 1
-      k = merge(1, 2, i == model%row_start(pair))
-      elements = elements_behind(model, model%row_node(i))
+    do i = model%contact%row_start(pair), model%contact%row_start(pair + 1) - 1
+      k = merge(1, 2, i == model%contact%row_start(pair))
+      elements = elements_behind(model, model%contact%row_node(i))
       if (size(elements) == 0) cycle
-      section = model%section(elements(1))
-      nu = merge(0.0_wp, model%poisson(section), model%kinematics(section) == plane_stress)
-      side(k) = max(side(k), (1.0_wp - nu**2)/model%young(section))
+      section = model%mesh%section(elements(1))
+      nu = merge(0.0_wp, model%sections%poisson(section), model%sections%kinematics(section) == plane_stress)
+      side(k) = max(side(k), (1.0_wp - nu**2)/model%sections%young(section))
     end do
     compliance = sum(side)
   end function surface_compliance

@@ -68,10 +68,10 @@ contains
     !> Find the factors of pairs in sums of forces. If no pair of a body is in contact, although some could
     !! be, its sums are unknown.
     subroutine find_shares()
-      real(wp), dimension(scene%model%pairs) :: one, other   !! of one component, and of the other
+      real(wp), dimension(scene%model%contact%pairs) :: one, other   !! of one component, and of the other
       integer :: body, c, i, k
 
-      allocate (loads%contact%share(scene%model%pairs, 1), source=1.0_wp)
+      allocate (loads%contact%share(scene%model%contact%pairs, 1), source=1.0_wp)
       allocate (loads%column(directions, size(answer%bodies)), &
                 source=merge(-1, 0, size(answer%bodies) > most_bodies))
       if (size(answer%bodies) > most_bodies) return
@@ -106,8 +106,8 @@ contains
       integer :: i, m
 
       is_free = .true.
-      do i = 1, scene%model%nodes
-        if (scene%model%body(i) /= body) cycle
+      do i = 1, scene%model%mesh%nodes
+        if (scene%model%mesh%body(i) /= body) cycle
         rest = merge(1.0_wp, 0.0_wp, [1, 2] == c)
         do m = scene%motions%first(body), scene%motions%first(body + 1) - 1
           if (scene%motions%component(m) == c) rest = rest - scene%motions%displacement(scene%model, i, m)
@@ -135,7 +135,7 @@ contains
     do k = 1, min(most_assessed, size(left))
       largest = maxval(rank, mask=left)
       among = left .and. rank >= largest - no_effect*abs(largest)
-      associate (x => scene%model%x(:, scene%motions%node), c => scene%motions%component)
+      associate (x => scene%model%mesh%x(:, scene%motions%node), c => scene%motions%component)
         among = among .and. x(1, :) <= minval(x(1, :), mask=among)
         among = among .and. x(2, :) <= minval(x(2, :), mask=among)
         left(minloc(c, dim=1, mask=among)) = .false.

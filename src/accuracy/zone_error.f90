@@ -66,10 +66,10 @@ contains
 
     kinds = [own]
     do k = 1, 2
-      elements = elements_behind(model, model%pair_node(k, pair))
+      elements = elements_behind(model, model%contact%pair_node(k, pair))
       if (size(elements) == 0) cycle
-      associate (there => model%kind(elements(1)))
-        if (model%kinds(there)%degree < model%kinds(own)%degree) kinds = [own, there]
+      associate (there => model%mesh%kind(elements(1)))
+        if (model%mesh%kinds(there)%degree < model%mesh%kinds(own)%degree) kinds = [own, there]
       end associate
     end do
   end function kinds_at
@@ -84,11 +84,11 @@ contains
 
     longest_side = 0.0_wp
     do k = 1, 2
-      if (size(elements_behind(model, model%pair_node(k, pair))) == 0) cycle
-      sides = outer_sides(model, model%pair_node(k, pair))
+      if (size(elements_behind(model, model%contact%pair_node(k, pair))) == 0) cycle
+      sides = outer_sides(model, model%contact%pair_node(k, pair))
       do i = 1, size(sides, 2)
-        associate (side => model%x(:, sides(2, i)) - model%x(:, sides(1, i)))
-          longest_side = max(longest_side, abs(cross_product(side, model%normal(:, pair))) &
+        associate (side => model%mesh%x(:, sides(2, i)) - model%mesh%x(:, sides(1, i)))
+          longest_side = max(longest_side, abs(cross_product(side, model%contact%normal(:, pair))) &
                                            *merge(0.5_wp, 1.0_wp, sides(3, i) > 0))
         end associate
       end do
@@ -127,8 +127,8 @@ contains
     error%peak = zone%pairs(seen%peak)
     seen%largest = seen%p(seen%peak)
     seen%kind = first_element(model, line%node(error%peak))
-    seen%kind = merge(model%kind(max(seen%kind, 1)), 1, seen%kind > 0)
-    error%weights = weights_of(model%kinds(kinds_at(model, error%peak, seen%kind))%estimated_as, &
+    seen%kind = merge(model%mesh%kind(max(seen%kind, 1)), 1, seen%kind > 0)
+    error%weights = weights_of(model%mesh%kinds(kinds_at(model, error%peak, seen%kind))%estimated_as, &
                                model%has_rings(), yielded)
     if (seen%largest <= 0.0_wp) return
     seen%mirrored = line%mirrored([zone%first, zone%last])
@@ -166,7 +166,7 @@ contains
       if (.not. error%unbounded) error%unbounded = has_tip(model, line, zone, seen%largest)
       error%resolved = error%unbounded .or. .not. any(seen%ends%cut_off) .and. &
                        seen%n + count(seen%mirrored)*(seen%n - 1) >= few .and. &
-                       (model%kinds(seen%kind)%degree == 1 .or. seen%n > one_side)
+                       (model%mesh%kinds(seen%kind)%degree == 1 .or. seen%n > one_side)
     end if
     error%end_resolution = error%resolution
     if (seen%spacing > 0.0_wp .and. maxval(seen%ends%step) > seen%spacing) &
@@ -249,12 +249,12 @@ contains
 
     depth = 0.0_wp
     do k = 1, 2
-      elements = elements_behind(model, model%pair_node(k, error%peak))
+      elements = elements_behind(model, model%contact%pair_node(k, error%peak))
       do i = 1, size(elements)
         e = elements(i)
-        along = matmul(model%normal(:, error%peak), &
-                       model%x(:, model%connectivity(:model%corners(e), e)))
-        depth = max(depth, (maxval(along) - minval(along))/model%kinds(model%kind(e))%degree)
+        along = matmul(model%contact%normal(:, error%peak), &
+                       model%mesh%x(:, model%mesh%connectivity(:model%mesh%corners(e), e)))
+        depth = max(depth, (maxval(along) - minval(along))/model%mesh%kinds(model%mesh%kind(e))%degree)
       end do
     end do
   end function depth_behind

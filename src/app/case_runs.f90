@@ -51,7 +51,7 @@ contains
       run%outcome = judge(run)
       if (size(cases) > 1 .and. allocated(run%as_given)) call run%outcome%found%add_note(place_type(), &
         'nodes came near that had no pair: solved again, in this load case alone, with '// &
-        plural(run%model%pairs - run%as_given%model%pairs, 'more pair'))
+        plural(run%model%contact%pairs - run%as_given%model%contact%pairs, 'more pair'))
       of_deck%solved = .true.
       call results%add_case(run, error)
       if (allocated(error)) return
@@ -91,7 +91,7 @@ contains
 
     text = name//case_name(run)//'  '//run%outcome%word
     if (.not. run%outcome%has_answer) return
-    if (run%model%pairs > 0) then
+    if (run%model%contact%pairs > 0) then
       text = text//'  p_max'//right(listed_number(known, run%answer%largest_pressure(), 0.0_wp), 13)
       limit = limit_of_pressure(run)
       if (len(reason_of(limit)) > 0) text = text//' ('//limit//')'

@@ -62,7 +62,7 @@ contains
 
     bodies%operator = new_strain_operator(scene%model)
     allocate (bodies%body(size(scene%numbering%body)))
-    allocate (bodies%settlement(directions, scene%model%nodes), source=0.0_wp)
+    allocate (bodies%settlement(directions, scene%model%mesh%nodes), source=0.0_wp)
   end function new_bodies
 
   !> Factor joined bodies, as far as law or springs have changed.
@@ -90,12 +90,13 @@ contains
     real(wp), allocatable :: prescribed(:, :)
 
     self%settlement = 0.0_wp
-    if (all(scene%model%beyond_travel == 0.0_wp) .and. all(scene%model%platen%prescribed == 0.0_wp)) return
-    allocate (prescribed(directions, scene%model%nodes), source=0.0_wp)
+    if (all(scene%model%loads%beyond_travel == 0.0_wp) .and. &
+        all(scene%model%constraints%platen%prescribed == 0.0_wp)) return
+    allocate (prescribed(directions, scene%model%mesh%nodes), source=0.0_wp)
     call prescribe(scene, 1.0_wp, prescribed)
     self%settlement = -self%operator%nodal_forces( &
                       scene%model, self%law%increment(self%operator%strains(scene%model, prescribed, 0.0_wp)))
-    if (size(scene%model%spring) > 0) &
+    if (size(scene%model%constraints%spring) > 0) &
       self%settlement = self%settlement - spring_forces(scene%model, prescribed)
   end subroutine settle
 
@@ -104,22 +105,24 @@ contains
     type(planned_model), intent(in) :: scene
     real(wp), intent(in) :: load_factor             !! of the prescribed displacements
     real(wp), intent(inout) :: displacement(:, :)   !! [length] [directions, nodes]
-    real(wp) :: turned(size(scene%model%platen))    ! [radian]
+    real(wp) :: turned(size(scene%model%constraints%platen))    ! [radian]
     integer :: c, k, node
 
     associate (model => scene%model)
       turned = [(platen_angle(model, k, displacement), k=1, size(turned))]
-      where (model%platen%held) turned = load_factor*model%platen%prescribed
-      do node = 1, model%nodes
+      where (model%constraints%platen%held) turned = load_factor*model%constraints%platen%prescribed
+      do node = 1, model%mesh%nodes
         do c = 1, directions
-          if (model%sum_of(c, node) == 0 .and. model%is_held(c, node)) &
-            displacement(c, node) = load_factor*model%beyond_travel(c, model%leader(c, node))
+          if (model%constraints%sum_of(c, node) == 0 .and. model%constraints%is_held(c, node)) &
+            displacement(c, node) = load_factor*model%loads%beyond_travel(c, &
+              model%constraints%leader(c, node))
         end do
       end do
-      if (size(model%sum%first) == 0) return
-      do node = 1, model%nodes
+      if (size(model%constraints%sum%first) == 0) return
+      do node = 1, model%mesh%nodes
         do c = 1, directions
-          if (model%sum_of(c, node) > 0) displacement(c, node) = sum_of_terms(model%sum_of(c, node))
+          if (model%constraints%sum_of(c, node) > 0) displacement(c, node) = &
+            sum_of_terms(model%constraints%sum_of(c, node))
         end do
       end do
     end associate
@@ -131,7 +134,7 @@ contains
       integer :: i
 
       u = 0.0_wp
-      associate (sums => scene%model%sum)
+      associate (sums => scene%model%constraints%sum)
         do i = sums%first(row), sums%last(row)
           associate (of => sums%component(i), at => sums%node(i))
             if (of == angle) u = u + sums%weight(i)*turned(at)
@@ -232,7 +235,7 @@ contains
     real(wp), allocatable :: border(:, :), inner(:, :)
     integer :: b, first, i
 
-    allocate (u(directions, scene%model%nodes), source=0.0_wp)
+    allocate (u(directions, scene%model%mesh%nodes), source=0.0_wp)
     call prescribe(scene, load_factor, u)
     do b = 1, size(half)
       associate (body => scene%numbering%body(b))

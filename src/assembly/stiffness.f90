@@ -139,7 +139,7 @@ contains
     integer :: e, i, number(most_freedoms)
 
     self%stale = .false.
-    associate (element => self%numbers%element, first => self%scene%model%first_point)
+    associate (element => self%numbers%element, first => self%scene%model%mesh%first_point)
       do e = 1, size(element)
         if (.not. any(self%law%changed(first(element(e)):first(element(e) + 1) - 1))) cycle
         number = self%scene%numbering%of_element(self%scene%model, element(e))
@@ -207,7 +207,7 @@ contains
 
     call self%stiffness%matrix%open(part)
     do e = first, last
-      associate (element => self%numbers%part(e), elements => self%scene%model%elements)
+      associate (element => self%numbers%part(e), elements => self%scene%model%mesh%elements)
         if (element <= elements) call self%add_element(element)
         if (element > elements) call self%add_spring(element - elements)
       end associate
@@ -223,14 +223,14 @@ contains
 
     associate (model => self%scene%model, numbering => self%scene%numbering)
       number = numbering%of_element(model, element)
-      n = directions*model%node_count(element)
+      n = directions*model%mesh%node_count(element)
       if (numbering%joined .and. any(number(:n) < 0)) then
         call self%add_sums(element, n, number(:n))
         return
       end if
       if (.not. any(self%stale(number(:n)))) return
       call self%operator%element_stiffness(model, element, self%law, n, k)
-      call numbering%axes%turn_stiffness(model%connectivity(:, element), n, k)
+      call numbering%axes%turn_stiffness(model%mesh%connectivity(:, element), n, k)
       call self%stiffness%matrix%add(n, number, k)
       if (size(self%stiffness%schur) > 0) call add_to_border(n, number, k, self%numbers%tied, self%stiffness)
     end associate
@@ -273,9 +273,10 @@ contains
     real(wp) :: row(size(self%stiffness%schur, 1))
     integer :: e, i, k, number
 
-    do k = 1, size(self%scene%model%spring)
-      associate (own => self%scene%model%spring(k), schur => self%stiffness%schur, tied => self%numbers%tied)
-        if (self%scene%model%body(maxval(own%node)) /= b) cycle
+    do k = 1, size(self%scene%model%constraints%spring)
+      associate (own => self%scene%model%constraints%spring(k), schur => self%stiffness%schur, &
+                 tied => self%numbers%tied)
+        if (self%scene%model%mesh%body(maxval(own%node)) /= b) cycle
         row = 0.0_wp
         do i = 1, 2
           number = 0

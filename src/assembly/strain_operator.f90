@@ -33,15 +33,15 @@ contains
     type(strain_operator) :: operator
     integer :: columns, e, p
 
-    allocate (operator%column(model%points), operator%volume(model%points))
+    allocate (operator%column(model%mesh%points), operator%volume(model%mesh%points))
     columns = 0
-    do p = 1, model%points
+    do p = 1, model%mesh%points
       operator%column(p) = columns
-      columns = columns + directions*model%node_count(model%point_element(p))
+      columns = columns + directions*model%mesh%node_count(model%mesh%point_element(p))
     end do
     allocate (operator%b(components, columns))
-    !$omp parallel do num_threads(threads_over(model%elements))
-    do e = 1, model%elements
+    !$omp parallel do num_threads(threads_over(model%mesh%elements))
+    do e = 1, model%mesh%elements
       call put_element(operator, model, e)
     end do
     !$omp end parallel do
@@ -56,14 +56,15 @@ contains
     real(wp) :: x(directions, most_nodes)
     integer :: columns, first, k, points
 
-    first = model%first_point(e)
-    points = model%first_point(e + 1) - first
-    do k = 1, model%node_count(e)
-      x(:, k) = model%x(:, model%connectivity(k, e))
+    first = model%mesh%first_point(e)
+    points = model%mesh%first_point(e + 1) - first
+    do k = 1, model%mesh%node_count(e)
+      x(:, k) = model%mesh%x(:, model%mesh%connectivity(k, e))
     end do
-    columns = directions*model%node_count(e)
-    call evaluate_points(model%kinds(model%kind(e)), x(:, :model%node_count(e)), &
-                         model%kinematics(model%section(e)), model%thickness(model%section(e)), &
+    columns = directions*model%mesh%node_count(e)
+    call evaluate_points(model%mesh%kinds(model%mesh%kind(e)), x(:, :model%mesh%node_count(e)), &
+                         model%sections%kinematics(model%mesh%section(e)), &
+                           model%sections%thickness(model%mesh%section(e)), &
                          point(:points))
     operator%volume(first:first + points - 1) = point(:points)%volume
     do k = 1, points
@@ -84,16 +85,16 @@ contains
     logical :: expands
     integer :: p
 
-    expands = allocated(model%free_strain) .and. load_factor /= 0.0_wp
-    allocate (strain(components, model%points))
+    expands = allocated(model%loads%free_strain) .and. load_factor /= 0.0_wp
+    allocate (strain(components, model%mesh%points))
     if (.not. expands .and. all(displacement == 0.0_wp)) then   ! first state of joined bodies
       strain = 0.0_wp
       return
     end if
-    !$omp parallel do num_threads(threads_over(model%points))
-    do p = 1, model%points
+    !$omp parallel do num_threads(threads_over(model%mesh%points))
+    do p = 1, model%mesh%points
       strain(:, p) = strain_at(p)
-      if (expands) strain(:3, p) = strain(:3, p) - load_factor*model%free_strain(p)
+      if (expands) strain(:3, p) = strain(:3, p) - load_factor*model%loads%free_strain(p)
     end do
     !$omp end parallel do
 
@@ -106,8 +107,8 @@ contains
 
       strain = 0.0_wp
       c = self%column(p)
-      do i = 1, model%node_count(model%point_element(p))
-        associate (u => displacement(:, model%connectivity(i, model%point_element(p))))
+      do i = 1, model%mesh%node_count(model%mesh%point_element(p))
+        associate (u => displacement(:, model%mesh%connectivity(i, model%mesh%point_element(p))))
           strain = strain + self%b(:, c + 1)*u(1) + self%b(:, c + 2)*u(2)
         end associate
         c = c + directions
@@ -128,8 +129,9 @@ contains
     integer :: p
 
     if (fields == 0) return
-    do p = 1, model%first_point(element + 1) - model%first_point(element)
-      call apply(model%node_count(element), self%b(1, self%column(model%first_point(element) + p - 1) + 1), &
+    do p = 1, model%mesh%first_point(element + 1) - model%mesh%first_point(element)
+      call apply(model%mesh%node_count(element), &
+                 self%b(1, self%column(model%mesh%first_point(element) + p - 1) + 1), &
                  place, fields, u, strain(1, 1, p))
     end do
   end subroutine add_fields
@@ -148,16 +150,16 @@ contains
 
     if (fields == 0) return
     b = 0.0_wp
-    associate (first => model%first_point(element), last => model%first_point(element + 1) - 1)
+    associate (first => model%mesh%first_point(element), last => model%mesh%first_point(element + 1) - 1)
       volume = sum(self%volume(first:last))
       do p = first, last
         c = self%column(p)
-        do i = 1, directions*model%node_count(element)
+        do i = 1, directions*model%mesh%node_count(element)
           b(:, i) = b(:, i) + self%volume(p)/volume*self%b(:, c + i)
         end do
       end do
     end associate
-    call apply(model%node_count(element), b, place, fields, u, strain(1, 1))
+    call apply(model%mesh%node_count(element), b, place, fields, u, strain(1, 1))
   end subroutine add_means
 
   !> Compute the strains at a point for several fields.
@@ -187,13 +189,13 @@ contains
     real(wp) :: s(components)
     integer :: c, i, p
 
-    allocate (force(directions, model%nodes), source=0.0_wp)
+    allocate (force(directions, model%mesh%nodes), source=0.0_wp)
     if (all(stress == 0.0_wp)) return
-    do p = 1, model%points
+    do p = 1, model%mesh%points
       s = self%volume(p)*stress(:, p)
       c = self%column(p)
-      do i = 1, model%node_count(model%point_element(p))
-        associate (f => force(:, model%connectivity(i, model%point_element(p))))
+      do i = 1, model%mesh%node_count(model%mesh%point_element(p))
+        associate (f => force(:, model%mesh%connectivity(i, model%mesh%point_element(p))))
           f(1) = f(1) + dot_product(s, self%b(:, c + 1))
           f(2) = f(2) + dot_product(s, self%b(:, c + 2))
         end associate
@@ -213,7 +215,7 @@ contains
     integer :: i, j, p
 
     k = 0.0_wp
-    do p = model%first_point(element), model%first_point(element + 1) - 1
+    do p = model%mesh%first_point(element), model%mesh%first_point(element + 1) - 1
       call add_point(n, self%b(1, self%column(p) + 1), self%volume(p), law%matrix(1, 1, law%matrix_of(p)), k)
     end do
     do j = 1, n

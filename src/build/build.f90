@@ -6,7 +6,7 @@ module epcont_build_build
   use epcont_build_cases, only: read_cases
   use epcont_build_choices, only: check_once, read_controls
   use epcont_build_contacts, only: read_contacts
-  use epcont_build_mesh, only: element_cards, read_mesh, take_ids
+  use epcont_build_mesh_cards, only: element_cards, read_mesh, take_ids
   use epcont_build_reference, only: card_index, check_unique, chosen_sets, index_of, note_unnamed
   use epcont_build_supports, only: read_references, read_supports, read_ties
   use epcont_build_temperatures, only: read_temperatures
@@ -48,16 +48,17 @@ contains
     integer, intent(in), optional :: of_pattern  !! of supports and contacts; else that of the first case
     type(element_kind), allocatable :: kinds(:)
     type(load_cases) :: cases
+    type(scene_type) :: data
     integer :: case, pattern   ! the first of that pattern, and what of_pattern says
 
     pattern = 1
     if (present(of_pattern)) pattern = of_pattern
     kinds = element_kinds()
     call check_ids(deck, kinds, faults)
-    call read_data(deck, kinds, pattern, model%scene_type, cases, faults)
-    call take_ids(deck, kinds, model)
+    call read_data(deck, kinds, pattern, data, cases, faults)
+    call take_ids(deck, kinds, size(data%initial_gap), model)
     case = findloc(cases%case%pattern, pattern, dim=1)
-    call complete_model(model, cases, case, faults)
+    call complete_model(data, cases, case, model, faults)
     call note_without_effect(deck, kinds, cases, faults)
     if (present(all_cases)) all_cases = cases
     call tell(deck, faults)

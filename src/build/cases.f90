@@ -5,7 +5,7 @@ module epcont_build_cases
   use epcont_base_sorting, only: new_id_index
   use epcont_base_text, only: short_real
   use epcont_build_mass_loads, only: read_mass_loads
-  use epcont_build_mesh, only: element_cards
+  use epcont_build_mesh_cards, only: element_cards
   use epcont_build_reference, only: card_index, check_choices, check_combinations, chosen_sets, &
       named_node, nodes_of_fields, note_unnamed, note_unused, resolve
   use epcont_deck_card_kinds, only: card_bconp, card_force, card_grav, card_load, card_moment, card_nlparm, &

@@ -152,7 +152,7 @@ contains
     joint = merge(joint, 0.0_wp, smooth)
     bend = merge(bend, 0.0_wp, smooth)
     sag = length*max(abs(joint), abs(joint(drawn%outline%before)))/8.0_wp
-    if (allocated(model%boundary%element)) sag = length*turns_of_lines()/8.0_wp
+    if (allocated(model%contact%boundary%element)) sag = length*turns_of_lines()/8.0_wp
     curvature = curvature + 8.0_wp*sag/length**2
     allowance = allowance_type(length, sag, gaps_of_cards(), &
                                min(joint, joint(drawn%outline%before)) < 0.0_wp, smooth, bend, arch, turn, &
@@ -171,26 +171,27 @@ contains
       do s = 1, size(turn)
         do k = 1, 2
           turn(s) = max(turn(s), 2.0_wp*abs(angle(right_of(drawn%tangent(s, real(k - 1, wp))), &
-              model%boundary%normal(:, k, s))))
+              model%contact%boundary%normal(:, k, s))))
         end do
       end do
     end function turns_of_lines
 
     !> Find the differences between CGAP gaps and gaps from coordinates, between two bodies [length] [sides].
     pure function gaps_of_cards() result(gap)
-      real(wp) :: gap(size(length)), at_node(model%nodes), gap_drawn
+      real(wp) :: gap(size(length)), at_node(model%mesh%nodes), gap_drawn
       integer :: k, node(3), s
 
       at_node = 0.0_wp
-      do k = 1, model%single_pairs()
-        associate (pair => model%pair_node(:, k))
-          if (any(model%body_outline%part_of(pair) == 0)) cycle
-          gap_drawn = dot_product(model%normal(:, k), model%x(:, pair(2)) - model%x(:, pair(1)))
-          at_node(pair) = max(at_node(pair), abs(model%initial_gap(k) - gap_drawn))
+      do k = 1, model%contact%single_pairs()
+        associate (pair => model%contact%pair_node(:, k))
+          if (any(model%mesh%body_outline%part_of(pair) == 0)) cycle
+          gap_drawn = dot_product(model%contact%normal(:, k), &
+                                  model%mesh%x(:, pair(2)) - model%mesh%x(:, pair(1)))
+          at_node(pair) = max(at_node(pair), abs(model%contact%initial_gap(k) - gap_drawn))
         end associate
       end do
       do s = 1, size(gap)
-        node = model%body_outline%node(:, s)
+        node = model%mesh%body_outline%node(:, s)
         gap(s) = maxval(at_node(pack(node, node > 0)))
       end do
     end function gaps_of_cards

@@ -95,16 +95,17 @@ contains
     type(answer_type), intent(in) :: answer   !! answer to check
     real(wp), intent(in) :: curve_tolerance   !! largest stress error that the iteration allows
     type(certificate_type), intent(out) :: found   !! the certificate, without its search for penetration
-    real(wp) :: load(directions, model%nodes)
+    real(wp) :: load(directions, model%mesh%nodes)
     type(balance_type) :: total
     real(wp) :: forces, largest_force, largest_stress, length
-    real(wp), dimension(size(model%platen)) :: torque, turn   ! of the rotating platens
+    real(wp), dimension(size(model%constraints%platen)) :: torque, turn   ! of the rotating platens
     real(wp) :: given_force   ! largest load or spring force [force]
     real(wp) :: face          ! face of the largest element [length**2]
     logical :: unstressed     ! stresses and forces are rounding errors of zero
 
     load = answer%load_factor*given_load(model)
-    allocate (total%residual(directions, model%nodes), total%element_force(model%nodes), source=0.0_wp)
+    allocate (total%residual(directions, model%mesh%nodes), total%element_force(model%mesh%nodes), &
+              source=0.0_wp)
     call check_springs(model, answer%displacement, total%residual, total%element_force, total%stored)
     given_force = max(maxval(abs(load)), maxval(total%element_force))
     face = largest_face(model)
@@ -131,7 +132,7 @@ contains
       total%terms = sum(abs(load*u)) + sum(abs(reaction*u)) + abs(total%stored) + &
               part_of_held*total%expansion%held_work
     end associate
-    if (model%pairs > 0) call add_pairs(model, answer, load, total, found)
+    if (model%contact%pairs > 0) call add_pairs(model, answer, load, total, found)
     largest_force = max(maxval(total%element_force), maxval(abs(load)), &
         part_of_held*total%expansion%held_force)
     if (any(answer%contact%force > 0.0_wp)) largest_force = max(largest_force, found%force_scale)
@@ -165,9 +166,10 @@ contains
     integer :: e
 
     stiffest = 0.0_wp
-    do e = 1, model%elements
-      associate (nodes => model%connectivity(:model%node_count(e), e))
-        stiffest = max(stiffest, model%young(model%section(e))*model%depth(e, maxval(model%x(1, nodes))))
+    do e = 1, model%mesh%elements
+      associate (nodes => model%mesh%connectivity(:model%mesh%node_count(e), e))
+        stiffest = max(stiffest, model%sections%young(model%mesh%section(e))*model%depth(e, &
+          maxval(model%mesh%x(1, nodes))))
       end associate
     end do
     length = 0.0_wp
@@ -183,16 +185,17 @@ contains
     real(wp), intent(in) :: largest_stress       !! of the model [stress]
     type(balance_type), intent(inout) :: total   !! sums to add to
     type(certificate_type), intent(inout) :: found
-    real(wp) :: slope(directions, most_nodes, most_points, size(model%kinds))
+    real(wp) :: slope(directions, most_nodes, most_points, size(model%mesh%kinds))
     type(checked_elements) :: part
     integer :: first, k
 
-    do k = 1, size(model%kinds)
-      call find_slopes(model%kinds(k), slope(:, :, :, k))
+    do k = 1, size(model%mesh%kinds)
+      call find_slopes(model%mesh%kinds(k), slope(:, :, :, k))
     end do
-    !$omp parallel do num_threads(threads_over(model%elements)) schedule(dynamic) ordered private(part)
-    do first = 1, model%elements, at_once
-      call check_elements(model, answer, largest_stress, first, min(first + at_once - 1, model%elements), &
+    !$omp parallel do num_threads(threads_over(model%mesh%elements)) schedule(dynamic) ordered private(part)
+    do first = 1, model%mesh%elements, at_once
+      call check_elements(model, answer, largest_stress, first, &
+                          min(first + at_once - 1, model%mesh%elements), &
                           slope, part)
       !$omp ordered
       call add_part(model, total, found, first, part)
@@ -211,13 +214,13 @@ contains
     integer :: e, k, p
 
     do e = first, first + size(part%force, 3) - 1
-      do k = 1, model%node_count(e)
-        associate (node => model%connectivity(k, e), force => part%force(:, k, e))
+      do k = 1, model%mesh%node_count(e)
+        associate (node => model%mesh%connectivity(k, e), force => part%force(:, k, e))
           total%residual(:, node) = total%residual(:, node) + force
           total%element_force(node) = total%element_force(node) + maxval(abs(force))
         end associate
       end do
-      do p = model%first_point(e), model%first_point(e + 1) - 1
+      do p = model%mesh%first_point(e), model%mesh%first_point(e + 1) - 1
         total%stored = total%stored + part%work(p)
       end do
     end do
@@ -244,22 +247,22 @@ contains
     found%smallest_force = minval(answer%contact%force)
     found%smallest_gap = huge(1.0_wp)
     found%force_scale = max(maxval(abs(answer%contact%force)), maxval(abs(load)), tiny(1.0_wp))
-    do k = 1, model%pairs
-      associate (force => answer%contact%force(k), normal => model%normal(:, k))
+    do k = 1, model%contact%pairs
+      associate (force => answer%contact%force(k), normal => model%contact%normal(:, k))
         apart = 0.0_wp
         travel = 0.0_wp
-        do i = model%row_start(k), model%row_start(k + 1) - 1
-          node = model%row_node(i)
-          apart = apart + model%row_weight(i)*answer%displacement(:, node)
+        do i = model%contact%row_start(k), model%contact%row_start(k + 1) - 1
+          node = model%contact%row_node(i)
+          apart = apart + model%contact%row_weight(i)*answer%displacement(:, node)
           travel = max(travel, maxval(abs(answer%displacement(:, node))))
-          total%residual(:, node) = total%residual(:, node) - model%row_weight(i)*force*normal
+          total%residual(:, node) = total%residual(:, node) - model%contact%row_weight(i)*force*normal
         end do
         opening = sum(normal*apart)
         total%work = total%work + force*opening
         total%terms = total%terms + abs(force*opening)
-        rounding = roundings*epsilon(1.0_wp)*max(abs(model%initial_gap(k)), travel)
+        rounding = roundings*epsilon(1.0_wp)*max(abs(model%contact%initial_gap(k)), travel)
         if (force > 0.0_wp) found%gap_rounding = max(found%gap_rounding, rounding)
-        gap = model%initial_gap(k) + opening
+        gap = model%contact%initial_gap(k) + opening
         found%smallest_gap = min(found%smallest_gap, gap)
         found%overlap = max(found%overlap, -gap - rounding)
         found%force_gap = max(found%force_gap, abs(gap*force))

@@ -43,16 +43,17 @@ contains
     real(wp) :: force(directions)
     integer :: c, e, k, p
 
-    allocate (part%force(directions, size(model%connectivity, 1), first:last), source=0.0_wp)
-    allocate (part%work(model%first_point(first):model%first_point(last + 1) - 1))
+    allocate (part%force(directions, size(model%mesh%connectivity, 1), first:last), source=0.0_wp)
+    allocate (part%work(model%mesh%first_point(first):model%mesh%first_point(last + 1) - 1))
     do e = first, last
-      call unit_strains(model, e, slope(:, :, :, model%kind(e)), points%unit, points%volume)
+      call unit_strains(model, e, slope(:, :, :, model%mesh%kind(e)), points%unit, points%volume)
       call free_strains(model, e, answer%load_factor, points%volume, points%free)
-      associate (stress => answer%point_stress(:, model%first_point(e):model%first_point(e + 1) - 1))
-        call part%expansion%add_element(model%young(model%section(e)), stress, &
-          points%unit(:, :, :model%node_count(e), :), points%volume, points%free(:size(stress, 2)))
+      associate (stress => answer%point_stress(:, &
+                                               model%mesh%first_point(e):model%mesh%first_point(e + 1) - 1))
+        call part%expansion%add_element(model%sections%young(model%mesh%section(e)), stress, &
+          points%unit(:, :, :model%mesh%node_count(e), :), points%volume, points%free(:size(stress, 2)))
         call check_points(model, answer, largest_stress, e, points, part)
-        do k = 1, model%node_count(e)
+        do k = 1, model%mesh%node_count(e)
           do p = 1, size(stress, 2)
             do c = 1, directions
               force(c) = points%volume(p)*dot_product(stress(:, p), points%unit(:, c, k, p))
@@ -79,10 +80,10 @@ contains
     integer :: k, n, node, p
     logical :: moves, ring
 
-    n = model%node_count(e)
-    ring = model%kinematics(model%section(e)) == axisymmetric
+    n = model%mesh%node_count(e)
+    ring = model%sections%kinematics(model%mesh%section(e)) == axisymmetric
     do k = 1, n
-      node = model%connectivity(k, e)
+      node = model%mesh%connectivity(k, e)
       u(:, k) = answer%deformation(:, node)
       motion(:, k) = answer%displacement(:, node) - u(:, k)
     end do
@@ -90,15 +91,15 @@ contains
     moves = any(motion(:, :n) /= 0.0_wp)
     largest = largest_of(directions*n, u)
     farthest = maxval(abs(motion(:, :n)) + abs(u(:, :n)))
-    do p = 1, model%kinds(model%kind(e))%points
+    do p = 1, model%mesh%kinds(model%mesh%kind(e))%points
       ! Rounding error of a strain by unit displacements.
       rounding = epsilon(1.0_wp)*largest_of(components*directions*n, points%unit(1, 1, 1, p))
       strain = strain_by(n, u, points%unit(1, 1, 1, p), ring)
-      associate (point => model%first_point(e) + p - 1)
+      associate (point => model%mesh%first_point(e) + p - 1)
         part%work(point) = points%volume(p)*dot_product(answer%point_stress(:, point), strain)
         part%strained = part%strained + points%volume(p)*maxval(abs(strain))
         strain(:3) = strain(:3) - points%free(p)
-        call check_stress(model, largest_stress, model%section(e), &
+        call check_stress(model, largest_stress, model%mesh%section(e), &
                           reshape([before(:, p, :), strain], [components, size(before, 3) + 1]), &
                           answer%point_stress(:, point), rounding*largest, part)
       end associate
@@ -119,17 +120,17 @@ contains
     real(wp) :: free(most_points), u(directions, most_nodes)
     integer :: k, n, p, step
 
-    n = model%node_count(e)
+    n = model%mesh%node_count(e)
     do step = 1, size(before, 3)
       associate (committed => answer%committed(step))
         do k = 1, n
-          u(:, k) = committed%deformation(:, model%connectivity(k, e))
+          u(:, k) = committed%deformation(:, model%mesh%connectivity(k, e))
         end do
         call free_strains(model, e, committed%load_factor, points%volume, free)
       end associate
-      do p = 1, model%kinds(model%kind(e))%points
+      do p = 1, model%mesh%kinds(model%mesh%kind(e))%points
         before(:, p, step) = strain_by(n, u, points%unit(1, 1, 1, p), &
-                                       model%kinematics(model%section(e)) == axisymmetric)
+                                       model%sections%kinematics(model%mesh%section(e)) == axisymmetric)
         before(:3, p, step) = before(:3, p, step) - free(p)
       end do
     end do
@@ -156,16 +157,16 @@ contains
     apart = stress - on_curve
     scale = largest_stress
     off = ratio(maxval(abs(apart)), largest_stress)
-    if (allocated(model%curve(section)%strain)) then
-      scale = max(von_mises_stress(on_curve), min(model%curve(section)%stress(2), largest_stress))
+    if (allocated(model%sections%curve(section)%strain)) then
+      scale = max(von_mises_stress(on_curve), min(model%sections%curve(section)%stress(2), largest_stress))
       off = max(ratio(von_mises_stress(apart), scale), ratio(abs(sum(apart(:3)))/3.0_wp, largest_stress))
     end if
     part%off_curve = max(part%off_curve, off)
     ! Stress over strain along one axis if lateral strain is fixed: far above E if Poisson's ratio is close to
     ! 0.5.
-    associate (young => model%young(section), nu => model%poisson(section))
+    associate (young => model%sections%young(section), nu => model%sections%poisson(section))
       stiffest = young
-      if (model%kinematics(section) /= plane_stress) &
+      if (model%sections%kinematics(section) /= plane_stress) &
         stiffest = young*(1.0_wp - nu)/((1.0_wp + nu)*(1.0_wp - 2.0_wp*nu))
       part%lost_stress = max(part%lost_stress, ratio(young*rounding, scale), &
                              ratio(stiffest*rounding, largest_stress))

@@ -35,16 +35,17 @@ contains
     integer :: k, p
 
     strain = 0.0_wp
-    if (.not. allocated(model%temperature)) return
-    associate (s => model%section(element), kind => model%kinds(model%kind(element)))
+    if (.not. allocated(model%loads%temperature)) return
+    associate (s => model%mesh%section(element), kind => model%mesh%kinds(model%mesh%kind(element)))
       do p = 1, kind%points
         call kind%shape(kind%point(:, p), share, slope)   ! derivatives are not used
         do k = 1, kind%nodes
-          strain(p) = strain(p) + load_factor*model%expansion(s)*share(k)* &
-                      (model%temperature(model%connectivity(k, element)) - model%reference_temperature(s))
+          strain(p) = strain(p) + load_factor*model%sections%expansion(s)*share(k)* &
+                      (model%loads%temperature(model%mesh%connectivity(k, &
+                        element)) - model%sections%reference_temperature(s))
         end do
       end do
-      if (kind%mean_dilatation .and. model%kinematics(s) /= plane_stress) &
+      if (kind%mean_dilatation .and. model%sections%kinematics(s) /= plane_stress) &
         strain = sum(strain(:kind%points)*volume(:kind%points))/sum(volume(:kind%points))
     end associate
   end subroutine free_strains
@@ -56,11 +57,11 @@ contains
     integer :: e
 
     stress = 0.0_wp
-    if (.not. allocated(model%temperature)) return
-    do e = 1, model%elements
-      associate (node => model%connectivity(:model%node_count(e), e), s => model%section(e))
-        stress = max(stress, load_factor*model%young(s)*abs(model%expansion(s))* &
-                     maxval(abs(model%temperature(node) - model%reference_temperature(s))))
+    if (.not. allocated(model%loads%temperature)) return
+    do e = 1, model%mesh%elements
+      associate (node => model%mesh%connectivity(:model%mesh%node_count(e), e), s => model%mesh%section(e))
+        stress = max(stress, load_factor*model%sections%young(s)*abs(model%sections%expansion(s))* &
+                     maxval(abs(model%loads%temperature(node) - model%sections%reference_temperature(s))))
       end associate
     end do
   end function held_stress

@@ -31,16 +31,16 @@ contains
   !> Find the nodal forces of mass loads [force] [2, nodes].
   pure subroutine find_body_force(model, force)
     type(model_type), intent(in) :: model   !! model, with mass loads as given
-    real(wp), intent(out) :: force(directions, model%nodes)
-    type(place_table) :: table(size(model%kinds))
+    real(wp), intent(out) :: force(directions, model%mesh%nodes)
+    type(place_table) :: table(size(model%mesh%kinds))
     integer :: e, k
 
-    do k = 1, size(model%kinds)
-      call set_places(model%kinds(k), table(k))
+    do k = 1, size(model%mesh%kinds)
+      call set_places(model%mesh%kinds(k), table(k))
     end do
     force = 0.0_wp
-    do e = 1, model%elements
-      call add_element(model, e, table(model%kind(e)), force)
+    do e = 1, model%mesh%elements
+      call add_element(model, e, table(model%mesh%kind(e)), force)
     end do
   end subroutine find_body_force
 
@@ -86,21 +86,21 @@ contains
     real(wp) :: apart(directions, most_nodes), area, here(directions), side(directions, directions)
     integer :: k, n, p
 
-    n = model%node_count(e)
-    associate (nodes => model%connectivity(:n, e), s => model%section(e))
+    n = model%mesh%node_count(e)
+    associate (nodes => model%mesh%connectivity(:n, e), s => model%mesh%section(e))
       do k = 1, n
-        apart(:, k) = model%x(:, nodes(k)) - model%x(:, nodes(1))
+        apart(:, k) = model%mesh%x(:, nodes(k)) - model%mesh%x(:, nodes(1))
       end do
       do p = 1, table%count
         side = matmul(apart(:, :n), table%slope(:n, :, p))
-        here = model%x(:, nodes(1)) + matmul(apart(:, :n), table%share(:n, p))
+        here = model%mesh%x(:, nodes(1)) + matmul(apart(:, :n), table%share(:n, p))
         area = table%part(p)*(side(1, 1)*side(2, 2) - side(1, 2)*side(2, 1))
-        if (model%kinematics(s) == axisymmetric) then
+        if (model%sections%kinematics(s) == axisymmetric) then
           area = area*2.0_wp*acos(-1.0_wp)*here(1)
         else
-          area = area*model%thickness(s)
+          area = area*model%sections%thickness(s)
         end if
-        here = model%density(s)*area*acceleration(model, s, here)
+        here = model%sections%density(s)*area*acceleration(model, s, here)
         do k = 1, n
           force(:, nodes(k)) = force(:, nodes(k)) + table%share(k, p)*here
         end do
@@ -117,12 +117,12 @@ contains
     integer :: i
 
     pull = 0.0_wp
-    do i = 1, size(model%body_load)
-      associate (load => model%body_load(i))
+    do i = 1, size(model%loads%body_load)
+      associate (load => model%loads%body_load(i))
         omega = 2.0_wp*acos(-1.0_wp)*load%spin
         gain = 2.0_wp*acos(-1.0_wp)*load%spin_up
         radius = place - load%centre
-        if (model%kinematics(section) == axisymmetric) radius = [place(1), 0.0_wp]
+        if (model%sections%kinematics(section) == axisymmetric) radius = [place(1), 0.0_wp]
         pull = pull + load%factor*(load%acceleration + omega**2*radius)
         pull(1) = pull(1) - load%factor*gain*radius(2)
         pull(2) = pull(2) + load%factor*gain*radius(1)
@@ -133,11 +133,11 @@ contains
   !> Find the nodal loads of a model, with mass loads from the sum above.
   pure function given_load(model) result(load)
     type(model_type), intent(in) :: model   !! model
-    real(wp) :: load(directions, model%nodes), own(directions, model%nodes)
+    real(wp) :: load(directions, model%mesh%nodes), own(directions, model%mesh%nodes)
 
-    load = model%load
-    if (.not. allocated(model%body_force)) return
+    load = model%loads%load
+    if (.not. allocated(model%loads%body_force)) return
     call find_body_force(model, own)
-    load = load + (own - model%body_force)
+    load = load + (own - model%loads%body_force)
   end function given_load
 end module epcont_certificate_mass_force

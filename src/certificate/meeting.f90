@@ -62,7 +62,7 @@ contains
     type(search_type) :: search
     integer :: k, side
 
-    associate (outline => model%body_outline, x => model%x, own => model%around%members())
+    associate (outline => model%mesh%body_outline, x => model%mesh%x, own => model%mesh%around%members())
       search%drawn = new_outline_shape(outline, x)
       search%now = new_outline_shape(outline, x + displacement)
       ! Edges without a mid-side node get the displacement of the first node, which is not used.
@@ -80,8 +80,8 @@ contains
       search%least = same_place*maxval(extent_of(x(:, own))) &
                      + roundings*epsilon(1.0_wp)*(maxval(abs(x(:, own))) + maxval(abs(displacement(:, own))))
       allocate (search%line_length(outline%sides), source=0.0_wp)
-      do k = 1, size(model%line)
-        search%line_length(model%line(k)%side) = search%allowance%length(model%line(k)%side)
+      do k = 1, size(model%contact%line)
+        search%line_length(model%contact%line(k)%side) = search%allowance%length(model%contact%line(k)%side)
       end do
       search%width = [(sum(search%allowance%length(outline%first(k):outline%first(k + 1) - 1)) &
                        /acos(-1.0_wp), k=1, outline%parts)]
@@ -96,10 +96,10 @@ contains
       integer, allocatable :: corner(:)
 
       point = point_type(side=side, in_element=.true.)
-      associate (element => model%body_outline%element(side))
-        corner = model%connectivity(:model%corners(element), element)
+      associate (element => model%mesh%body_outline%element(side))
+        corner = model%mesh%connectivity(:model%mesh%corners(element), element)
       end associate
-      point%drawn = sum(model%x(:, corner), dim=2)/size(corner)
+      point%drawn = sum(model%mesh%x(:, corner), dim=2)/size(corner)
       point%motion = sum(displacement(:, corner), dim=2)/size(corner)
       point%x = point%drawn + point%motion
     end function middle_of

@@ -50,14 +50,15 @@ contains
     integer :: b, part, side
 
     scene%looked_through = .true.
-    if (model%body_outline%sides == 0) return
+    if (model%mesh%body_outline%sides == 0) return
     search = new_search(model, displacement)
     scene%moved = search%moved
     near = 1
-    do side = 1, model%body_outline%sides
+    do side = 1, model%mesh%body_outline%sides
       call look_at_side(search, scene, near, side)
     end do
-    do part = 1, model%body_outline%parts   ! if two bodies have the same outline, no point of it is inside
+    ! if two bodies have the same outline, no point of it is inside
+    do part = 1, model%mesh%body_outline%parts
       others = search%now%part_tree%meeting(box_query(search%middle(part)%x, search%middle(part)%x))
       do b = 1, size(others)
         if (others(b) /= part) call look_at_point(search, scene, near, search%middle(part), others(b))
@@ -148,17 +149,17 @@ contains
     type(search_type), intent(in) :: search      !! outlines
     type(overlaps_type), intent(inout) :: scene     !! results are added
     real(wp) :: least
-    integer :: k, side, side_of(model%nodes)
+    integer :: k, side, side_of(model%mesh%nodes)
 
     least = no_effect*maxval(force)
-    associate (node => model%body_outline%node, part_of => model%body_outline%part_of)
+    associate (node => model%mesh%body_outline%node, part_of => model%mesh%body_outline%part_of)
       side_of = 0
       do side = 1, size(node, 2)
         if (node(3, side) > 0) side_of(node(3, side)) = side
         side_of(node(1, side)) = side
       end do
-      do k = 1, model%pairs
-        associate (part => part_of(model%pair_node(1, k)), b => model%pair_node(2, k))
+      do k = 1, model%contact%pairs
+        associate (part => part_of(model%contact%pair_node(1, k)), b => model%contact%pair_node(2, k))
           if (force(k) <= least .or. side_of(b) == 0 .or. part == 0 .or. part == part_of(b)) cycle
           side = side_of(b)
           call look_at_pair(model, search, scene, k, point_on(search, side, merge(0.0_wp, 0.5_wp, node(1, &
@@ -186,13 +187,13 @@ contains
     apart = point%motion - motion_at(search, place%side, place%s)
     ! At a corner the nearest edge may not be in contact: closing of a gap is not tangential.
     slid%depth = min(part_along(search%now, place%side, place%s, apart), &
-                     abs(cross_product(model%normal(:, pair), apart)))
+                     abs(cross_product(model%contact%normal(:, pair), apart)))
     slid%allowed = max(part_of_side*maxval(search%allowance%length([found%side, found%other])), &
                        part_of_body*minval(search%width([part, search%now%outline%part(found%side)])))
     if (is_worse(slid, scene%slid)) scene%slid = rated(slid)
     if (place%inside) return
-    found%depth = abs(dot_product(point%x - place%x, model%normal(:, pair)))
-    off = abs(cross_product(point%x - place%x, model%normal(:, pair)))
+    found%depth = abs(dot_product(point%x - place%x, model%contact%normal(:, pair)))
+    off = abs(cross_product(point%x - place%x, model%contact%normal(:, pair)))
     if (off <= found%depth) then
       call keep(search, found, scene%apart, scene%widest, scene%wide)
     else   ! the other body ends before the node
@@ -213,13 +214,13 @@ contains
     integer :: c, node, part, way
 
     if (model%has_rings()) then
-      node = minloc(model%x(1, :) + displacement(1, :), dim=1, mask=model%body_outline%part_of > 0)
-      found = beyond_place(-(model%x(1, node) + displacement(1, node)), 0.0_wp, 1, node)
+      node = minloc(model%mesh%x(1, :) + displacement(1, :), dim=1, mask=model%mesh%body_outline%part_of > 0)
+      found = beyond_place(-(model%mesh%x(1, node) + displacement(1, node)), 0.0_wp, 1, node)
       if (found%depth > search%least) scene%axis = found
     end if
     do c = 1, directions
       do way = -1, 1, 2
-        do part = 1, model%body_outline%parts
+        do part = 1, model%mesh%body_outline%parts
           found = beyond_end(model, displacement, search, part, c, way)
           if (found%depth > max(search%least, scene%mirror%depth)) scene%mirror = found
         end do
@@ -239,15 +240,17 @@ contains
     real(wp) :: edge
     integer :: farthest
 
-    associate (first => model%body_outline%first(part), last => model%body_outline%first(part + 1) - 1)
-      associate (node => model%body_outline%node(1, first:last), &
-                 next => model%body_outline%node(2, first:last))
-        x = way*model%x(c, node)
+    associate (first => model%mesh%body_outline%first(part), &
+               last => model%mesh%body_outline%first(part + 1) - 1)
+      associate (node => model%mesh%body_outline%node(1, first:last), &
+                 next => model%mesh%body_outline%node(2, first:last))
+        x = way*model%mesh%x(c, node)
         u = way*displacement(c, node)
         edge = minval(x) + search%least
-        if (.not. all(x > edge .or. model%is_held(c, node) .and. abs(u) <= search%least)) return
-        if (all(x > edge .or. way*model%x(c, next) > edge &
-                .or. model%is_held(3 - c, node) .and. model%is_held(3 - c, next))) return
+        if (.not. all(x > edge .or. model%constraints%is_held(c, node) .and. abs(u) <= search%least)) return
+        if (all(x > edge .or. way*model%mesh%x(c, next) > edge &
+                .or. model%constraints%is_held(3 - c, node) .and. &
+                  model%constraints%is_held(3 - c, next))) return
         farthest = minloc(x + u, dim=1)
         place = beyond_place(minval(x) - (x(farthest) + u(farthest)), way*minval(x), c, node(farthest))
       end associate

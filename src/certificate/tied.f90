@@ -23,14 +23,14 @@ contains
     real(wp) :: apart, pull, u(2)
     integer :: i, k
 
-    do k = 1, size(model%spring)
-      associate (node => model%spring(k)%node, c => model%spring(k)%component)
+    do k = 1, size(model%constraints%spring)
+      associate (node => model%constraints%spring(k)%node, c => model%constraints%spring(k)%component)
         u = 0.0_wp
         do i = 1, 2
           if (node(i) > 0) u(i) = displacement(c(i), node(i))
         end do
         apart = u(2) - u(1)
-        pull = model%spring(k)%stiffness*apart
+        pull = model%constraints%spring(k)%stiffness*apart
         stored = stored + pull*apart
         do i = 1, 2
           if (node(i) == 0) cycle
@@ -52,19 +52,19 @@ contains
     torque = 0.0_wp
     do
       handed = .false.
-      do node = 1, model%nodes
+      do node = 1, model%mesh%nodes
         do c = 1, directions
-          leader = model%leader(c, node)
+          leader = model%constraints%leader(c, node)
           if (leader == node) cycle
           residual(c, leader) = residual(c, leader) + residual(c, node)
           residual(c, node) = 0.0_wp
         end do
       end do
-      do k = 1, size(model%platen)
-        call gather_platen(model, model%platen(k), residual, torque(k), handed)
+      do k = 1, size(model%constraints%platen)
+        call gather_platen(model, model%constraints%platen(k), residual, torque(k), handed)
       end do
-      do k = 1, size(model%equation)
-        call gather_equation(model%equation(k), residual, handed)
+      do k = 1, size(model%constraints%equation)
+        call gather_equation(model%constraints%equation(k), residual, handed)
       end do
       if (.not. handed) exit
     end do
@@ -82,7 +82,7 @@ contains
     do i = 1, size(platen%follower)
       associate (force => residual(:, platen%follower(i)))
         if (all(force == 0.0_wp)) cycle
-        arm = model%x(:, platen%follower(i)) - model%x(:, platen%leader)
+        arm = model%mesh%x(:, platen%follower(i)) - model%mesh%x(:, platen%leader)
         torque = torque + arm(1)*force(2) - arm(2)*force(1)
         residual(:, platen%leader) = residual(:, platen%leader) + force
         force = 0.0_wp
@@ -120,10 +120,10 @@ contains
 
     apart = 0.0_wp
     do k = 1, size(turn)
-      call check_platen(model, model%platen(k), displacement, turn(k), apart)
+      call check_platen(model, model%constraints%platen(k), displacement, turn(k), apart)
     end do
-    do k = 1, size(model%equation)
-      associate (given => model%equation(k))
+    do k = 1, size(model%constraints%equation)
+      associate (given => model%constraints%equation(k))
         apart = max(apart, abs(sum([(given%coefficient(i)*displacement(given%component(i), given%node(i)), &
                                      i=1, size(given%node))]))/sum(abs(given%coefficient)))
       end associate
@@ -141,7 +141,7 @@ contains
     real(wp), dimension(directions, size(platen%follower)) :: arm, moved
     integer :: far
 
-    arm = model%x(:, platen%follower) - spread(model%x(:, platen%leader), 2, size(platen%follower))
+    arm = model%mesh%x(:, platen%follower) - spread(model%mesh%x(:, platen%leader), 2, size(platen%follower))
     moved = displacement(:, platen%follower) - &
             spread(displacement(:, platen%leader), 2, size(platen%follower))
     far = maxloc(sum(arm**2, dim=1), dim=1)
@@ -152,12 +152,12 @@ contains
   !> Find the longest lever arm of each rotating platen [length] [platens].
   pure function longest_arms(model) result(length)
     type(model_type), intent(in) :: model         !! model
-    real(wp) :: length(size(model%platen))
+    real(wp) :: length(size(model%constraints%platen))
     integer :: i, k
 
     do k = 1, size(length)
-      associate (platen => model%platen(k))
-        length(k) = maxval([(norm2(model%x(:, platen%follower(i)) - model%x(:, platen%leader)), &
+      associate (platen => model%constraints%platen(k))
+        length(k) = maxval([(norm2(model%mesh%x(:, platen%follower(i)) - model%mesh%x(:, platen%leader)), &
                              i=1, size(platen%follower))])
       end associate
     end do

@@ -55,11 +55,11 @@ contains
     real(wp) :: determinant, radius
     integer :: k, n, p
 
-    n = model%node_count(element)
+    n = model%mesh%node_count(element)
     do k = 1, n
-      x(:, k) = model%x(:, model%connectivity(k, element))
+      x(:, k) = model%mesh%x(:, model%mesh%connectivity(k, element))
     end do
-    associate (s => model%section(element), kind => model%kinds(model%kind(element)))
+    associate (s => model%mesh%section(element), kind => model%mesh%kinds(model%mesh%kind(element)))
       do p = 1, kind%points
         ! d x/d local, one column each; relative to the first node, so that a distance from the origin takes
         ! no digits.
@@ -69,7 +69,7 @@ contains
           side(:, 2) = side(:, 2) + (x(:, k) - x(:, 1))*slope(2, k, p)
         end do
         determinant = side(1, 1)*side(2, 2) - side(1, 2)*side(2, 1)
-        volume(p) = kind%weight(p)*determinant*model%thickness(s)
+        volume(p) = kind%weight(p)*determinant*model%sections%thickness(s)
         strain(:, :, :n, p) = 0.0_wp
         do k = 1, n
           gradient(1) = (slope(1, k, p)*side(2, 2) - slope(2, k, p)*side(2, 1))/determinant
@@ -79,12 +79,12 @@ contains
           strain(4, 1, k, p) = gradient(2)
           strain(4, 2, k, p) = gradient(1)
         end do
-        if (model%kinematics(s) /= axisymmetric) cycle
+        if (model%sections%kinematics(s) /= axisymmetric) cycle
         radius = dot_product(kind%values(:n, p), x(1, :n))
         strain(3, 1, :n, p) = kind%values(:n, p)/radius
         volume(p) = kind%weight(p)*determinant*2.0_wp*acos(-1.0_wp)*radius
       end do
-      if (kind%mean_dilatation .and. model%kinematics(s) /= plane_stress) &
+      if (kind%mean_dilatation .and. model%sections%kinematics(s) /= plane_stress) &
         call average_dilatation(strain(:, :, :n, :kind%points), volume(:kind%points))
     end associate
   end subroutine unit_strains
@@ -113,12 +113,12 @@ contains
     integer :: e, k
 
     face = 0.0_wp
-    do e = 1, model%elements
-      least = model%x(:, model%connectivity(1, e))
+    do e = 1, model%mesh%elements
+      least = model%mesh%x(:, model%mesh%connectivity(1, e))
       most = least
-      do k = 2, model%node_count(e)
-        least = min(least, model%x(:, model%connectivity(k, e)))
-        most = max(most, model%x(:, model%connectivity(k, e)))
+      do k = 2, model%mesh%node_count(e)
+        least = min(least, model%mesh%x(:, model%mesh%connectivity(k, e)))
+        most = max(most, model%mesh%x(:, model%mesh%connectivity(k, e)))
       end do
       face = max(face, maxval(most - least)*model%depth(e, most(1)))
     end do

@@ -21,13 +21,13 @@ contains
     real(wp), intent(in) :: strain(components)       !! xx, yy, zz, xy (engineering)
     real(wp) :: stress(components), across, lambda, mu, secant, shear, total
 
-    associate (young => model%young(section), nu => model%poisson(section))
+    associate (young => model%sections%young(section), nu => model%sections%poisson(section))
       secant = young
       mu = nu
-      if (allocated(model%curve(section)%strain)) then
+      if (allocated(model%sections%curve(section)%strain)) then
         total = strain_on_curve()
-        if (total > model%curve(section)%strain(2)) then
-          secant = stress_at(model%curve(section), total)/total
+        if (total > model%sections%curve(section)%strain(2)) then
+          secant = stress_at(model%sections%curve(section), total)/total
           mu = poisson_ratio(total)
         end if
       end if
@@ -36,7 +36,7 @@ contains
       shear = young/(3.0_wp*young/secant - (1.0_wp - 2.0_wp*nu))
       lambda = young/(3.0_wp*(1.0_wp - 2.0_wp*nu)) - 2.0_wp/3.0_wp*shear
       stress = lambda*(strain(1) + strain(2) + across) + 2.0_wp*shear*[strain(1), strain(2), across, 0.0_wp]
-      if (model%kinematics(section) == plane_stress) stress(3) = 0.0_wp
+      if (model%sections%kinematics(section) == plane_stress) stress(3) = 0.0_wp
       stress(4) = shear*strain(4)
     end associate
 
@@ -48,7 +48,7 @@ contains
       real(wp) :: high, middle
       integer :: k
 
-      low = model%curve(section)%strain(2)
+      low = model%sections%curve(section)%strain(2)
       if (.not. is_beyond(low)) return
       high = low
       do while (is_beyond(high))
@@ -79,11 +79,12 @@ contains
     pure real(wp) function poisson_ratio(total)
       real(wp), intent(in) :: total
 
-      associate (curve => model%curve(section), compressible => 0.5_wp - model%poisson(section))
+      associate (curve => model%sections%curve(section), &
+                 compressible => 0.5_wp - model%sections%poisson(section))
         if (model%controls%paper_ratio) then
           poisson_ratio = 0.5_wp - compressible*curve%stress(2)/stress_at(curve, total)
         else
-          poisson_ratio = 0.5_wp - compressible*stress_at(curve, total)/total/model%young(section)
+          poisson_ratio = 0.5_wp - compressible*stress_at(curve, total)/total/model%sections%young(section)
         end if
       end associate
     end function poisson_ratio
@@ -93,7 +94,8 @@ contains
       real(wp), intent(in) :: mu
 
       strain_across = strain(3)
-      if (model%kinematics(section) == plane_stress) strain_across = -mu/(1.0_wp - mu)*(strain(1) + strain(2))
+      if (model%sections%kinematics(section) == plane_stress) strain_across = &
+        -mu/(1.0_wp - mu)*(strain(1) + strain(2))
     end function strain_across
   end function stress_on_curve
 
@@ -123,14 +125,15 @@ contains
     real(wp) :: bulk, deviator(components), equivalent, high, low, mean, part, shear
     integer :: k
 
-    bulk = model%young(section)/(3.0_wp*(1.0_wp - 2.0_wp*model%poisson(section)))
-    shear = model%young(section)/(2.0_wp*(1.0_wp + model%poisson(section)))
+    bulk = model%sections%young(section)/(3.0_wp*(1.0_wp - 2.0_wp*model%sections%poisson(section)))
+    shear = model%sections%young(section)/(2.0_wp*(1.0_wp + model%sections%poisson(section)))
     low = 0.0_wp
     high = 1.0_wp
     part = high
     do k = 1, halvings
       call divide(part, mean, deviator, equivalent)
-      if (3.0_wp*shear*part*equivalent > stress_when_hardened(model%curve(section), model%young(section), &
+      if (3.0_wp*shear*part*equivalent > stress_when_hardened(model%sections%curve(section), &
+                                                              model%sections%young(section), &
                                                                hardened + (1.0_wp - part)*equivalent)) then
         high = part
       else
@@ -142,7 +145,7 @@ contains
     call divide(part, mean, deviator, equivalent)
     stress = 2.0_wp*shear*part*deviator
     stress(:3) = stress(:3) + 3.0_wp*bulk*mean
-    if (model%kinematics(section) == plane_stress) stress(3) = 0.0_wp
+    if (model%sections%kinematics(section) == plane_stress) stress(3) = 0.0_wp
     plastic = plastic + (1.0_wp - part)*deviator*[1.0_wp, 1.0_wp, 1.0_wp, 2.0_wp]
     hardened = hardened + (1.0_wp - part)*equivalent
 
@@ -157,7 +160,7 @@ contains
 
       beyond = strain - plastic
       lambda = bulk - 2.0_wp/3.0_wp*part*shear
-      if (model%kinematics(section) == plane_stress) &
+      if (model%sections%kinematics(section) == plane_stress) &
         beyond(3) = -lambda/(lambda + 2.0_wp*part*shear)*(beyond(1) + beyond(2))
       mean = sum(beyond(:3))/3.0_wp
       deviator = [beyond(:3) - mean, 0.5_wp*beyond(4)]

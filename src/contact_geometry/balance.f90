@@ -8,7 +8,8 @@ module epcont_contact_geometry_balance
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: coincident, rounded_off
   use epcont_geometry_plane, only: cross_product, unit
-  use epcont_model_model, only: line_contact, model_type
+  use epcont_model_contact_rows, only: line_contact
+  use epcont_model_model, only: model_type
   implicit none
   private
   public :: balance_pairs
@@ -22,20 +23,20 @@ contains
   !! balances these. Contacts whose centres lie at one place, inside and outside of a ring, have one centre.
   subroutine balance_pairs(model)
     type(model_type), intent(inout) :: model   !! the scene, with all its pairs
-    real(wp) :: centre(2, size(model%line_contact))   ! of those that are round [length]
-    logical :: cut(model%nodes)
+    real(wp) :: centre(2, size(model%contact%line_contact))   ! of those that are round [length]
+    logical :: cut(model%mesh%nodes)
     integer :: c, centres, i, k
 
-    if (size(model%line_contact) == 0) return
+    if (size(model%contact%line_contact) == 0) return
     cut = .false.
-    associate (line => model%boundary)
+    associate (line => model%contact%boundary)
       associate (node => pack(line%segment(:2, :), line%mirrored .or. line%corner))
-        cut(node) = model%is_held(1, node) .or. model%is_held(2, node)
+        cut(node) = model%constraints%is_held(1, node) .or. model%constraints%is_held(2, node)
       end associate
     end associate
     centres = 0
-    do c = 1, size(model%line_contact)
-      associate (contact => model%line_contact(c), b => model%pair_node(2, :))
+    do c = 1, size(model%contact%line_contact)
+      associate (contact => model%contact%line_contact(c), b => model%contact%pair_node(2, :))
         associate (pairs => pack([(k, k=contact%first, contact%last)], &
                                  .not. cut(b(contact%first:contact%last))))
           call turn_normals(contact, pairs)
@@ -53,22 +54,22 @@ contains
     subroutine turn_normals(contact, pairs)
       type(line_contact), intent(in) :: contact
       integer, intent(in) :: pairs(:)
-      real(wp) :: away(2), middle(2), outward(2, model%nodes), own(2), own_radius, radius
+      real(wp) :: away(2), middle(2), outward(2, model%mesh%nodes), own(2), own_radius, radius
       integer, allocatable :: turned(:)
       integer :: side
 
       turned = pack(pairs, pairs < contact%first_of_master)
-      associate (node => model%pair_node(2, turned), normal => model%normal(:, turned))
-        call find_centre(model%x(:, node), normal, middle, radius)
+      associate (node => model%contact%pair_node(2, turned), normal => model%contact%normal(:, turned))
+        call find_centre(model%mesh%x(:, node), normal, middle, radius)
         if (radius == 0.0_wp) return
         do side = 1, size(contact%slave%element)
           do k = 1, merge(3, 2, contact%slave%segment(3, side) > 0)
             outward(:, contact%slave%segment(k, side)) = contact%slave%normal(:, k, side)
           end do
         end do
-        call find_centre(model%x(:, node), outward(:, node), own, own_radius)
+        call find_centre(model%mesh%x(:, node), outward(:, node), own, own_radius)
         if (own_radius > 0.0_wp .and. &
-            all(sum(normal*(model%x(:, node) - spread(middle, 2, size(node))), dim=1) < 0.0_wp)) then
+            all(sum(normal*(model%mesh%x(:, node) - spread(middle, 2, size(node))), dim=1) < 0.0_wp)) then
           middle = own
           turned = pairs
         end if
@@ -79,8 +80,9 @@ contains
       if (k > centres) centre(:, k) = middle
       centres = max(centres, k)
       do i = 1, size(turned)
-        away = model%x(:, model%pair_node(2, turned(i))) - centre(:, k)
-        model%normal(:, turned(i)) = sign(1.0_wp, dot_product(model%normal(:, turned(i)), away))*unit(away)
+        away = model%mesh%x(:, model%contact%pair_node(2, turned(i))) - centre(:, k)
+        model%contact%normal(:, turned(i)) = sign(1.0_wp, &
+          dot_product(model%contact%normal(:, turned(i)), away))*unit(away)
       end do
     end subroutine turn_normals
 
@@ -92,10 +94,11 @@ contains
       real(wp) :: lever, width
       integer :: k
 
-      associate (first => model%row_start(pair) + 1, last => model%row_start(pair + 1) - 1, &
-                 normal => model%normal(:, pair))
-        associate (weight => model%row_weight(first:last), node => model%row_node(first:last))
-          along = [(cross_product(normal, model%x(:, node(k)) - model%x(:, model%pair_node(2, pair))), &
+      associate (first => model%contact%row_start(pair) + 1, last => model%contact%row_start(pair + 1) - 1, &
+                 normal => model%contact%normal(:, pair))
+        associate (weight => model%contact%row_weight(first:last), node => model%contact%row_node(first:last))
+          along = [(cross_product(normal, model%mesh%x(:, node(k)) - model%mesh%x(:, &
+            model%contact%pair_node(2, pair))), &
                     k=1, size(node))]
           lever = dot_product(weight, along)
           much = abs(weight)/sum(abs(weight))
@@ -103,7 +106,8 @@ contains
           width = dot_product(much, along**2)
           if (width <= 0.0_wp .or. abs(lever) <= rounded_off*sqrt(width)) return
           weight = weight - lever/width*much*along
-          model%pair_node(1, pair) = node(minloc(weight, dim=1, mask=node /= model%pair_node(2, pair)))
+          model%contact%pair_node(1, pair) = node(minloc(weight, dim=1, &
+                                                         mask=node /= model%contact%pair_node(2, pair)))
         end associate
       end associate
     end subroutine move_weights

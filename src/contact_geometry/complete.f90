@@ -8,15 +8,16 @@ module epcont_contact_geometry_complete
   use epcont_deck_entry, only: least_cause
   use epcont_element_kinematics, only: directions, plane_strain
   use epcont_geometry_outline_shape, only: new_outline_shape, outline_shape
-  use epcont_model_arrays, only: angle, scene_type
+  use epcont_model_arrays, only: angle, dof_tie, scene_type
   use epcont_model_controls, only: method_auto, method_newton
   use epcont_model_element_shapes, only: check_axis, complete_elements
   use epcont_model_finding, only: findings, of_node, of_paper_ratio, of_platen, of_section, of_theory
   use epcont_model_freedoms, only: check_reference, follow_to_the_end, tie_freedom
-  use epcont_model_given, only: check_values, number_parts, take_arrays
+  use epcont_model_given, only: check_values, take_arrays
   use epcont_model_load_cases, only: load_cases, put_case
   use epcont_model_load_checks, only: check_body_forces, check_loads
   use epcont_model_model, only: model_type
+  use epcont_model_parts, only: make_parts
   use epcont_model_single_pairs, only: complete_pairs
   use epcont_model_springs, only: check_spring_ends
   use epcont_model_ties, only: check_equation, complete_ties, turn_followers
@@ -32,31 +33,33 @@ contains
     type(model_type), intent(out) :: model     !! made from them
     type(findings), intent(out) :: found       !! all that is wrong with it, or looks so
     type(load_cases) :: cases
+    type(scene_type) :: data
 
-    call take_arrays(given, model%scene_type, cases, found)
-    if (found%errors == 0) call complete_model(model, cases, 1, found)
+    call take_arrays(given, data, cases, found)
+    if (found%errors == 0) call complete_model(data, cases, 1, model, found)
   end subroutine complete_arrays
 
   !> Check model data and make them a model; without errors it can be solved. References of model data that
   !! have errors already may be 0: the object was not found, which has been reported.
-  subroutine complete_model(model, cases, case, found)
-    type(model_type), intent(inout) :: model   !! with its data, and ids if they are not positions
+  subroutine complete_model(data, cases, case, model, found)
+    type(scene_type), intent(inout) :: data    !! its arrays are taken
     type(load_cases), intent(in) :: cases      !! of the model
     integer, intent(in) :: case                !! load case that it gets
+    type(model_type), intent(inout) :: model   !! has ids, if they are not positions
     type(findings), intent(inout) :: found     !! all that is wrong with it, or looks so
     type(outline_shape) :: drawn
 
     if (found%errors == 0) then
-      call check_values(model%scene_type, found)
+      call check_values(data, found)
       if (found%errors > 0) return
     end if
-    call number_parts(model)
+    call make_parts(data, model)
     call complete_elements(model, found)
-    call complete_freedoms(model, found)
+    call complete_freedoms(data%tie, model, found)
     call check_axis(model, found)
     ! What iterations of a mesher leave of zero. Sides are longer by far, but what it makes of gaps would load
     ! the scene.
-    where (abs(model%x) < least_cause) model%x = 0.0_wp
+    where (abs(model%mesh%x) < least_cause) model%mesh%x = 0.0_wp
     call complete_pairs(model, found)
     call find_line_contacts(model, found)
     call check_controls(model, found)
@@ -65,38 +68,40 @@ contains
     call put_case(cases, case, model)
     call check_body_forces(model, cases%body%given, found)
     call check_pairs(model, found)
-    drawn = new_outline_shape(model%body_outline, model%x)
+    drawn = new_outline_shape(model%mesh%body_outline, model%mesh%x)
     call warn_of_hanging_nodes(model, drawn, found)
     call warn_of_lying_together(model, drawn, found)
   end subroutine complete_model
 
   !> Complete ties, platens, SUPORT DOFs, equations and springs. Each is checked against those before it.
-  subroutine complete_freedoms(model, found)
+  subroutine complete_freedoms(tie, model, found)
+    type(dof_tie), intent(in) :: tie(:)
     type(model_type), intent(inout) :: model
     type(findings), intent(inout) :: found
     integer :: c, i, k
 
-    model%sum_of = spread([0, 0], 2, model%nodes)
-    model%leader = spread([(i, i=1, model%nodes)], 1, directions)
-    do k = 1, size(model%tie)
-      call tie_freedom(model, k, found)
+    model%constraints%sum_of = spread([0, 0], 2, model%mesh%nodes)
+    model%constraints%leader = spread([(i, i=1, model%mesh%nodes)], 1, directions)
+    do k = 1, size(tie)
+      call tie_freedom(model, k, tie(k), found)
     end do
-    if (size(model%platen) > 0 .and. model%has_rings()) call found%add_error(of_platen, 1, 0, &
-      ': '//model%name_of(of_node, model%platen(1)%leader)//' would turn, and rings do not', &
+    if (size(model%constraints%platen) > 0 .and. model%has_rings()) call found%add_error(of_platen, 1, 0, &
+      ': '//model%name_of(of_node, model%constraints%platen(1)%leader)//' would turn, and rings do not', &
       'no MOMENT, SUPORT or SPC that names its direction 6')
-    do k = 1, size(model%platen)
+    do k = 1, size(model%constraints%platen)
       call turn_followers(model, k, found)
     end do
-    call follow_to_the_end(model%leader)
-    do i = 1, model%nodes
+    call follow_to_the_end(model%constraints%leader)
+    do i = 1, model%mesh%nodes
       do c = 1, directions
-        if (model%reference(c, i)) call check_reference(model, c, i, found)
+        if (model%constraints%reference(c, i)) call check_reference(model, c, i, found)
       end do
     end do
-    do k = 1, size(model%platen)
-      if (model%platen(k)%reference) call check_reference(model, angle, model%platen(k)%leader, found)
+    do k = 1, size(model%constraints%platen)
+      if (model%constraints%platen(k)%reference) call check_reference(model, angle, &
+        model%constraints%platen(k)%leader, found)
     end do
-    do k = 1, size(model%equation)
+    do k = 1, size(model%constraints%equation)
       call check_equation(model, k, found)
     end do
     call complete_ties(model, found)
@@ -119,8 +124,9 @@ contains
     if (model%controls%method == method_newton) &
       call found%add_error(of_paper_ratio, 0, 2, ': PAPER does not go with METHOD NEWTON', &
                            'METHOD SECANT, MODSEC or INISTR, or MUP EXACT')
-    do s = 1, size(model%curve)
-      if (model%kinematics(s) == plane_strain .or. .not. allocated(model%curve(s)%strain)) cycle
+    do s = 1, size(model%sections%curve)
+      if (model%sections%kinematics(s) == plane_strain .or. &
+          .not. allocated(model%sections%curve(s)%strain)) cycle
       call found%add_error(of_paper_ratio, 0, 2, &
         ': formula (2-4) for Poisson''s ratio beyond yield (MUP PAPER) is of plane strain; '// &
         model%name_of(of_section, s)//' can yield, and is not', &

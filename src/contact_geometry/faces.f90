@@ -4,7 +4,7 @@ module epcont_contact_geometry_faces
   use epcont_base_kinds, only: wp
   use epcont_geometry_boundary_line, only: boundary_line, facing_type
   use epcont_geometry_facing, only: find_facing, node_of, same_face
-  use epcont_model_model, only: line_contact
+  use epcont_model_contact_rows, only: line_contact
   implicit none
   private
   public :: faces_type, find_faces, has_face, node_face

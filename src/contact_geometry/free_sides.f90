@@ -19,21 +19,21 @@ contains
     type(findings), intent(inout) :: found   !! elements that overlap are added
     type(outline_type) :: outline
     !> Free sides as they are found, and those before them: which one of which element
-    integer, dimension(2, size(model%around%group)) :: free, former
+    integer, dimension(2, size(model%mesh%around%group)) :: free, former
     !> The elements around a node; which of their corners it is, the next and the former one
-    integer, dimension(maxval(model%around%start(2:) - model%around%start(:model%nodes))) :: &
+    integer, dimension(maxval(model%mesh%around%start(2:) - model%mesh%around%start(:model%mesh%nodes))) :: &
       element, own, next, last
     !> Of the sides of each element; 0: not free
-    integer :: number(maxval(model%kinds%corners), model%elements)
+    integer :: number(maxval(model%mesh%kinds%corners), model%mesh%elements)
     integer, allocatable :: after(:), before(:), chain(:), order(:), place(:)
-    integer :: over(model%elements)   ! an element with a side of it the same way round; 0: there is none
+    integer :: over(model%mesh%elements)   ! an element with a side of it the same way round; 0: there is none
     type(incidence) :: by_part
     integer :: k, node, sides
 
     over = 0
     number = 0
     sides = 0
-    do node = 1, model%nodes
+    do node = 1, model%mesh%nodes
       call look_around()
     end do
     call check_overlaps(model, over, found)
@@ -48,7 +48,7 @@ contains
     chain = chained()
     call find_parts()
     outline%sides = sides
-    outline%node = reshape([(model%edge(free(2, k), free(1, k)), k=1, sides)], [3, sides])
+    outline%node = reshape([(model%mesh%edge(free(2, k), free(1, k)), k=1, sides)], [3, sides])
     outline%part = outline%part_of(outline%node(1, :))
     by_part = new_incidence(reshape(outline%part(chain), [1, sides]), outline%parts)
     order = chain(by_part%group)
@@ -69,16 +69,16 @@ contains
       integer :: corners, i, k, n
 
       n = 0
-      do i = model%around%start(node), model%around%start(node + 1) - 1
-        associate (e => model%around%group(i))
-          corners = model%corners(e)
-          k = place_of(node, model%connectivity(:corners, e))
+      do i = model%mesh%around%start(node), model%mesh%around%start(node + 1) - 1
+        associate (e => model%mesh%around%group(i))
+          corners = model%mesh%corners(e)
+          k = place_of(node, model%mesh%connectivity(:corners, e))
           if (k == 0) cycle   ! the middle of a side
           n = n + 1
           element(n) = e
           own(n) = k
-          next(n) = model%connectivity(mod(k, corners) + 1, e)
-          last(n) = model%connectivity(mod(k + corners - 2, corners) + 1, e)
+          next(n) = model%mesh%connectivity(mod(k, corners) + 1, e)
+          last(n) = model%mesh%connectivity(mod(k + corners - 2, corners) + 1, e)
         end associate
       end do
       do i = 1, n
@@ -86,7 +86,7 @@ contains
         if (k > 0) over(element(i)) = element(k)
         if (place_of(next(i), last(:n)) > 0) cycle
         k = fan_end(last(:n), next(:n), i)
-        corners = model%corners(element(k))
+        corners = model%mesh%corners(element(k))
         sides = sides + 1
         free(:, sides) = [own(i), element(i)]
         former(:, sides) = [mod(own(k) + corners - 2, corners) + 1, element(k)]
@@ -99,15 +99,15 @@ contains
       integer, allocatable :: part(:), set(:)
       integer :: i, sets
 
-      if (model%is_tied([(i, i=1, model%nodes)])) then
+      if (model%constraints%is_tied([(i, i=1, model%mesh%nodes)])) then
         call join_nodes(model, .false., set, sets)
       else
-        set = model%body
-        sets = model%bodies
+        set = model%mesh%body
+        sets = model%mesh%bodies
       end if
-      allocate (part(sets), outline%part_of(model%nodes), source=0)
-      do i = 1, model%nodes
-        if (model%around%start(i) == model%around%start(i + 1)) cycle
+      allocate (part(sets), outline%part_of(model%mesh%nodes), source=0)
+      do i = 1, model%mesh%nodes
+        if (model%mesh%around%start(i) == model%mesh%around%start(i + 1)) cycle
         if (part(set(i)) == 0) then
           outline%parts = outline%parts + 1
           part(set(i)) = outline%parts

@@ -14,7 +14,8 @@ module epcont_contact_geometry_line_contacts
   use epcont_geometry_plane, only: extent_of
   use epcont_model_finding, only: findings, of_couple, of_line
   use epcont_model_freedoms, only: join_nodes
-  use epcont_model_model, only: line_contact, model_type
+  use epcont_model_contact_rows, only: line_contact
+  use epcont_model_model, only: model_type
   implicit none
   private
   public :: find_line_contacts
@@ -36,32 +37,32 @@ contains
     type(model_type), intent(inout) :: model   !! the scene
     type(findings), intent(inout) :: found   !! what is wrong with it is added
     integer, allocatable :: number(:)   ! of the contact that each couple is of
-    logical :: used(0:size(model%line))
+    logical :: used(0:size(model%contact%line))
     type(line_contact) :: contact
     type(faces_type) :: faces
     integer :: c, contacts, i
 
     if (found%errors == 0) then   ! only sound elements have outlines
-      call join_nodes(model, .true., model%body, model%bodies)
-      model%body_outline = find_outline(model, found)
+      call join_nodes(model, .true., model%mesh%body, model%mesh%bodies)
+      model%mesh%body_outline = find_outline(model, found)
     end if
     call find_line_sides(model, found)
-    used = [.false., model%line%is_named]
-    do i = 1, size(model%couple)
-      used(model%couple(i)%line) = .true.
-      if (all(model%couple(i)%line > 0)) call check_couple()
+    used = [.false., model%contact%line%is_named]
+    do i = 1, size(model%contact%couple)
+      used(model%contact%couple(i)%line) = .true.
+      if (all(model%contact%couple(i)%line > 0)) call check_couple()
     end do
-    do i = 1, size(model%line)
+    do i = 1, size(model%contact%line)
       if (.not. used(i)) call found%add_warning(of_line, i, 1, ': no BCONP names it', &
           'a BCONP with it as SLAVE or MASTER, or no such line')
     end do
     contacts = 0
     if (found%errors == 0) call join_couples()
-    allocate (model%line_contact(contacts))
+    allocate (model%contact%line_contact(contacts))
     do c = 1, contacts
       contact = new_contact(model, pack([(i, i=1, size(number))], number == c))
       call find_pairs(model, found, contact, faces)
-      model%line_contact(c) = contact
+      model%contact%line_contact(c) = contact
     end do
     if (contacts > 0) call end_pairs(model)
     if (found%errors > 0) return
@@ -75,7 +76,7 @@ contains
     subroutine check_couple()
       integer :: k
 
-      associate (slave => model%couple(i)%line(1), master => model%couple(i)%line(2))
+      associate (slave => model%contact%couple(i)%line(1), master => model%contact%couple(i)%line(2))
         if (slave == master) then
           call found%add_error(of_couple, i, 3, ': SLAVE and MASTER are one line', 'another BLSEG')
           return
@@ -85,7 +86,7 @@ contains
           return
         end if
         do k = 1, i - 1
-          associate (line => model%couple(k)%line)
+          associate (line => model%contact%couple(k)%line)
             if (any(line == 0)) cycle
             if (.not. (overlap(slave, line(2)) .and. overlap(master, line(1))) .and. &
                 any(line /= [slave, master])) cycle
@@ -103,7 +104,8 @@ contains
       integer, intent(in) :: a, b
 
       overlap = a == b
-      if (.not. overlap .and. meet(a, b)) overlap = have_common(model%line(a)%side, model%line(b)%side)
+      if (.not. overlap .and. meet(a, b)) overlap = &
+        have_common(model%contact%line(a)%side, model%contact%line(b)%side)
     end function overlap
 
     !> Do two lines have a node in common? Of many that there may be, boxes tell that most do not.
@@ -111,7 +113,7 @@ contains
       integer, intent(in) :: a, b
 
       meet = a == b
-      associate (one => model%line(a), other => model%line(b))
+      associate (one => model%contact%line(a), other => model%contact%line(b))
         if (meet .or. any(one%box(:, 1) > other%box(:, 2)) .or. any(other%box(:, 1) > one%box(:, 2))) return
         meet = have_common(one%node, other%node)
       end associate
@@ -123,10 +125,10 @@ contains
       type(partition) :: sets
       integer :: i, k
 
-      sets = new_partition(size(model%couple))
-      do i = 2, size(model%couple)
+      sets = new_partition(size(model%contact%couple))
+      do i = 2, size(model%contact%couple)
         do k = 1, i - 1
-          associate (one => model%couple(i)%line, other => model%couple(k)%line)
+          associate (one => model%contact%couple(i)%line, other => model%contact%couple(k)%line)
             if (.not. meet(one(1), other(1))) cycle
             if (overlap(one(1), other(1)) .or. meet(one(2), other(2))) call sets%join(i, k)
           end associate
@@ -143,10 +145,10 @@ contains
     integer :: k
 
     contact%couple = couples
-    associate (couple => model%couple(couples))
+    associate (couple => model%contact%couple(couples))
       contact%bconp = couple%id
-      contact%slave_id = model%line(once(couple%line(1)))%id
-      contact%master_id = model%line(once(couple%line(2)))%id
+      contact%slave_id = model%contact%line(once(couple%line(1)))%id
+      contact%master_id = model%contact%line(once(couple%line(2)))%id
       contact%slave = sides_of(couple%line(1))
       contact%master = sides_of(couple%line(2))
     end associate
@@ -163,7 +165,7 @@ contains
       integer, intent(in) :: lines(:)
       integer :: k
 
-      sides_of = model%boundary%pick(once([(model%line(lines(k))%side, k=1, size(lines))]))
+      sides_of = model%contact%boundary%pick(once([(model%contact%line(lines(k))%side, k=1, size(lines))]))
     end function sides_of
   end function new_contact
 
@@ -177,7 +179,7 @@ contains
     do
       call add_pairs(model, contact, faces)
       if (contact%last >= contact%first) exit
-      if (contact%search > sum(extent_of(model%x(:, model%around%members())))) then
+      if (contact%search > sum(extent_of(model%mesh%x(:, model%mesh%around%members())))) then
         call add_nothing_faced()
         return
       end if

@@ -8,7 +8,8 @@ module epcont_contact_geometry_line_pairs
   use epcont_contact_geometry_mortar, only: find_mortar_rows, mortar_row
   use epcont_geometry_boundary_line, only: beyond, facing_type
   use epcont_geometry_facing, only: find_facing, looking_point, node_of, same_face
-  use epcont_model_model, only: line_contact, model_type
+  use epcont_model_contact_rows, only: line_contact
+  use epcont_model_model, only: model_type
   implicit none
   private
   public :: add_pairs, end_pairs
@@ -31,17 +32,17 @@ contains
     logical :: covered(size(contact%slave%element))
     integer :: k
 
-    call find_faces(contact, model%boundary, faces)
+    call find_faces(contact, model%contact%boundary, faces)
     call find_mortar_rows(model, contact, faces, rows, covered, ends)
     call find_tips()
     contact%stands_on = tips%segment
     contact%came_near = pack(contact%came_near, [(any(tips%node == contact%came_near(k)), &
         k=1, size(contact%came_near))])
-    contact%first = model%pairs + 1
+    contact%first = model%contact%pairs + 1
     contact%first_of_master = contact%first + size(faces%row)
     call append_pairs(faces%row, rows(:size(faces%row)), model)
     call append_pairs(tips, rows_of_tips(), model)
-    contact%last = model%pairs
+    contact%last = model%contact%pairs
     associate (side => contact%left_out(1, :), which => contact%left_out(2, :))
       contact%nodes_left_out = count_others([(contact%slave%segment(which(k), side(k)), k=1, size(side))], &
                                             faces%row%node)
@@ -63,7 +64,7 @@ contains
           from = node_of(contact%master, side, which)
           near = any(contact%came_near == from%node)
           if (.not. (near .or. from%at_tip)) cycle
-          on = find_facing(contact%slave, model%boundary, from, contact%search)
+          on = find_facing(contact%slave, model%contact%boundary, from, contact%search)
           do i = 1, 2
             if (.not. on(i)%found) cycle
             counts = near .or. .not. covered(on(i)%segment)
@@ -135,25 +136,27 @@ contains
     type(model_type), intent(inout) :: model
     integer :: entries, i, k, pairs
 
-    pairs = model%pairs + size(b)
-    entries = model%row_start(model%pairs + 1) - 1 + sum([(size(row(i)%node) + 1, i=1, size(b))])
-    if (pairs > size(model%pair_id) .or. entries > size(model%row_node)) &
+    pairs = model%contact%pairs + size(b)
+    entries = model%contact%row_start(model%contact%pairs + 1) - 1 + &
+      sum([(size(row(i)%node) + 1, i=1, size(b))])
+    if (pairs > size(model%contact%pair_id) .or. entries > size(model%contact%row_node)) &
       call set_room(model, 2*pairs, 2*entries)   ! or many contacts would copy all before them
     do i = 1, size(b)
-      k = model%pairs + i
-      associate (first => model%row_start(k), node => row(i)%node)
+      k = model%contact%pairs + i
+      associate (first => model%contact%row_start(k), node => row(i)%node)
         associate (last => first + size(node))
-          model%row_node(first:last) = [b(i)%node, node]
-          model%row_weight(first:last) = [1.0_wp, -row(i)%weight]
-          model%row_start(k + 1) = last + 1
+          model%contact%row_node(first:last) = [b(i)%node, node]
+          model%contact%row_weight(first:last) = [1.0_wp, -row(i)%weight]
+          model%contact%row_start(k + 1) = last + 1
         end associate
-        model%pair_node(:, k) = [node(maxloc(row(i)%weight, dim=1, mask=node /= b(i)%node)), b(i)%node]
+        model%contact%pair_node(:, k) = [node(maxloc(row(i)%weight, dim=1, mask=node /= b(i)%node)), &
+                                         b(i)%node]
       end associate
-      model%pair_id(k) = model%node_id(b(i)%node)
-      model%normal(:, k) = b(i)%normal
-      model%initial_gap(k) = b(i)%gap
+      model%contact%pair_id(k) = model%mesh%node_id(b(i)%node)
+      model%contact%normal(:, k) = b(i)%normal
+      model%contact%initial_gap(k) = b(i)%gap
     end do
-    model%pairs = pairs
+    model%contact%pairs = pairs
   end subroutine append_pairs
 
   !> How many nodes of a list are not in another.
@@ -171,7 +174,7 @@ contains
   subroutine end_pairs(model)
     type(model_type), intent(inout) :: model   !! the scene
 
-    call set_room(model, model%pairs, model%row_start(model%pairs + 1) - 1)
+    call set_room(model, model%contact%pairs, model%contact%row_start(model%contact%pairs + 1) - 1)
   end subroutine end_pairs
 
   !> Room for so many pairs, and entries of their rows of N.
@@ -180,14 +183,15 @@ contains
     integer, intent(in) :: pairs, entries
     integer :: k
 
-    associate (n => model%pairs, last => model%row_start(model%pairs + 1) - 1)
-      model%row_node = [model%row_node(:last), (0, k=last + 1, entries)]
-      model%row_weight = [model%row_weight(:last), (0.0_wp, k=last + 1, entries)]
-      model%row_start = [model%row_start(:n + 1), (0, k=n + 1, pairs)]
-      model%pair_id = [model%pair_id(:n), (0, k=n + 1, pairs)]
-      model%pair_node = reshape([model%pair_node(:, :n), (0, 0, k=n + 1, pairs)], [2, pairs])
-      model%normal = reshape([model%normal(:, :n), (0.0_wp, 0.0_wp, k=n + 1, pairs)], [2, pairs])
-      model%initial_gap = [model%initial_gap(:n), (0.0_wp, k=n + 1, pairs)]
+    associate (n => model%contact%pairs, last => model%contact%row_start(model%contact%pairs + 1) - 1)
+      model%contact%row_node = [model%contact%row_node(:last), (0, k=last + 1, entries)]
+      model%contact%row_weight = [model%contact%row_weight(:last), (0.0_wp, k=last + 1, entries)]
+      model%contact%row_start = [model%contact%row_start(:n + 1), (0, k=n + 1, pairs)]
+      model%contact%pair_id = [model%contact%pair_id(:n), (0, k=n + 1, pairs)]
+      model%contact%pair_node = reshape([model%contact%pair_node(:, :n), (0, 0, k=n + 1, pairs)], [2, pairs])
+      model%contact%normal = reshape([model%contact%normal(:, :n), (0.0_wp, 0.0_wp, k=n + 1, pairs)], &
+                                     [2, pairs])
+      model%contact%initial_gap = [model%contact%initial_gap(:n), (0.0_wp, k=n + 1, pairs)]
     end associate
   end subroutine set_room
 

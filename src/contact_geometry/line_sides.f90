@@ -22,15 +22,15 @@ contains
     integer :: i, passed
     logical :: sound                          ! the elements are, and the outlines known
 
-    if (size(model%line) == 0) return
+    if (size(model%contact%line) == 0) return
     sound = found%errors == 0
     if (sound) then
-      model%boundary = find_boundary(model)
-      allocate (starting(model%nodes), source=0)
-      starting(model%boundary%segment(1, :)) = [(i, i=1, size(model%boundary%element))]
+      model%contact%boundary = find_boundary(model)
+      allocate (starting(model%mesh%nodes), source=0)
+      starting(model%contact%boundary%segment(1, :)) = [(i, i=1, size(model%contact%boundary%element))]
     end if
-    do i = 1, size(model%line)
-      associate (line => model%line(i))
+    do i = 1, size(model%contact%line)
+      associate (line => model%contact%line(i))
         allocate (line%side(0))
         if (size(line%node) == 1) &
           call found%add_error(of_line, i, 0, ': one node is no line', 'two nodes or more')
@@ -74,13 +74,14 @@ contains
         k = k + 1
       end do
       if (.not. sound .or. sides == 0) return
-      if (model%boundary%segment(1, side(1)) /= node(1)) side(:sides) = side(sides:1:-1)
-      model%line(i)%side = side(:sides)
-      k = model%body_outline%after(side(sides))
-      if (sides > 3 .and. model%body_outline%after(k) == side(1)) &
+      if (model%contact%boundary%segment(1, side(1)) /= node(1)) side(:sides) = side(sides:1:-1)
+      model%contact%line(i)%side = side(:sides)
+      k = model%mesh%body_outline%after(side(sides))
+      if (sides > 3 .and. model%mesh%body_outline%after(k) == side(1)) &
         call found%add_warning(of_line, i, -size(node), ': it leaves out only the side back to its first'// &
                                ' node', 'that node once more at its end: a closed line')
-      model%line(i)%box = reshape([minval(model%x(:, node), dim=2), maxval(model%x(:, node), dim=2)], [2, 2])
+      model%contact%line(i)%box = reshape([minval(model%mesh%x(:, node), dim=2), &
+                                           maxval(model%mesh%x(:, node), dim=2)], [2, 2])
     end subroutine walk
 
     !> Elements that have a side between two corners, and its nodes as the first of them turns; 0: there is
@@ -90,9 +91,9 @@ contains
       integer, allocatable, intent(out) :: element(:)
       integer, intent(out) :: edge(3)
 
-      element = model%with_side(a, b)
+      element = model%mesh%with_side(a, b)
       edge = 0
-      if (size(element) > 0) edge = model%edge_between(element(1), a, b)
+      if (size(element) > 0) edge = model%mesh%edge_between(element(1), a, b)
     end subroutine find_between
 
     !> The side of the outline that an element has, walked with the body to the left.
@@ -100,7 +101,7 @@ contains
       integer, intent(in) :: element, edge(3)
 
       k = starting(edge(1))
-      associate (line => model%boundary)
+      associate (line => model%contact%boundary)
         do while (line%element(k) /= element .or. any(line%segment(:, k) /= edge))
           k = k - 1   ! the only one, but where boundaries meet in a node
         end do
@@ -130,7 +131,7 @@ contains
     type(findings), intent(inout) :: found
     character(len=:), allocatable :: ends
 
-    ends = model%name_of(of_node, node(1))//' and '//text_of(model%node_id(node(2)))
+    ends = model%name_of(of_node, node(1))//' and '//text_of(model%mesh%node_id(node(2)))
     if (size(element) == 0) then
       call found%add_error(of_line, i, -k - 1, ': '//ends//' are not the ends of a side of an element', &
                            'nodes in the order of the boundary, from corner to corner')
@@ -145,21 +146,21 @@ contains
   !> All sides of the bodies, numbered as those of the outlines.
   type(boundary_line) function find_boundary(model) result(line)
     type(model_type), intent(in) :: model
-    integer :: held(2, model%body_outline%sides)   ! the direction: 0 none, 3 both
+    integer :: held(2, model%mesh%body_outline%sides)   ! the direction: 0 none, 3 both
     integer :: i
 
-    associate (outline => model%body_outline, sides => model%body_outline%sides)
+    associate (outline => model%mesh%body_outline, sides => model%mesh%body_outline%sides)
       line%segment = outline%node
       line%element = outline%element
       line%neighbour = transpose(reshape([outline%before, outline%after], [sides, 2]))
       allocate (line%x(2, 3, sides), source=0.0_wp)
       do i = 1, sides
         associate (node => outline%node(:, i))
-          line%x(:, :merge(3, 2, node(3) > 0), i) = model%edge_coordinates(node)
+          line%x(:, :merge(3, 2, node(3) > 0), i) = model%mesh%edge_coordinates(node)
         end associate
       end do
-      held = merge(1, 0, model%is_held(1, outline%node(:2, :))) + &
-             merge(2, 0, model%is_held(2, outline%node(:2, :)))
+      held = merge(1, 0, model%constraints%is_held(1, outline%node(:2, :))) + &
+             merge(2, 0, model%constraints%is_held(2, outline%node(:2, :)))
     end associate
     call find_normals(line, held, model%controls%corner)
   end function find_boundary

@@ -6,7 +6,8 @@ module epcont_contact_geometry_line_warnings
   use epcont_contact_geometry_faces, only: faces_type
   use epcont_geometry_boundary_line, only: boundary_line
   use epcont_model_finding, only: findings, of_couple, of_node
-  use epcont_model_model, only: line_contact, model_type
+  use epcont_model_contact_rows, only: line_contact
+  use epcont_model_model, only: model_type
   implicit none
   private
   public :: warn_of_both_ways, warn_of_contact
@@ -49,14 +50,14 @@ contains
 
       least = digits*maxval(abs(contact%slave%x)) + &
               curve_error*(largest_rise(contact%slave) + largest_rise(contact%master))
-      overlaps = count(model%initial_gap(contact%first:contact%last) < -least)
+      overlaps = count(model%contact%initial_gap(contact%first:contact%last) < -least)
       if (overlaps == 0) return
-      deepest = contact%first - 1 + minloc(model%initial_gap(contact%first:contact%last), dim=1)
+      deepest = contact%first - 1 + minloc(model%contact%initial_gap(contact%first:contact%last), dim=1)
       others = ''
       if (overlaps > 1) others = '; '//text_of(overlaps)//' nodes overlap'
       call found%add_warning(of_couple, contact%couple(1), 1, ': the initial gap at '// &
-                             model%name_of(of_node, model%pair_node(2, deepest))//' is '// &
-                             short_real(model%initial_gap(deepest))//others, &
+                             model%name_of(of_node, model%contact%pair_node(2, deepest))//' is '// &
+                             short_real(model%contact%initial_gap(deepest))//others, &
                              'gaps of 0.0 or more, unless a fit is meant')
     end subroutine warn_of_overlap
 
@@ -90,12 +91,12 @@ contains
       nearest = minval(faces%row%gap)
       length = 0.0_wp
       do s = 1, size(contact%slave%element)
-        if (model%is_rigid(contact%slave%segment(:2, s))) cycle
+        if (model%constraints%is_rigid(contact%slave%segment(:2, s))) cycle
         do k = 1, 2
           if (faces%row_of(k, s) == 0) cycle
           associate (row => faces%row(faces%row_of(k, s)))
             if (row%gap > nearest + contact%slave%chord_length(s)) cycle
-            if (model%is_rigid(contact%master%segment(:2, row%segment))) cycle
+            if (model%constraints%is_rigid(contact%master%segment(:2, row%segment))) cycle
             length = length + [node_distance(contact%slave, s), node_distance(contact%master, row%segment)]
           end associate
         end do
@@ -107,8 +108,8 @@ contains
       real(wp) :: thickness(2)
 
       if (model%has_rings()) return
-      thickness = [maxval(model%thickness(model%section(contact%slave%element))), &
-                   minval(model%thickness(model%section(contact%master%element)))]
+      thickness = [maxval(model%sections%thickness(model%mesh%section(contact%slave%element))), &
+                   minval(model%sections%thickness(model%mesh%section(contact%master%element)))]
       if (thickness(1)*(1.0_wp - digits) > thickness(2)) &
         call found%add_warning(of_couple, contact%couple(1), 2, ': the slave is '// &
                                short_real(thickness(1))//' thick, the master '//short_real(thickness(2))// &
@@ -140,29 +141,30 @@ contains
     type(model_type), intent(in) :: model   !! the scene
     type(findings), intent(inout) :: found   !! what is wrong with it is added
     !> Of each pair, 0: given alone; the pair of each node as slave, 0: none
-    integer :: contact(model%pairs), slave(model%nodes)
-    logical :: told(size(model%line_contact))
+    integer :: contact(model%contact%pairs), slave(model%mesh%nodes)
+    logical :: told(size(model%contact%line_contact))
     integer :: c, i, other, pair
 
     if (size(told) < 2) return
     contact = 0
     slave = 0
     do c = 1, size(told)
-      associate (first => model%line_contact(c)%first, last => model%line_contact(c)%first_of_master - 1)
+      associate (first => model%contact%line_contact(c)%first, &
+                 last => model%contact%line_contact(c)%first_of_master - 1)
         contact(first:last) = c
-        slave(model%row_node(model%row_start(first:last))) = [(pair, pair=first, last)]
+        slave(model%contact%row_node(model%contact%row_start(first:last))) = [(pair, pair=first, last)]
       end associate
     end do
     told = .false.
     do c = 1, size(told)
       if (.not. told(c)) i = first_both_ways()
       if (told(c) .or. i == 0) cycle
-      other = contact(slave(model%row_node(i)))
+      other = contact(slave(model%contact%row_node(i)))
       told(other) = .true.
-      call found%add_warning(of_couple, model%line_contact(c)%couple(1), 3, ': '// &
-                             model%name_of(of_node, model%row_node(i))// &
+      call found%add_warning(of_couple, model%contact%line_contact(c)%couple(1), 3, ': '// &
+                             model%name_of(of_node, model%contact%row_node(i))// &
                              ' is of its MASTER, and of the SLAVE of '// &
-                             model%name_of(of_couple, model%line_contact(other)%couple(1))// &
+                             model%name_of(of_couple, model%contact%line_contact(other)%couple(1))// &
                              ': pressures beside it are off, by a quarter where both touch', &
                              'SLAVE and MASTER of one of the two exchanged: lines that go on in each '// &
                              'other are one contact')
@@ -174,12 +176,12 @@ contains
     pure integer function first_both_ways() result(i)
       integer :: k
 
-      do k = model%line_contact(c)%first, model%line_contact(c)%first_of_master - 1
-        do i = model%row_start(k) + 1, model%row_start(k + 1) - 1
-          associate (other => slave(model%row_node(i)))
-            if (other == 0 .or. abs(model%row_weight(i)) < least_weight) cycle
+      do k = model%contact%line_contact(c)%first, model%contact%line_contact(c)%first_of_master - 1
+        do i = model%contact%row_start(k) + 1, model%contact%row_start(k + 1) - 1
+          associate (other => slave(model%contact%row_node(i)))
+            if (other == 0 .or. abs(model%contact%row_weight(i)) < least_weight) cycle
             if (contact(other) /= c .and. &
-                dot_product(model%normal(:, k), model%normal(:, other)) <= -one_face) return
+                dot_product(model%contact%normal(:, k), model%contact%normal(:, other)) <= -one_face) return
           end associate
         end do
       end do

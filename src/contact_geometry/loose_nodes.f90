@@ -27,7 +27,7 @@ contains
     type(outline_shape), intent(in) :: drawn    !! its outlines
     type(findings), intent(inout) :: found      !! what is wrong with it is added
     ! Where each node hangs: the ends of the side and its element; 0: nowhere
-    integer :: edge(3, model%nodes)
+    integer :: edge(3, model%mesh%nodes)
     integer :: first
 
     edge = 0
@@ -36,10 +36,10 @@ contains
     first = findloc(edge(3, :) > 0, .true., dim=1)
     if (first == 0) return
     call found%add_warning(of_node, first, 1, ': lies on side '//model%name_of(of_node, edge(1, first))// &
-                           ' to '//text_of(model%node_id(edge(2, first)))//' of '// &
+                           ' to '//text_of(model%mesh%node_id(edge(2, first)))//' of '// &
                            model%name_of(of_element, edge(3, first))//' and is '// &
                            trim(merge('a corner beside it', 'no node of it     ', &
-                                      any(model%connectivity(:, edge(3, first)) == first)))// &
+                                      any(model%mesh%connectivity(:, edge(3, first)) == first)))// &
                            ': the body may open there'// &
                            and_more(count(edge(3, :) > 0), '; so do ', ' more nodes'), &
                            'elements that share all nodes of their common sides')
@@ -52,13 +52,14 @@ contains
       integer, allocatable :: near(:)
       integer :: i, s, side(3)
 
-      do i = 1, model%nodes
-        if (model%around%start(i + 1) - model%around%start(i) /= 1 .or. model%is_tied([i])) cycle
-        associate (e => model%around%group(model%around%start(i)))
-          do s = 1, model%corners(e)
-            side = model%edge(e, s)
+      do i = 1, model%mesh%nodes
+        if (model%mesh%around%start(i + 1) - model%mesh%around%start(i) /= 1 .or. &
+            model%constraints%is_tied([i])) cycle
+        associate (e => model%mesh%around%group(model%mesh%around%start(i)))
+          do s = 1, model%mesh%corners(e)
+            side = model%mesh%edge(e, s)
             if (side(3) /= i) cycle
-            near = model%with_side(side(1), side(2))
+            near = model%mesh%with_side(side(1), side(2))
             associate (other => [pack(near, near /= e), 0])
               edge(:, i) = [side(:2), other(1)]
             end associate
@@ -73,9 +74,9 @@ contains
       integer, allocatable :: beside(:)
       integer :: k, s
 
-      associate (node => model%body_outline%node)
-        beginning = new_incidence(node(:1, :), model%nodes)
-        do s = 1, model%body_outline%sides
+      associate (node => model%mesh%body_outline%node)
+        beginning = new_incidence(node(:1, :), model%mesh%nodes)
+        do s = 1, model%mesh%body_outline%sides
           beside = beginning%of(node(2, s))
           do k = 1, size(beside)
             if (goes_back(s, beside(k))) call follow(s, beside(k))
@@ -88,7 +89,7 @@ contains
     pure logical function goes_back(side, beside)
       integer, intent(in) :: side, beside
 
-      goes_back = model%body_outline%element(side) /= model%body_outline%element(beside)
+      goes_back = model%mesh%body_outline%element(side) /= model%mesh%body_outline%element(beside)
       if (.not. goes_back) return   ! a sliver
       associate (a => drawn%chord(side), b => drawn%chord(beside))
         goes_back = dot_product(a, b) < -0.5_wp*norm2(a)*norm2(b) .and. norm2(b) < norm2(a)
@@ -102,10 +103,10 @@ contains
       type(near_place) :: place
       integer :: last, t
 
-      associate (outline => model%body_outline)
+      associate (outline => model%mesh%body_outline)
         last = from
         do while (outline%node(2, last) /= outline%node(1, side))
-          place = drawn%near_side(side, model%x(:, outline%node(2, last)))
+          place = drawn%near_side(side, model%mesh%x(:, outline%node(2, last)))
           if (place%distance > coincident*norm2(drawn%chord(side)) .or. place%s <= 0.0_wp .or. &
               place%s >= 1.0_wp) return
           last = outline%after(last)
@@ -114,7 +115,8 @@ contains
         t = from
         do while (t /= last)
           associate (node => outline%node(2, t))
-            if (.not. model%is_tied([node])) edge(:, node) = [outline%node(:2, side), outline%element(side)]
+            if (.not. model%constraints%is_tied([node])) edge(:, node) = &
+              [outline%node(:2, side), outline%element(side)]
           end associate
           t = outline%after(t)
         end do
@@ -130,19 +132,19 @@ contains
     type(outline_shape), intent(in) :: drawn    !! its outlines
     type(findings), intent(inout) :: found      !! what is wrong with it is added
     !> Of one body with each later one: how many nodes lie together, and the first of them
-    integer :: twins(model%body_outline%parts), first(2, model%body_outline%parts)
+    integer :: twins(model%mesh%body_outline%parts), first(2, model%mesh%body_outline%parts)
     integer, allocatable :: mate(:), met(:), near(:)
     type(near_place) :: deepest   ! of the nodes that lie in another body
     integer :: at, i, part, side, twin
 
-    if (model%body_outline%parts < 2) return
+    if (model%mesh%body_outline%parts < 2) return
     mate = find_mates(model)
     at = 0
     deepest%distance = 0.0_wp
     twins = 0
-    do part = 1, model%body_outline%parts
+    do part = 1, model%mesh%body_outline%parts
       met = [integer ::]
-      do side = model%body_outline%first(part), model%body_outline%first(part + 1) - 1
+      do side = model%mesh%body_outline%first(part), model%mesh%body_outline%first(part + 1) - 1
         associate (within => coincident*norm2(drawn%chord(side)))
           near = drawn%part_tree%meeting(box_query(drawn%low(:, side) - within, drawn%high(:, side) + within))
         end associate
@@ -154,7 +156,7 @@ contains
           if (twin == 0) cycle
           if (twins(near(i)) == 0) then
             met = [met, near(i)]
-            first(:, near(i)) = [model%body_outline%node(1, side), twin]
+            first(:, near(i)) = [model%mesh%body_outline%node(1, side), twin]
           end if
           twins(near(i)) = twins(near(i)) + 1
         end do
@@ -169,7 +171,7 @@ contains
       twins(met) = 0
     end do
     if (at > 0) call found%add_warning(of_node, at, 1, ': lies '//short_real(deepest%distance)// &
-      ' deep in the body of '//model%name_of(of_element, model%body_outline%element(deepest%side))// &
+      ' deep in the body of '//model%name_of(of_element, model%mesh%body_outline%element(deepest%side))// &
       ', with no pair there', 'bodies side by side, or a contact between them')
 
   contains
@@ -180,9 +182,9 @@ contains
       type(near_place) :: place
       integer :: node(1)
 
-      node = model%body_outline%node(1, side)
+      node = model%mesh%body_outline%node(1, side)
       if (is_mate(mate, node, part)) return
-      place = drawn%nearest_place(part, model%x(:, node(1)))
+      place = drawn%nearest_place(part, model%mesh%x(:, node(1)))
       if (.not. place%inside .or. &
           place%distance <= max(deepest%distance, deep*norm2(drawn%chord(place%side)))) return
       deepest = place
@@ -194,7 +196,7 @@ contains
     pure integer function twin_that_counts(side, part) result(twin)
       integer, intent(in) :: side, part
 
-      associate (node => model%body_outline%node, before => model%body_outline%before(side))
+      associate (node => model%mesh%body_outline%node, before => model%mesh%body_outline%before(side))
         twin = loose_twin(node(1, side), side, part)
         if (twin == 0) return
         if (mate(node(1, side)) == 0 .and. mate(twin) == 0) return
@@ -222,14 +224,16 @@ contains
       logical :: joined
 
       twin = 0
-      place = drawn%nearest_place(part, model%x(:, node))
+      place = drawn%nearest_place(part, model%mesh%x(:, node))
       associate (within => coincident*norm2(drawn%chord(side)), &
-                 ends => model%body_outline%node(:2, place%side))
+                 ends => model%mesh%body_outline%node(:2, place%side))
         if (place%distance > within) return
         twin = merge(ends(1), ends(2), place%s < 0.5_wp)
-        joined = any(model%leader(:, twin) == model%leader(:, node)) .or. is_mate(mate, [node], part) .or. &
-                 is_mate(mate, [twin], model%body_outline%part_of(node)) .or. all(model%held(:, [node, twin]))
-        if (joined .or. norm2(model%x(:, twin) - model%x(:, node)) > within) twin = 0
+        joined = any(model%constraints%leader(:, twin) == model%constraints%leader(:, node)) .or. &
+          is_mate(mate, [node], part) .or. &
+                 is_mate(mate, [twin], model%mesh%body_outline%part_of(node)) .or. &
+                   all(model%constraints%held(:, [node, twin]))
+        if (joined .or. norm2(model%mesh%x(:, twin) - model%mesh%x(:, node)) > within) twin = 0
       end associate
     end function loose_twin
   end subroutine warn_of_lying_together

@@ -15,13 +15,13 @@ contains
     integer, allocatable :: mate(:)
     integer :: i, k, other
 
-    allocate (mate(model%nodes), source=0)
-    do k = 1, model%pairs
-      associate (ends => model%body_outline%part_of(model%pair_node(:, k)))
+    allocate (mate(model%mesh%nodes), source=0)
+    do k = 1, model%contact%pairs
+      associate (ends => model%mesh%body_outline%part_of(model%contact%pair_node(:, k)))
         if (ends(1) == ends(2)) cycle
-        do i = model%row_start(k), model%row_start(k + 1) - 1
-          associate (node => model%row_node(i))
-            other = merge(ends(1), ends(2), model%body_outline%part_of(node) == ends(2))
+        do i = model%contact%row_start(k), model%contact%row_start(k + 1) - 1
+          associate (node => model%contact%row_node(i))
+            other = merge(ends(1), ends(2), model%mesh%body_outline%part_of(node) == ends(2))
             if (other == 0 .or. mate(node) == other) cycle
             mate(node) = merge(other, several, mate(node) == 0)
           end associate

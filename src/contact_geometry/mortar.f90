@@ -13,7 +13,8 @@ module epcont_contact_geometry_mortar
   use epcont_contact_geometry_faces, only: faces_type
   use epcont_contact_geometry_mortar_sides, only: cut_sides, side_points
   use epcont_geometry_boundary_line, only: facing_type
-  use epcont_model_model, only: line_contact, model_type
+  use epcont_model_contact_rows, only: line_contact
+  use epcont_model_model, only: model_type
   implicit none
   private
   public :: find_mortar_rows, mortar_row

@@ -10,7 +10,8 @@ module epcont_contact_geometry_mortar_sides
   use epcont_geometry_box_tree, only: line_query
   use epcont_geometry_facing, only: find_facing, looking_point, rise_of
   use epcont_geometry_plane, only: right_of, unit
-  use epcont_model_model, only: line_contact, model_type
+  use epcont_model_contact_rows, only: line_contact
+  use epcont_model_model, only: model_type
   implicit none
   private
   public :: cut_sides, side_points
@@ -116,7 +117,7 @@ contains
         points%weight(p) = points%weight(p)*dot_product(points%share(:, p), contact%slave%x(1, :, s))
       from%outward = unit(right_of(tangent))
       from%along = 0.5_wp*tangent
-      face = find_facing(contact%master, model%boundary, from, contact%search)
+      face = find_facing(contact%master, model%contact%boundary, from, contact%search)
       points%facing(p) = face(1)
       points%covered = points%covered .and. face(1)%found .and. &
                        dot_product(face(1)%normal, from%outward) < -parallel
@@ -202,9 +203,9 @@ contains
     node = [end_at(contact, one), end_at(contact, other)]
     goes_on = .true.
     do c = 1, 2
-      associate (one => model%leader(c, node(1)), other => model%leader(c, node(2)))
-        goes_on = goes_on .and. (one == other .or. all(model%held(c, [one, other])) .and. &
-                                 model%prescribed(c, one) == model%prescribed(c, other))
+      associate (one => model%constraints%leader(c, node(1)), other => model%constraints%leader(c, node(2)))
+        goes_on = goes_on .and. (one == other .or. all(model%constraints%held(c, [one, other])) .and. &
+                                 model%loads%prescribed(c, one) == model%loads%prescribed(c, other))
       end associate
     end do
   end function goes_on

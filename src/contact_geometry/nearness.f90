@@ -12,7 +12,8 @@ module epcont_contact_geometry_nearness
   use epcont_geometry_boundary_line, only: boundary_line, facing_type
   use epcont_geometry_facing, only: find_facing, looking_point, node_of
   use epcont_geometry_plane, only: cross_product, extent_of
-  use epcont_model_model, only: line_contact, model_type
+  use epcont_model_contact_rows, only: line_contact
+  use epcont_model_model, only: model_type
   implicit none
   private
   public :: find_nodes_that_came_near, pair_nodes_that_came_near
@@ -53,15 +54,15 @@ contains
     integer :: c
 
     found = .false.
-    contacts = model%line_contact
+    contacts = model%contact%line_contact
     if (size(contacts) == 0) return
-    node = model%around%members()
-    moved%extent = sum(extent_of(model%x(:, node)))
+    node = model%mesh%around%members()
+    moved%extent = sum(extent_of(model%mesh%x(:, node)))
     if (allocated(displacement)) then
       moved%displacement = displacement
       moved%travel = maxval(norm2(displacement(:, node), dim=1))
-      allocate (moved%holds(0:model%nodes), source=.false.)
-      moved%holds(pack(model%pair_node(2, :), touching)) = .true.
+      allocate (moved%holds(0:model%mesh%nodes), source=.false.)
+      moved%holds(pack(model%contact%pair_node(2, :), touching)) = .true.
     end if
     do c = 1, size(contacts)
       contact = contacts(c)
@@ -105,7 +106,8 @@ contains
         return
       end if
       associate (node => contact%slave%segment(:, side))
-        face = find_facing(contact%master, model%boundary, node_of(contact%slave, side, which), moved%extent)
+        face = find_facing(contact%master, model%contact%boundary, node_of(contact%slave, side, which), &
+                           moved%extent)
         if (.not. face(1)%found) return
         gap = gap_and_slip(displacement, node(which), contact%master, face(1))
         if (gap(1) < -same_place*moved%extent .or. any(moved%holds(node))) &
@@ -124,7 +126,7 @@ contains
 
       from = node_of(contact%master, side, which)
       if (from%node == 0 .or. any(contact%came_near == from%node)) return
-      face = find_facing(contact%slave, model%boundary, from, moved%extent)
+      face = find_facing(contact%slave, model%contact%boundary, from, moved%extent)
       do k = 1, 2
         if (.not. face(k)%found .or. from%at_tip .and. abs(face(k)%gap) <= contact%search) cycle
         gap = gap_and_slip(displacement, from%node, contact%slave, face(k))
@@ -268,15 +270,15 @@ contains
     type(faces_type) :: faces
     integer :: before, c
 
-    before = model%pairs
-    model%pairs = model%single_pairs()
+    before = model%contact%pairs
+    model%contact%pairs = model%contact%single_pairs()
     do c = 1, size(contacts)
       contact = contacts(c)
       call add_pairs(model, contact, faces)
-      model%line_contact(c) = contact
+      model%contact%line_contact(c) = contact
     end do
     call end_pairs(model)
     call balance_pairs(model)
-    paired = model%pairs > before
+    paired = model%contact%pairs > before
   end subroutine pair_nodes_that_came_near
 end module epcont_contact_geometry_nearness

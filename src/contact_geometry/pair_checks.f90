@@ -29,15 +29,15 @@ contains
     type(model_type), intent(in) :: model   !! the scene
     type(findings), intent(inout) :: found   !! what is wrong with it is added
     type(incidence) :: around          ! CGAPs at each node
-    logical :: on_line(0:model%nodes)  ! nodes of lines in contact
+    logical :: on_line(0:model%mesh%nodes)  ! nodes of lines in contact
     !> Of each node: the longest side there [length]; outward normal of the boundary, zero where there is none
-    real(wp) :: longest(model%nodes), outward(2, model%nodes)
+    real(wp) :: longest(model%mesh%nodes), outward(2, model%mesh%nodes)
     integer :: c, cgaps
 
-    if (model%pairs == 0) return
-    cgaps = model%single_pairs()
+    if (model%contact%pairs == 0) return
+    cgaps = model%contact%single_pairs()
     if (cgaps > 0) then
-      around = new_incidence(model%pair_node(:, :cgaps), model%nodes)
+      around = new_incidence(model%contact%pair_node(:, :cgaps), model%mesh%nodes)
       call refuse_pairs_twice(model, around, cgaps, found)
       call look_around_nodes(model, longest, outward)
       call warn_of_wrong_ways()
@@ -45,8 +45,8 @@ contains
       call warn_of_held(model, 1, cgaps, 0, found)
     end if
     on_line = .false.
-    do c = 1, size(model%line_contact)
-      associate (contact => model%line_contact(c))
+    do c = 1, size(model%contact%line_contact)
+      associate (contact => model%contact%line_contact(c))
         on_line([contact%slave%segment, contact%master%segment]) = .true.
         call warn_of_held(model, contact%first, contact%last, contact%couple(1), found)
       end associate
@@ -62,7 +62,7 @@ contains
       integer :: i, k
 
       do k = 1, cgaps
-        along = [(dot_product(outward(:, model%pair_node(i, k)), model%normal(:, k)), i=1, 2)]
+        along = [(dot_product(outward(:, model%contact%pair_node(i, k)), model%contact%normal(:, k)), i=1, 2)]
         if (along(1) >= same_way .or. along(2) <= -same_way) cycle
         if (along(1) <= -same_way .or. along(2) >= same_way) &
           call found%add_warning(of_pair, k, 1, ': its normal points the wrong way: into the body of GA, '// &
@@ -78,8 +78,9 @@ contains
       integer :: far, k
 
       do k = 1, cgaps
-        associate (node => model%pair_node(:, k))
-          sideways(k) = abs(cross_product(model%x(:, node(2)) - model%x(:, node(1)), model%normal(:, k)))
+        associate (node => model%contact%pair_node(:, k))
+          sideways(k) = abs(cross_product(model%mesh%x(:, node(2)) - model%mesh%x(:, node(1)), &
+                                          model%contact%normal(:, k)))
           if (any(longest(node) == 0.0_wp) .or. sideways(k) <= maxval(longest(node))) sideways(k) = 0.0_wp
         end associate
       end do
@@ -87,7 +88,7 @@ contains
       far = maxloc(sideways, dim=1)
       call found%add_warning(of_pair, far, 4, ': GA and GB lie '//short_real(sideways(far))// &
                              ' apart along the contact, more than a side there ('// &
-                             short_real(maxval(longest(model%pair_node(:, far))))//')'// &
+                             short_real(maxval(longest(model%contact%pair_node(:, far))))//')'// &
                              and_more(count(sideways > 0.0_wp), '; so do ', ' more'), &
                              'nodes that lie opposite each other, or BLSEG lines with a BCONP between them')
     end subroutine warn_of_sideways
@@ -104,8 +105,9 @@ contains
     type(incidence) :: lines   ! pairs of lines in which each node stands on sides
     integer, dimension(cgaps) :: cgap, line   ! like each pair; 0: none
 
-    lines = new_incidence(reshape(model%row_node(model%row_start(cgaps + 1:model%pairs)), &
-        [1, model%pairs - cgaps]), model%nodes)
+    lines = new_incidence(reshape(model%contact%row_node(model%contact%row_start(cgaps + &
+      1:model%contact%pairs)), &
+        [1, model%contact%pairs - cgaps]), model%mesh%nodes)
     cgap = [(cgap_like(model, around, k), k=1, cgaps)]
     line = [(line_pair_like(model, cgaps, lines, k), k=1, cgaps)]
     k = findloc(cgap > 0, .true., dim=1)
@@ -115,9 +117,9 @@ contains
         'one CGAP for two nodes and a normal')
     k = findloc(line > 0, .true., dim=1)
     if (k == 0) return
-    c = findloc(model%line_contact%last >= line(k), .true., dim=1)
+    c = findloc(model%contact%line_contact%last >= line(k), .true., dim=1)
     call found%add_error(of_pair, k, 1, ': joins nodes that '// &
-                         model%name_of(of_couple, model%line_contact(c)%couple(1))// &
+                         model%name_of(of_couple, model%contact%line_contact(c)%couple(1))// &
                          ' joins along the same normal'//like_this(line), 'either CGAPs or a BCONP')
   end subroutine refuse_pairs_twice
 
@@ -129,18 +131,18 @@ contains
     real(wp) :: apart
     integer :: i, node, way
 
-    associate (a => model%pair_node(1, k), b => model%pair_node(2, k))
-      apart = norm2(model%x(:, b) - model%x(:, a)) + abs(model%initial_gap(k))
+    associate (a => model%contact%pair_node(1, k), b => model%contact%pair_node(2, k))
+      apart = norm2(model%mesh%x(:, b) - model%mesh%x(:, a)) + abs(model%contact%initial_gap(k))
       ! At a node of the ground there may be thousands.
       node = merge(a, b, around%start(a + 1) - around%start(a) < around%start(b + 1) - around%start(b))
       do i = around%start(node), around%start(node + 1) - 1
         other = around%group(i)
         if (other == k) exit
         way = 0
-        if (all(model%pair_node(:, other) == [a, b])) way = 1
-        if (all(model%pair_node(:, other) == [b, a])) way = -1
-        if (way*dot_product(model%normal(:, other), model%normal(:, k)) < parallel) cycle
-        if (abs(model%initial_gap(other) - model%initial_gap(k)) <= rounded_off*apart) return
+        if (all(model%contact%pair_node(:, other) == [a, b])) way = 1
+        if (all(model%contact%pair_node(:, other) == [b, a])) way = -1
+        if (way*dot_product(model%contact%normal(:, other), model%contact%normal(:, k)) < parallel) cycle
+        if (abs(model%contact%initial_gap(other) - model%contact%initial_gap(k)) <= rounded_off*apart) return
       end do
     end associate
     other = 0
@@ -154,11 +156,14 @@ contains
     integer :: i, which
 
     do which = 1, 2
-      associate (near => lines%of(model%pair_node(which, k)), other => model%pair_node(3 - which, k))
+      associate (near => lines%of(model%contact%pair_node(which, k)), &
+                 other => model%contact%pair_node(3 - which, k))
         do i = 1, size(near)
           pair = cgaps + near(i)
-          if (all(model%row_node(model%row_start(pair) + 1:model%row_start(pair + 1) - 1) /= other)) cycle
-          if (dot_product(model%normal(:, pair), model%normal(:, k))*merge(1, -1, which == 2) >= one_face) &
+          if (all(model%contact%row_node(model%contact%row_start(pair) + &
+                                         1:model%contact%row_start(pair + 1) - 1) /= other)) cycle
+          if (dot_product(model%contact%normal(:, pair), model%contact%normal(:, k))*merge(1, -1, &
+            which == 2) >= one_face) &
             return
         end do
       end associate
@@ -170,15 +175,15 @@ contains
   subroutine look_around_nodes(model, longest, outward)
     type(model_type), intent(in) :: model
     real(wp), intent(inout) :: longest(:), outward(:, :)
-    real(wp) :: chord(2), length(model%nodes)   ! of all sides around each node
+    real(wp) :: chord(2), length(model%mesh%nodes)   ! of all sides around each node
     integer :: k, s
 
     longest = 0.0_wp
     length = 0.0_wp
     outward = 0.0_wp
-    do s = 1, model%body_outline%sides
-      associate (node => model%body_outline%node(:, s))
-        chord = model%x(:, node(2)) - model%x(:, node(1))
+    do s = 1, model%mesh%body_outline%sides
+      associate (node => model%mesh%body_outline%node(:, s))
+        chord = model%mesh%x(:, node(2)) - model%mesh%x(:, node(1))
         do k = 1, merge(3, 2, node(3) > 0)
           longest(node(k)) = max(longest(node(k)), norm2(chord))
           length(node(k)) = length(node(k)) + norm2(chord)
@@ -186,7 +191,7 @@ contains
         end do
       end associate
     end do
-    do k = 1, model%nodes   ! sides all round a node cancel
+    do k = 1, model%mesh%nodes   ! sides all round a node cancel
       if (norm2(outward(:, k)) <= no_effect*length(k)) outward(:, k) = 0.0_wp
       outward(:, k) = unit(outward(:, k))
     end do
@@ -206,7 +211,7 @@ contains
     held = pack([(k, k=first, last)], [(is_held(k), k=first, last)])
     if (size(held) == 0) return
     which = and_more(size(held), ', and ', ' more')
-    if (couple > 0) which = ': '//model%name_of(of_node, model%pair_node(2, held(1)))//which
+    if (couple > 0) which = ': '//model%name_of(of_node, model%contact%pair_node(2, held(1)))//which
     call found%add_warning(merge(of_couple, of_pair, couple > 0), merge(couple, held(1), couple > 0), 1, &
                            which//': can neither open nor close: the nodes on both sides are held '// &
                            'along the normal', 'a free node on one side, or no pair')
@@ -219,14 +224,15 @@ contains
       real(wp) :: gap
       integer :: c, i
 
-      gap = model%initial_gap(pair)
+      gap = model%contact%initial_gap(pair)
       is_held = .false.
-      do i = model%row_start(pair), model%row_start(pair + 1) - 1
+      do i = model%contact%row_start(pair), model%contact%row_start(pair + 1) - 1
         do c = 1, directions
-          if (abs(model%normal(c, pair)) <= least_difference) cycle
-          associate (leader => model%leader(c, model%row_node(i)))
-            if (.not. model%held(c, leader)) return
-            gap = gap + model%row_weight(i)*model%normal(c, pair)*model%prescribed(c, leader)
+          if (abs(model%contact%normal(c, pair)) <= least_difference) cycle
+          associate (leader => model%constraints%leader(c, model%contact%row_node(i)))
+            if (.not. model%constraints%held(c, leader)) return
+            gap = gap + model%contact%row_weight(i)*model%contact%normal(c, pair)*model%loads%prescribed(c, &
+              leader)
           end associate
         end do
       end do
@@ -247,10 +253,11 @@ contains
     logical :: at(3)
     integer :: s
 
-    half = pack([(s, s=1, model%body_outline%sides)], &
-                [(is_half(model, around, on_line, s), s=1, model%body_outline%sides)])
+    half = pack([(s, s=1, model%mesh%body_outline%sides)], &
+                [(is_half(model, around, on_line, s), s=1, model%mesh%body_outline%sides)])
     if (size(half) == 0) return
-    associate (node => model%body_outline%node(:, half(1)), element => model%body_outline%element(half(1)))
+    associate (node => model%mesh%body_outline%node(:, half(1)), &
+               element => model%mesh%body_outline%element(half(1)))
       at = has_pair(model, around, node)
       what = ' at both ends and none at its middle, '//model%name_of(of_node, node(3))
       if (at(3)) what = ' at its middle, '//model%name_of(of_node, node(3))//', and none at its ends'
@@ -271,9 +278,9 @@ contains
     integer, intent(in) :: side
     logical :: at(3), beside(3)
 
-    associate (outline => model%body_outline, node => model%body_outline%node(:, side))
+    associate (outline => model%mesh%body_outline, node => model%mesh%body_outline%node(:, side))
       is_half = node(3) > 0 .and. .not. on_line(node(3))
-      if (is_half) is_half = .not. model%is_rigid(node)
+      if (is_half) is_half = .not. model%constraints%is_rigid(node)
       if (.not. is_half) return
       at = has_pair(model, around, node)
       beside = has_pair(model, around, outline%node(:, outline%before(side))) .or. &
@@ -293,10 +300,10 @@ contains
 
     has_pair = .false.
     if (node(3) == 0) return
-    across = unit(right_of(model%x(:, node(2)) - model%x(:, node(1))))
+    across = unit(right_of(model%mesh%x(:, node(2)) - model%mesh%x(:, node(1))))
     do k = 1, 3
       associate (pairs => around%of(node(k)))
-        has_pair(k) = any([(abs(dot_product(across, model%normal(:, pairs(i)))) >= same_way, &
+        has_pair(k) = any([(abs(dot_product(across, model%contact%normal(:, pairs(i)))) >= same_way, &
                             i=1, size(pairs))])
       end associate
     end do

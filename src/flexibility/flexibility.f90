@@ -48,23 +48,23 @@ contains
       real(wp) :: normal(directions)   ! components along the DOFs of a node
       integer :: c, entries, found, i, j, k, last, number
 
-      entries = directions*sum(model%row_start(pairs + 1) - model%row_start(pairs))
+      entries = directions*sum(model%contact%row_start(pairs + 1) - model%contact%row_start(pairs))
       allocate (pair(size(pairs)), rows%start(size(pairs) + 1), source=1)
       allocate (rows%equation(entries), rows%weight(entries))
       last = 0
       found = 0
       do j = 1, size(pairs)
         k = pairs(j)
-        do i = model%row_start(k), model%row_start(k + 1) - 1
-          if (model%body(model%row_node(i)) /= b) cycle
-          normal = numbering%axes%along(model%row_node(i), model%normal(:, k))
+        do i = model%contact%row_start(k), model%contact%row_start(k + 1) - 1
+          if (model%mesh%body(model%contact%row_node(i)) /= b) cycle
+          normal = numbering%axes%along(model%contact%row_node(i), model%contact%normal(:, k))
           do c = 1, directions
-            number = numbering%equation(c, model%row_node(i))
+            number = numbering%equation(c, model%contact%row_node(i))
             if (number == 0 .or. normal(c) == 0.0_wp) cycle
-            if (.not. numbering%axes%wanted(c, model%row_node(i))) cycle
+            if (.not. numbering%axes%wanted(c, model%contact%row_node(i))) cycle
             last = last + 1
             rows%equation(last) = number
-            rows%weight(last) = model%row_weight(i)*normal(c)
+            rows%weight(last) = model%contact%row_weight(i)*normal(c)
           end do
         end do
         if (last < rows%start(found + 1)) cycle
@@ -107,12 +107,13 @@ contains
   pure function gap_opening(model, displacement) result(opening)
     type(model_type), intent(in) :: model
     real(wp), intent(in) :: displacement(:, :)  !! [directions, nodes]
-    real(wp) :: opening(model%pairs)
+    real(wp) :: opening(model%contact%pairs)
     integer :: k
 
-    do k = 1, model%pairs
-      opening(k) = model%opening(k, displacement(:, model%row_node(model%row_start(k): &
-          model%row_start(k + 1) - 1)))
+    do k = 1, model%contact%pairs
+      opening(k) = model%contact%opening(k, displacement(:, &
+                                                         model%contact%row_node(model%contact%row_start(k): &
+          model%contact%row_start(k + 1) - 1)))
     end do
   end function gap_opening
 
@@ -121,13 +122,14 @@ contains
   pure function terms_of_openings(model, displacement) result(terms)
     type(model_type), intent(in) :: model
     real(wp), intent(in) :: displacement(:, :)  !! [directions, nodes]
-    real(wp) :: terms(model%pairs)
+    real(wp) :: terms(model%contact%pairs)
     integer :: i, k
 
     terms = 0.0_wp
-    do k = 1, model%pairs
-      do i = model%row_start(k), model%row_start(k + 1) - 1
-        terms(k) = terms(k) + abs(model%row_weight(i))*maxval(abs(displacement(:, model%row_node(i))))
+    do k = 1, model%contact%pairs
+      do i = model%contact%row_start(k), model%contact%row_start(k + 1) - 1
+        terms(k) = terms(k) + abs(model%contact%row_weight(i))*maxval(abs(displacement(:, &
+          model%contact%row_node(i))))
       end do
     end do
   end function terms_of_openings
@@ -136,14 +138,14 @@ contains
   pure function pair_forces(model, force) result(nodal)
     type(model_type), intent(in) :: model
     real(wp), intent(in) :: force(:)  !! [pairs]
-    real(wp) :: nodal(directions, model%nodes)
+    real(wp) :: nodal(directions, model%mesh%nodes)
     integer :: i, k, node
 
     nodal = 0.0_wp
-    do k = 1, model%pairs
-      do i = model%row_start(k), model%row_start(k + 1) - 1
-        node = model%row_node(i)
-        nodal(:, node) = nodal(:, node) + force(k)*model%row_weight(i)*model%normal(:, k)
+    do k = 1, model%contact%pairs
+      do i = model%contact%row_start(k), model%contact%row_start(k + 1) - 1
+        node = model%contact%row_node(i)
+        nodal(:, node) = nodal(:, node) + force(k)*model%contact%row_weight(i)*model%contact%normal(:, k)
       end do
     end do
   end function pair_forces
@@ -165,10 +167,11 @@ contains
     call close_gaps()
     allocate (resultant(motions%count), source=0.0_wp)
     all_loads = 0.0_wp
-    do i = 1, model%nodes
-      load = [(merge(0.0_wp, model%load(c, i), model%held(c, model%leader(c, i))), c=1, directions)]
+    do i = 1, model%mesh%nodes
+      load = [(merge(0.0_wp, model%loads%load(c, i), &
+                     model%constraints%held(c, model%constraints%leader(c, i))), c=1, directions)]
       if (all(load == 0.0_wp)) cycle
-      do m = motions%first(model%body(i)), motions%first(model%body(i) + 1) - 1
+      do m = motions%first(model%mesh%body(i)), motions%first(model%mesh%body(i) + 1) - 1
         moved = motions%displacement(model, i, m)
         resultant(m) = resultant(m) + dot_product(moved, load)
         all_loads(m) = all_loads(m) + norm2(moved)*norm2(load)
@@ -176,7 +179,7 @@ contains
     end do
     where (abs(resultant) <= cancelled*all_loads) resultant = 0.0_wp
     of_pair = closing%turned()
-    do b = 1, model%bodies
+    do b = 1, model%mesh%bodies
       if (motions%first(b + 1) > motions%first(b) + 1) &
         call clear_slides(motions%first(b), motions%first(b + 1) - 1)
     end do
@@ -232,36 +235,41 @@ contains
 
     !> Compute the closure of each pair by the modes of the bodies that have its nodes.
     subroutine close_gaps()
-      real(wp) :: moved(directions, maxval([0, model%row_start(2:) - model%row_start(:model%pairs)]))
+      real(wp) :: moved(directions, maxval([0, &
+        model%contact%row_start(2:) - model%contact%row_start(:model%contact%pairs)]))
       integer, allocatable :: pair(:), motion(:)   ! row and column of each entry of A
       real(wp), allocatable :: by(:)
       real(wp) :: travel(motions%count)
       integer :: entries, i, j, k, m, n
 
       travel = 0.0_wp
-      n = sum(motions%first(model%body(model%row_node) + 1) - motions%first(model%body(model%row_node)))
+      n = sum(motions%first(model%mesh%body(model%contact%row_node) + 1) - &
+              motions%first(model%mesh%body(model%contact%row_node)))
       allocate (pair(n), motion(n), by(n))
       entries = 0
-      do k = 1, model%pairs
-        associate (node => model%row_node(model%row_start(k):model%row_start(k + 1) - 1), &
-                   weight => model%row_weight(model%row_start(k):model%row_start(k + 1) - 1))
+      do k = 1, model%contact%pairs
+        associate (node => model%contact%row_node(model%contact%row_start(k):model%contact%row_start(k + &
+          1) - 1), &
+                   weight => model%contact%row_weight(model%contact%row_start(k):model%contact%row_start(k + &
+                     1) - 1))
           n = size(node)
           do i = 1, n
-            if (any(model%body(node(:i - 1)) == model%body(node(i)))) cycle
-            do m = motions%first(model%body(node(i))), motions%first(model%body(node(i)) + 1) - 1
+            if (any(model%mesh%body(node(:i - 1)) == model%mesh%body(node(i)))) cycle
+            do m = motions%first(model%mesh%body(node(i))), motions%first(model%mesh%body(node(i)) + 1) - 1
               do j = 1, n
                 moved(:, j) = motions%displacement(model, node(j), m)
               end do
               entries = entries + 1
               pair(entries) = k
               motion(entries) = m
-              by(entries) = -model%opening(k, moved(:, :n))
+              by(entries) = -model%contact%opening(k, moved(:, :n))
               travel(m) = max(travel(m), maxval(norm2(moved(:, :n), dim=1)))
             end do
           end do
         end associate
       end do
-      closing = new_motion_matrix(model%pairs, motions%count, pair(:entries), motion(:entries), by(:entries))
+      closing = new_motion_matrix(model%contact%pairs, motions%count, pair(:entries), motion(:entries), &
+                                  by(:entries))
       closing%travel = merge(travel, 1.0_wp, travel > 0.0_wp)
     end subroutine close_gaps
   end subroutine see_motions

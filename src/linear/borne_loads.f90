@@ -33,7 +33,7 @@ contains
     real(wp), allocatable, intent(out) :: opening(:)                 !! [length] [pairs]
     logical :: moved   ! supports
 
-    moved = any(scene%model%beyond_travel /= 0.0_wp)
+    moved = any(scene%model%loads%beyond_travel /= 0.0_wp)
     if (.not. moved) call self%give(force, half, opening)
     if (allocated(half)) return
     call bodies%add_forces(scene, force, load_factor, half)

@@ -22,12 +22,12 @@ contains
     if (.not. plan%joined) allocate (simplex_rule :: rule)
     rule%explains = .not. plan%joined
     rule%threads = plan%threads
-    rule%problem%initial_gap = scene%model%initial_gap
-    rule%problem%lower = 0.0_wp*scene%model%initial_gap
-    rule%problem%upper = spread(huge(1.0_wp), 1, scene%model%pairs)
-    if (allocated(scene%model%force_bound)) then
-      rule%problem%lower = scene%model%force_bound(1, :)
-      rule%problem%upper = scene%model%force_bound(2, :)
+    rule%problem%initial_gap = scene%model%contact%initial_gap
+    rule%problem%lower = 0.0_wp*scene%model%contact%initial_gap
+    rule%problem%upper = spread(huge(1.0_wp), 1, scene%model%contact%pairs)
+    if (allocated(scene%model%contact%force_bound)) then
+      rule%problem%lower = scene%model%contact%force_bound(1, :)
+      rule%problem%upper = scene%model%contact%force_bound(2, :)
     end if
     rule%problem%travel = scene%motions%travels(scene%model)
     rule%problem%body = scene%motions%body

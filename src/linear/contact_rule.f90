@@ -124,7 +124,7 @@ contains
     class(contact_rule), intent(inout) :: self
     type(planned_model), intent(in) :: scene
 
-    self%travel_gap = gap_opening(scene%model, scene%model%travel)
+    self%travel_gap = gap_opening(scene%model, scene%model%loads%travel)
     call see_motions(scene%model, scene%motions, self%problem%motion, self%resultant)
   end subroutine see_case
 

@@ -65,7 +65,7 @@ contains
     real(wp) :: first, length, mean, over(size(self%gap), 2), part
     integer :: k, step
 
-    call self%begin(scene%model%bodies)
+    call self%begin(scene%model%mesh%bodies)
     if (all(self%inside(:, 1) == 0.0_wp)) then   ! nothing presses
       self%closed = self%gap < 0.0_wp
       return

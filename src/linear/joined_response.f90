@@ -66,17 +66,17 @@ contains
 
     many = size(loads%motion) + size(loads%share, 2)
     if (allocated(probe%first)) many = 0
-    pressed = pack([(k, k=1, scene%model%pairs)], problem%between(state%contact%force))
-    allocate (found%load(scene%motions%count, many + 2), found%opening(scene%model%pairs, many + 2), &
-              found%force(scene%model%pairs, many + 2), &
-              found%displacement(directions, many + 2, scene%model%nodes), source=0.0_wp)
+    pressed = pack([(k, k=1, scene%model%contact%pairs)], problem%between(state%contact%force))
+    allocate (found%load(scene%motions%count, many + 2), found%opening(scene%model%contact%pairs, many + 2), &
+              found%force(scene%model%contact%pairs, many + 2), &
+              found%displacement(directions, many + 2, scene%model%mesh%nodes), source=0.0_wp)
     associate (probes => [many + 1, many + 2])
       if (.not. allocated(probe%first)) then
         do k = 1, size(loads%motion)
           found%load(loads%motion(k), k) = 1.0_wp
         end do
         found%opening(:, size(loads%motion) + 1:many) = -loads%share
-        found%opening(:, probes) = first_columns(pressed, scene%model%pairs)
+        found%opening(:, probes) = first_columns(pressed, scene%model%contact%pairs)
         call found%solve(springs, scene, bodies, at_contact=.true.)
         probe%first = found%force(:, probes)
       end if
@@ -124,7 +124,7 @@ contains
     type(force_fields) :: loads
     integer :: k
 
-    loads%node = [(k, k=1, scene%model%nodes)]
+    loads%node = [(k, k=1, scene%model%mesh%nodes)]
     associate (force => found%force, u => found%displacement)
       allocate (loads%force(directions, size(force, 2), size(loads%node)))
       do k = 1, size(force, 2)
@@ -163,7 +163,7 @@ contains
     class(solved_state), intent(in) :: state
     real(wp), intent(out) :: x(:, :)
     !> Sums that the gaps come from, of deformations and of travels [length]
-    real(wp) :: sums(scene%model%pairs, 2)
+    real(wp) :: sums(scene%model%contact%pairs, 2)
     real(wp) :: of_column(2, 2)   ! by sums and columns
     integer :: k
 
@@ -229,7 +229,7 @@ contains
     type(planned_model), intent(in) :: scene
     class(factored_bodies), intent(in) :: bodies    !! factored with the set of contacts
     type(half_solved_body), allocatable :: half(:)
-    real(wp) :: force(scene%model%pairs)
+    real(wp) :: force(scene%model%contact%pairs)
     integer :: j, k
 
     are_unique = .true.

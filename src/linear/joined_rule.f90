@@ -47,7 +47,7 @@ contains
     logical, allocatable :: redundant(:)               ! of the case before
 
     self%failed = .false.
-    call self%line%take_load(scene%model%load)
+    call self%line%take_load(scene%model%loads%load)
     if (allocated(self%search%gamma)) redundant = self%rigid%redundant
     associate (motion => self%problem%motion, unit => self%problem%motion%units())
       self%search%lower = self%problem%lower
@@ -103,8 +103,8 @@ contains
             state = self%line%last
         end associate
       else
-        allocate (state%deformation(directions, scene%model%nodes), source=0.0_wp)
-        state%contact = new_solution(scene%model%pairs, scene%motions%count)
+        allocate (state%deformation(directions, scene%model%mesh%nodes), source=0.0_wp)
+        state%contact = new_solution(scene%model%contact%pairs, scene%motions%count)
       end if
       if (.not. self%rigid%balanced) then
         state%contact%state = contact_no_equilibrium
@@ -127,7 +127,7 @@ contains
     class(joined_rule), intent(in) :: self
     type(planned_model), intent(in) :: scene
     type(solved_state), intent(inout) :: state
-    real(wp) :: terms(scene%model%pairs)   ! what gaps are the sum of
+    real(wp) :: terms(scene%model%contact%pairs)   ! what gaps are the sum of
 
     associate (contact => state%contact, motion => self%problem%motion)
       contact%at_upper = .false.

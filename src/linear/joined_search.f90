@@ -194,7 +194,7 @@ contains
     class(factored_bodies), intent(in) :: bodies
     type(solved_state), intent(in) :: state
 
-    self%unbalanced = self%load_factor*scene%model%load - &
+    self%unbalanced = self%load_factor*scene%model%loads%load - &
                       bodies%operator%nodal_forces(scene%model, bodies%law%stress(state%strain)) - &
                       spring_forces(scene%model, state%deformation)
   end subroutine balance
@@ -267,7 +267,7 @@ contains
     type(planned_model), intent(in) :: scene
     class(factored_bodies), intent(in) :: bodies
     type(half_solved_body), allocatable :: half(:)
-    real(wp) :: force(directions, scene%model%nodes)
+    real(wp) :: force(directions, scene%model%mesh%nodes)
 
     if (self%whole .or. self%afresh) then
       force = self%unbalanced + pair_forces(scene%model, self%forces_of(self%pull))

@@ -55,7 +55,7 @@ contains
     integer, intent(in) :: threads               !! that share the fronts
     logical, intent(out) :: sound                !! the factor can be solved with
     class(stopwatch), intent(inout) :: watch     !! takes the time
-    real(wp) :: wanted(scene%model%pairs)
+    real(wp) :: wanted(scene%model%contact%pairs)
     integer :: k
 
     wanted = merge(self%gamma, 0.0_wp, self%closed)
@@ -97,16 +97,16 @@ contains
     class(factored_bodies), intent(inout) :: bodies   !! with a law
     logical, intent(in) :: redundant(:)               !! nothing resists the motion [motions]
     type(joined_springs), intent(out) :: new          !! all pairs closed
-    real(wp) :: softest, stiffness(scene%model%nodes)
+    real(wp) :: softest, stiffness(scene%model%mesh%nodes)
     integer :: k, springs
 
     call measure(scene, bodies, stiffness, bodies%spring%norm)
     softest = stiffness_of_softest()
-    new%gamma = [(of_pairs*softer_side(k), k=1, scene%model%pairs)]
+    new%gamma = [(of_pairs*softer_side(k), k=1, scene%model%contact%pairs)]
     where (new%gamma <= 0.0_wp) new%gamma = of_pairs*softest   ! nothing deforms: no entry in the matrix
     springs = size(scene%numbering%body(1)%spring%start) - 1
-    bodies%spring%stiffness = [spread(0.0_wp, 1, springs - size(scene%model%spring)), &
-                               scene%model%spring%stiffness]
+    bodies%spring%stiffness = [spread(0.0_wp, 1, springs - size(scene%model%constraints%spring)), &
+                               scene%model%constraints%spring%stiffness]
     bodies%spring%changed = spread(.true., 1, springs)
     associate (own => stiffness(scene%motions%node))
       new%hold = merge(own, max(of_suport*softest, least_pivot*own), redundant)
@@ -116,18 +116,18 @@ contains
     end do
     call hold_suports(scene, new%hold, bodies)
     new%compliance = half_plane*of_pairs/new%gamma
-    new%closed = spread(.true., 1, scene%model%pairs)
+    new%closed = spread(.true., 1, scene%model%contact%pairs)
 
   contains
 
     !> The least that bodies have at their stiffest nodes.
     pure real(wp) function stiffness_of_softest() result(softest)
-      real(wp) :: largest(scene%model%bodies)
+      real(wp) :: largest(scene%model%mesh%bodies)
       integer :: i
 
       largest = 0.0_wp
-      do i = 1, scene%model%nodes
-        associate (body => scene%model%body(i))
+      do i = 1, scene%model%mesh%nodes
+        associate (body => scene%model%mesh%body(i))
           if (body > 0) largest(body) = max(largest(body), stiffness(i))
         end associate
       end do
@@ -141,12 +141,14 @@ contains
       integer :: first, i, last
 
       softer = huge(1.0_wp)
-      first = scene%model%row_start(pair)
-      last = scene%model%row_start(pair + 1) - 1
-      associate (node => scene%model%row_node(first:last), weight => scene%model%row_weight(first:last))
+      first = scene%model%contact%row_start(pair)
+      last = scene%model%contact%row_start(pair + 1) - 1
+      associate (node => scene%model%contact%row_node(first:last), &
+                 weight => scene%model%contact%row_weight(first:last))
         do i = 1, size(node)
-          side = sum(abs(weight)*stiffness(node), mask=scene%model%body(node) == scene%model%body(node(i)) &
-                     .and. .not. all(scene%model%held(:, node), dim=1))
+          side = sum(abs(weight)*stiffness(node), &
+                     mask=scene%model%mesh%body(node) == scene%model%mesh%body(node(i)) &
+                     .and. .not. all(scene%model%constraints%held(:, node), dim=1))
           if (side > 0.0_wp) softer = min(softer, side)
         end do
       end associate
@@ -204,7 +206,7 @@ contains
     type(planned_model), intent(in) :: scene
     integer, intent(in) :: motion
 
-    platen = findloc(scene%model%platen%leader, scene%motions%node(motion), dim=1)
+    platen = findloc(scene%model%constraints%platen%leader, scene%motions%node(motion), dim=1)
   end function platen_of
 
   !> How far the farthest of its nodes is from the master node [length].
@@ -212,9 +214,9 @@ contains
     type(planned_model), intent(in) :: scene
     integer, intent(in) :: motion
 
-    associate (platen => scene%model%platen(platen_of(scene, motion)))
-      longest_arm = maxval(norm2(scene%model%x(:, platen%follower) - &
-        spread(scene%model%x(:, platen%leader), 2, size(platen%follower)), dim=1))
+    associate (platen => scene%model%constraints%platen(platen_of(scene, motion)))
+      longest_arm = maxval(norm2(scene%model%mesh%x(:, platen%follower) - &
+        spread(scene%model%mesh%x(:, platen%leader), 2, size(platen%follower)), dim=1))
     end associate
   end function longest_arm
 
@@ -223,13 +225,14 @@ contains
     type(planned_model), intent(in) :: scene   !! numbered as one system
     integer, intent(in) :: motion              !! which
 
-    associate (reference => scene%model%reference, c => scene%motions%component(motion), &
+    associate (reference => scene%model%constraints%reference, c => scene%motions%component(motion), &
                node => scene%motions%node(motion))
       if (c == angle) then
-        spring_of_motion = scene%model%pairs + count(reference) + &
-                           count(scene%model%platen(:platen_of(scene, motion))%reference)
+        spring_of_motion = scene%model%contact%pairs + count(reference) + &
+                           count(scene%model%constraints%platen(:platen_of(scene, motion))%reference)
       else
-        spring_of_motion = scene%model%pairs + count(reference(:, :node - 1)) + count(reference(:c, node))
+        spring_of_motion = scene%model%contact%pairs + count(reference(:, :node - 1)) + &
+          count(reference(:c, node))
       end if
     end associate
   end function spring_of_motion
@@ -241,39 +244,40 @@ contains
     class(factored_bodies), intent(in) :: bodies
     real(wp), intent(out) :: stiffness(:)   !! [force/length] [nodes]
     real(wp), intent(out) :: norm           !! [force/length]
-    real(wp) :: k(most_freedoms**2), row(directions, scene%model%nodes)
+    real(wp) :: k(most_freedoms**2), row(directions, scene%model%mesh%nodes)
     integer :: c, e, i, j, n
 
     stiffness = 0.0_wp
     row = 0.0_wp
-    do e = 1, scene%model%elements
-      n = directions*scene%model%node_count(e)
+    do e = 1, scene%model%mesh%elements
+      n = directions*scene%model%mesh%node_count(e)
       call bodies%operator%element_stiffness(scene%model, e, bodies%law, n, k)
       do i = 1, n
-        associate (node => scene%model%connectivity((i + 1)/directions, e), c => 2 - mod(i, 2))
+        associate (node => scene%model%mesh%connectivity((i + 1)/directions, e), c => 2 - mod(i, 2))
           stiffness(node) = stiffness(node) + k(1 + (i - 1)*(n + 1))/directions
           row(c, node) = row(c, node) + sum(abs(k((i - 1)*n + 1:i*n)))
         end associate
       end do
     end do
     norm = maxval(row)
-    do i = 1, size(scene%model%spring)
+    do i = 1, size(scene%model%constraints%spring)
       do j = 1, 2
-        associate (node => scene%model%spring(i)%node(j))
-          if (node > 0) stiffness(node) = max(stiffness(node), scene%model%spring(i)%stiffness)
+        associate (node => scene%model%constraints%spring(i)%node(j))
+          if (node > 0) stiffness(node) = max(stiffness(node), scene%model%constraints%spring(i)%stiffness)
         end associate
       end do
     end do
-    do i = 1, scene%model%nodes
+    do i = 1, scene%model%mesh%nodes
       do c = 1, directions
-        associate (leader => scene%model%leader(c, i))
+        associate (leader => scene%model%constraints%leader(c, i))
           stiffness(leader) = max(stiffness(leader), stiffness(i))
         end associate
-        if (scene%model%sum_of(c, i) == 0) cycle
-        do j = scene%model%sum%first(scene%model%sum_of(c, i)), scene%model%sum%last(scene%model%sum_of(c, i))
-          if (scene%model%sum%component(j) == angle) cycle
-          associate (master => scene%model%sum%node(j))
-            stiffness(master) = max(stiffness(master), scene%model%sum%weight(j)**2*stiffness(i))
+        if (scene%model%constraints%sum_of(c, i) == 0) cycle
+        do j = scene%model%constraints%sum%first(scene%model%constraints%sum_of(c, i)), &
+          scene%model%constraints%sum%last(scene%model%constraints%sum_of(c, i))
+          if (scene%model%constraints%sum%component(j) == angle) cycle
+          associate (master => scene%model%constraints%sum%node(j))
+            stiffness(master) = max(stiffness(master), scene%model%constraints%sum%weight(j)**2*stiffness(i))
           end associate
         end do
       end do

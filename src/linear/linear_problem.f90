@@ -106,7 +106,7 @@ contains
     type(planned_model), intent(in) :: scene
     real(wp), intent(in) :: load_factor
     type(solved_state), intent(inout) :: state
-    real(wp), dimension(scene%model%pairs) :: gap, rounding
+    real(wp), dimension(scene%model%contact%pairs) :: gap, rounding
 
     state%point_stress = self%law%stress(state%strain)
     associate (contact => state%contact, travel => load_factor*self%rule%travel_gap, &
@@ -118,7 +118,7 @@ contains
         call choose_neutral(problem, contact)
         gap = contact%gap
       end if
-      state%displacement = state%deformation + load_factor*scene%model%travel
+      state%displacement = state%deformation + load_factor*scene%model%loads%travel
       call scene%motions%add(scene%model, contact%approach, state%displacement)
       ! A pair without force touches if its gap is only rounding, as the displacements have it,
       ! whatever a rule makes of it by the flexibility.
@@ -135,14 +135,14 @@ contains
   pure function rounding_of_pairs(scene, state) result(rounding)
     type(planned_model), intent(in) :: scene
     type(solved_state), intent(in) :: state
-    real(wp) :: rounding(scene%model%pairs)
-    real(wp) :: off(0:scene%model%bodies)
+    real(wp) :: rounding(scene%model%contact%pairs)
+    real(wp) :: off(0:scene%model%mesh%bodies)
     integer, allocatable :: body(:, :)
     integer :: i, k
 
     off = 0.0_wp
-    do i = 1, scene%model%nodes
-      associate (b => scene%model%body(i))
+    do i = 1, scene%model%mesh%nodes
+      associate (b => scene%model%mesh%body(i))
         off(b) = max(off(b), negligible*maxval(abs(state%deformation(:, i))), &
                      cancelled*maxval(abs(state%displacement(:, i))))
       end associate

@@ -108,7 +108,7 @@ contains
     type(planned_model), intent(in) :: scene
     class(factored_bodies), intent(in) :: bodies
 
-    associate (yields => scene%numbering%body%can_yield, n => scene%model%pairs)
+    associate (yields => scene%numbering%body%can_yield, n => scene%model%contact%pairs)
       if (.not. allocated(self%problem%flexibility)) then
         allocate (self%problem%flexibility(n, n), source=0.0_wp)
         call add_flexibilities(scene, bodies%body, .not. yields, self%threads, self%problem%flexibility)
@@ -135,8 +135,8 @@ contains
     real(wp), allocatable :: force(:, :), opening(:)
     type(half_solved_body), allocatable :: half(:)
 
-    force = load_factor*scene%model%load
-    if (allocated(scene%model%free_strain)) then   ! stresses without deformation
+    force = load_factor*scene%model%loads%load
+    if (allocated(scene%model%loads%free_strain)) then   ! stresses without deformation
       force = force - bodies%operator%nodal_forces(scene%model, bodies%law%stress( &
               bodies%operator%strains(scene%model, 0.0_wp*force, load_factor)))
     else if (any(bodies%law%initial_stress /= 0.0_wp)) then
@@ -179,7 +179,8 @@ contains
     class(stopwatch), intent(inout) :: watch
     logical, allocatable :: guess(:)
 
-    call deform(scene, bodies, load_factor*scene%model%load + pair_forces(scene%model, state%contact%force) &
+    call deform(scene, bodies, load_factor*scene%model%loads%load + pair_forces(scene%model, &
+      state%contact%force) &
                 - bodies%operator%nodal_forces(scene%model, bodies%law%stress(state%strain)) &
                 - spring_forces(scene%model, state%deformation), state)
     call watch%lap(stage_displacements)

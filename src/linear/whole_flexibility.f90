@@ -29,11 +29,11 @@ contains
     integer :: b, many
 
     associate (model => scene%model, numbering => scene%numbering)
-      pair = new_incidence(model%bodies_of_pairs(), model%bodies)
+      pair = new_incidence(model%bodies_of_pairs(), model%mesh%bodies)
       many = threads_for(merge(numbering%body%operations, 0.0_wp, chosen), &
                          spread(.false., 1, size(chosen)), threads)
       !$omp parallel do num_threads(many) if (many > 1) schedule(dynamic) ordered private(own)
-      do b = 1, model%bodies
+      do b = 1, model%mesh%bodies
         call use_one_thread_each()
         if (chosen(b)) call find_flexibility(model, numbering, b, pair%of(b), body(b), own)
         !$omp ordered

@@ -33,22 +33,22 @@ contains
   pure subroutine find_materials(model, materials)
     type(model_type), intent(in) :: model             !! model
     type(model_materials), intent(out) :: materials   !! of its sections and points
-    logical :: yields(size(model%young))
+    logical :: yields(size(model%sections%young))
     integer :: s
 
-    allocate (materials%section(size(model%young)))
-    do s = 1, size(model%young)
+    allocate (materials%section(size(model%sections%young)))
+    do s = 1, size(model%sections%young)
       associate (law => materials%section(s))
-        law%elasticity = new_elasticity(model%young(s), model%poisson(s))
-        law%sheet = model%kinematics(s) == plane_stress
-        law%yields = allocated(model%curve(s)%strain)
-        if (law%yields) law%yield_stress = model%curve(s)%stress(2)
-        law%curve = new_curve(model%curve(s), law%elasticity, model%controls%paper_ratio)
+        law%elasticity = new_elasticity(model%sections%young(s), model%sections%poisson(s))
+        law%sheet = model%sections%kinematics(s) == plane_stress
+        law%yields = allocated(model%sections%curve(s)%strain)
+        if (law%yields) law%yield_stress = model%sections%curve(s)%stress(2)
+        law%curve = new_curve(model%sections%curve(s), law%elasticity, model%controls%paper_ratio)
         yields(s) = law%yields
       end associate
     end do
     materials%yields = any(yields)
-    materials%of_point = model%section(model%point_element)
+    materials%of_point = model%mesh%section(model%mesh%point_element)
     materials%can_yield = yields(materials%of_point)
   end subroutine find_materials
 
@@ -113,12 +113,12 @@ contains
 
     farthest = 0.0_wp
     yielded = 0
-    !$omp parallel do num_threads(threads_over(model%elements)) private(p) &
+    !$omp parallel do num_threads(threads_over(model%mesh%elements)) private(p) &
     !$omp reduction(max: farthest) reduction(+: yielded)
-    do e = 1, model%elements
+    do e = 1, model%mesh%elements
       if (.not. model%can_yield(e)) cycle
-      associate (law => self%section(model%section(e)), &
-                 first => model%first_point(e), last => model%first_point(e + 1) - 1)
+      associate (law => self%section(model%mesh%section(e)), &
+                 first => model%mesh%first_point(e), last => model%mesh%first_point(e + 1) - 1)
         do p = first, last
           farthest = max(farthest, law%distance(state(p), stress(:, p)))
         end do

@@ -20,7 +20,7 @@ contains
     logical, intent(in) :: chosen(:)        !! these nodes [nodes]
     character(len=:), allocatable :: name
 
-    name = 'GRID '//text_of(minval(model%node_id, mask=chosen))
+    name = 'GRID '//text_of(minval(model%mesh%node_id, mask=chosen))
   end function first_grid
 
   !> `GRID 12 direction 2`: the SUPORT DOF that measures a rigid-body mode.
@@ -56,7 +56,7 @@ contains
     integer, intent(in) :: element          !! its number
     character(len=:), allocatable :: name
 
-    name = point_name(sum(model%coordinates(element), dim=2)/model%node_count(element))
+    name = point_name(sum(model%mesh%coordinates(element), dim=2)/model%mesh%node_count(element))
   end function centre_name
 
   !> `1, 2, 3, and 4 more`: numbers; those after the first `most` are only counted.

@@ -55,7 +55,7 @@ contains
     type(findings), intent(inout) :: found
     integer :: k, vague
 
-    if (run%model%contact_is_off .and. .not. run%certificate%scene%sound()) call warn(found,  &
+    if (run%model%contact%contact_is_off .and. .not. run%certificate%scene%sound()) call warn(found,  &
       'contact is off (BCONTACT): '//scene_sentence(run%model, run%certificate%scene, unsound))
     call warn_of_contact(run, found)
     call warn_of_forces(run, found)
@@ -95,12 +95,12 @@ contains
     type(findings), intent(inout) :: found
     integer :: nearest
 
-    if (run%model%pairs == 0 .or. any(run%answer%contact%touching)) return
+    if (run%model%contact%pairs == 0 .or. any(run%answer%contact%touching)) return
     associate (gap => run%answer%contact%gap)
       ! If gaps are almost equal, the first is named, so that rounding does not choose.
       nearest = findloc(gap <= (1.0_wp + no_effect)*minval(gap), .true., dim=1)
       call warn(found, 'nothing touches: no pair carries a force; nearest is '// &
-                run%model%name_of(of_node, run%model%pair_node(1, nearest))//', '// &
+                run%model%name_of(of_node, run%model%contact%pair_node(1, nearest))//', '// &
                 short_real(gap(nearest))//' away')
     end associate
   end subroutine warn_of_contact
@@ -154,7 +154,7 @@ contains
       integer, intent(in) :: count, first
       character(len=:), allocatable :: text
 
-      text = 'element '//text_of(run%model%element_id(first))// &
+      text = 'element '//text_of(run%model%mesh%element_id(first))// &
              when(count > 1, ' and '//text_of(count - 1)//' more')
     end function elements_text
   end subroutine warn_of_material
@@ -170,7 +170,8 @@ contains
     z = run%accuracy%leading
     if (present(zone)) z = zone
     word = ''
-    if (z == 0 .and. run%model%pairs > 0 .and. .not. any(run%answer%contact%touching)) word = no_contact
+    if (z == 0 .and. run%model%contact%pairs > 0 .and. .not. any(run%answer%contact%touching)) word = &
+      no_contact
     if (z == 0 .or. z > size(run%accuracy%zone)) return
     if (run%answer%zones(z)%max_pressure < 0.0_wp) return
     word = when(run%accuracy%zone(z)%resolved, 'bounded', not_resolved)

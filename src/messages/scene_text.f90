@@ -120,7 +120,7 @@ contains
     place = faulty(worst)
     word = words_of(model, place)
     text = ''
-    if (worst == 2 .or. worst == 3) text = 'pair '//text_of(model%pair_id(place%pair))//' presses '
+    if (worst == 2 .or. worst == 3) text = 'pair '//text_of(model%contact%pair_id(place%pair))//' presses '
     select case (worst)
     case (1)
       text = 'bodies pass through each other: '//word%penetration//'; '//word%allowed//' is allowed'
@@ -136,7 +136,7 @@ contains
              word%other_side//'; '//word%allowed//may_help//'bodies drawn where they come to, '// &
              'or longer ones: contact is that of undeformed places'
     case (4)
-      passing = model%name_of(of_element, model%body_outline%element(place%side))
+      passing = model%name_of(of_element, model%mesh%body_outline%element(place%side))
       if (place%node > 0) passing = model%name_of(of_node, place%node)
       text = 'bodies pass through each other on their way: '//passing//' of the body of '//word%body// &
              ' goes through that of '//word%other_body//', '//word%depth//' deep at '// &
@@ -154,7 +154,7 @@ contains
     word%allowed = short_real(place%allowed)
     word%at = point_name(place%x)//' on '//side_name(model, place%side)
     word%other_side = side_name(model, place%other)
-    associate (outline => model%body_outline)
+    associate (outline => model%mesh%body_outline)
       word%body = first_grid(model, outline%part_of == outline%part(place%side))
       word%other_body = first_grid(model, outline%part_of == outline%part(place%other))
     end associate
@@ -179,9 +179,9 @@ contains
     integer, intent(in) :: side
     character(len=:), allocatable :: name
 
-    associate (outline => model%body_outline)
+    associate (outline => model%mesh%body_outline)
       name = 'side '//model%name_of(of_node, outline%node(1, side))//' to '// &
-             text_of(model%node_id(outline%node(2, side)))//' of '// &
+             text_of(model%mesh%node_id(outline%node(2, side)))//' of '// &
              model%name_of(of_element, outline%element(side))
     end associate
   end function side_name
@@ -191,8 +191,8 @@ contains
     type(model_type), intent(in) :: model
     type(overlap_place), intent(in) :: place
 
-    associate (node => model%body_outline%node(:2, [place%side, place%other]))
-      longest = maxval(norm2(model%x(:, node(2, :)) - model%x(:, node(1, :)), dim=1))
+    associate (node => model%mesh%body_outline%node(:2, [place%side, place%other]))
+      longest = maxval(norm2(model%mesh%x(:, node(2, :)) - model%mesh%x(:, node(1, :)), dim=1))
     end associate
   end function longest_side
 
@@ -204,29 +204,31 @@ contains
     logical :: of_slave(2), of_master(2)
     integer :: k, line(2)
 
-    do k = size(model%line_contact), 1, -1
-      of_slave = are_of(model, model%line_contact(k)%slave, side)
-      of_master = are_of(model, model%line_contact(k)%master, side)
+    do k = size(model%contact%line_contact), 1, -1
+      of_slave = are_of(model, model%contact%line_contact(k)%slave, side)
+      of_master = are_of(model, model%contact%line_contact(k)%master, side)
       if (.not. any(of_slave .and. of_master([2, 1]))) cycle
       text = 'shorter sides of both lines there'
-      if (of_master(1)) text = 'SLAVE and MASTER of BCONP '//text_of(model%line_contact(k)%bconp(1))// &
+      if (of_master(1)) text = 'SLAVE and MASTER of BCONP '// &
+        text_of(model%contact%line_contact(k)%bconp(1))// &
                                ' exchanged, or '//text
       return
     end do
     line = 0
-    do k = 1, size(model%line)
-      where ([any(model%line(k)%side == side(1)), any(model%line(k)%side == side(2))]) line = k
+    do k = 1, size(model%contact%line)
+      where ([any(model%contact%line(k)%side == side(1)), &
+              any(model%contact%line(k)%side == side(2))]) line = k
     end do
     if (all(line > 0)) then
-      text = 'a BCONP between BLSEG '//text_of(model%line(line(1))%id)//' and BLSEG '// &
-             text_of(model%line(line(2))%id)
+      text = 'a BCONP between BLSEG '//text_of(model%contact%line(line(1))%id)//' and BLSEG '// &
+             text_of(model%contact%line(line(2))%id)
     else if (any(line > 0)) then
       text = 'a BLSEG along '//side_name(model, side(minloc(line, dim=1)))// &
-             ', and a BCONP between it and BLSEG '//text_of(model%line(maxval(line))%id)
+             ', and a BCONP between it and BLSEG '//text_of(model%contact%line(maxval(line))%id)
     else
       text = 'a BLSEG along each of the two sides, and a BCONP between the lines'
-      if (is_mate(find_mates(model), model%body_outline%node(:, side(1)), &
-                  model%body_outline%part(side(2)))) text = 'more CGAPs there, or '//text
+      if (is_mate(find_mates(model), model%mesh%body_outline%node(:, side(1)), &
+                  model%mesh%body_outline%part(side(2)))) text = 'more CGAPs there, or '//text
     end if
   end function remedy
 
@@ -238,7 +240,7 @@ contains
     logical :: are_of(2)
     integer :: k
 
-    are_of = [(any(line%segment(1, :) == model%body_outline%node(1, side(k)) .and. &
-                   line%element == model%body_outline%element(side(k))), k=1, 2)]
+    are_of = [(any(line%segment(1, :) == model%mesh%body_outline%node(1, side(k)) .and. &
+                   line%element == model%mesh%body_outline%element(side(k))), k=1, 2)]
   end function are_of
 end module epcont_messages_scene_text

@@ -37,12 +37,13 @@ contains
       text = 'there is not enough memory to factor '//body_name(run, run%answer%failed_body)
     case (reason_singular)
       text = 'the stiffness of '//body_name(run, run%answer%failed_body)//' cannot be factored: '// &
-             ill_shaped//when(run%model%has_flat_curve(), '; or a flat curve carries no more (limit load)')
+             ill_shaped//when(run%model%sections%has_flat_curve(), &
+                              '; or a flat curve carries no more (limit load)')
     case (reason_no_equilibrium)
       text = escaping(run)
     case (reason_overlap)
       text = 'pairs overlap and nothing can give way: CGAP '// &
-             joined(pack(run%model%pair_id, run%answer%contact%overlapping), ' ', most_pairs)
+             joined(pack(run%model%contact%pair_id, run%answer%contact%overlapping), ' ', most_pairs)
     case (reason_rounding)
       text = 'no set of touching pairs passed the test: inconclusive because of rounding ('// &
              cause_of_rounding(run)//')'
@@ -77,7 +78,8 @@ contains
     text = 'condition of the stiffness'
     if (.not. any(run%answer%contact%overlapping)) return
     associate (turn => abs(run%answer%contact%escape))
-      text = 'CGAP '//joined(pack(run%model%pair_id, run%answer%contact%overlapping), ' ', most_pairs)// &
+      text = 'CGAP '//joined(pack(run%model%contact%pair_id, run%answer%contact%overlapping), ' ', &
+                             most_pairs)// &
              ' alone hold '//motion_name(run, findloc(turn > 0.5_wp*maxval(turn), .true., dim=1))// &
              ', and hardly: hold it by SPC1'
     end associate
@@ -139,6 +141,6 @@ contains
     integer, intent(in) :: body
     character(len=:), allocatable :: name
 
-    name = 'the body of '//first_grid(run%model, run%model%body == body)
+    name = 'the body of '//first_grid(run%model, run%model%mesh%body == body)
   end function body_name
 end module epcont_messages_sentences

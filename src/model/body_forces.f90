@@ -40,28 +40,29 @@ contains
   !> Sections that have elements, but no mass [sections].
   pure function are_massless(model) result(massless)
     type(model_type), intent(in) :: model   !! the scene
-    logical :: massless(size(model%density))
+    logical :: massless(size(model%sections%density))
     integer :: e
 
     massless = .false.
-    do e = 1, model%elements
-      if (model%section(e) > 0) massless(model%section(e)) = model%density(model%section(e)) <= 0.0_wp
+    do e = 1, model%mesh%elements
+      if (model%mesh%section(e) > 0) massless(model%mesh%section(e)) = &
+        model%sections%density(model%mesh%section(e)) <= 0.0_wp
     end do
   end function are_massless
 
   !> Find the mass of each node and its moments: integrals of rho N and rho N (x - x of the node).
   pure subroutine weigh_nodes(model)
     type(model_type), intent(inout) :: model   !! the scene
-    type(mass_rule) :: rule(size(model%kinds))
+    type(mass_rule) :: rule(size(model%mesh%kinds))
     integer :: e, k
 
-    do k = 1, size(model%kinds)
-      rule(k) = new_mass_rule(model%kinds(k))
+    do k = 1, size(model%mesh%kinds)
+      rule(k) = new_mass_rule(model%mesh%kinds(k))
     end do
-    if (allocated(model%mass)) deallocate (model%mass)
-    allocate (model%mass(1 + directions, model%nodes), source=0.0_wp)
-    do e = 1, model%elements
-      call weigh_element(model, e, rule(model%kind(e)))
+    if (allocated(model%loads%mass)) deallocate (model%loads%mass)
+    allocate (model%loads%mass(1 + directions, model%mesh%nodes), source=0.0_wp)
+    do e = 1, model%mesh%elements
+      call weigh_element(model, e, rule(model%mesh%kind(e)))
     end do
   end subroutine weigh_nodes
 
@@ -98,20 +99,22 @@ contains
     real(wp) :: at(directions), jacobian(directions, directions), mass, node_mass
     integer :: c, k, n, p
 
-    n = model%node_count(element)
-    associate (node => model%connectivity(:n, element))
-      from_first(:, :n) = model%x(:, node) - spread(model%x(:, node(1)), 2, n)
+    n = model%mesh%node_count(element)
+    associate (node => model%mesh%connectivity(:n, element))
+      from_first(:, :n) = model%mesh%x(:, node) - spread(model%mesh%x(:, node(1)), 2, n)
       do p = 1, rule%points
         do c = 1, directions
           at(c) = dot_product(from_first(c, :n), rule%values(:n, p))
           jacobian(1, c) = dot_product(from_first(c, :n), rule%slopes(1, :n, p))
           jacobian(2, c) = dot_product(from_first(c, :n), rule%slopes(2, :n, p))
         end do
-        mass = model%density(model%section(element))*model%depth(element, model%x(1, node(1)) + at(1))* &
+        mass = model%sections%density(model%mesh%section(element))*model%depth(element, &
+          model%mesh%x(1, node(1)) + at(1))* &
                rule%weight(p)*(jacobian(1, 1)*jacobian(2, 2) - jacobian(1, 2)*jacobian(2, 1))
         do k = 1, n
           node_mass = mass*rule%values(k, p)
-          model%mass(:, node(k)) = model%mass(:, node(k)) + node_mass*[1.0_wp, at - from_first(:, k)]
+          model%loads%mass(:, node(k)) = model%loads%mass(:, node(k)) + &
+            node_mass*[1.0_wp, at - from_first(:, k)]
         end do
       end do
     end associate
@@ -121,16 +124,16 @@ contains
   pure function body_forces(model, load) result(force)
     type(model_type), intent(in) :: model   !! the scene
     type(body_load), intent(in) :: load     !! what acts on its mass
-    real(wp) :: force(directions, model%nodes)
+    real(wp) :: force(directions, model%mesh%nodes)
     real(wp) :: arm(directions)   ! mass times its distance from the axis of the spin
     logical :: rings
     integer :: i
 
     rings = model%has_rings()
-    do i = 1, model%nodes
-      arm = model%mass(1, i)*(model%x(:, i) - load%centre) + model%mass(2:, i)
+    do i = 1, model%mesh%nodes
+      arm = model%loads%mass(1, i)*(model%mesh%x(:, i) - load%centre) + model%loads%mass(2:, i)
       if (rings) arm(2) = 0.0_wp
-      force(:, i) = load%factor*(model%mass(1, i)*load%acceleration + (full_turn*load%spin)**2*arm + &
+      force(:, i) = load%factor*(model%loads%mass(1, i)*load%acceleration + (full_turn*load%spin)**2*arm + &
                                  full_turn*load%spin_up*[-arm(2), arm(1)])
     end do
   end function body_forces
@@ -140,13 +143,13 @@ contains
     type(model_type), intent(inout) :: model   !! the scene
     integer :: k
 
-    if (allocated(model%body_force)) deallocate (model%body_force)
-    if (all(model%body_load%factor == 0.0_wp)) return
-    if (.not. allocated(model%mass)) call weigh_nodes(model)
-    allocate (model%body_force(directions, model%nodes), source=0.0_wp)
-    do k = 1, size(model%body_load)
-      model%body_force = model%body_force + body_forces(model, model%body_load(k))
+    if (allocated(model%loads%body_force)) deallocate (model%loads%body_force)
+    if (all(model%loads%body_load%factor == 0.0_wp)) return
+    if (.not. allocated(model%loads%mass)) call weigh_nodes(model)
+    allocate (model%loads%body_force(directions, model%mesh%nodes), source=0.0_wp)
+    do k = 1, size(model%loads%body_load)
+      model%loads%body_force = model%loads%body_force + body_forces(model, model%loads%body_load(k))
     end do
-    model%load = model%load + model%body_force
+    model%loads%load = model%loads%load + model%loads%body_force
   end subroutine put_body_forces
 end module epcont_model_body_forces

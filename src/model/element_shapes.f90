@@ -22,31 +22,31 @@ contains
   subroutine complete_elements(model, found)
     type(model_type), intent(inout) :: model   !! the scene
     type(findings), intent(inout) :: found   !! what is wrong with it is added
-    logical :: is_ring(model%elements)
-    logical :: plain(model%elements)                    ! nothing has to be done to it
+    logical :: is_ring(model%mesh%elements)
+    logical :: plain(model%mesh%elements)                    ! nothing has to be done to it
     real(wp), dimension(2, most_nodes) :: x, straight   ! nodes of an element; with straight sides
     integer :: e, n, next, plane, ring, turn            ! it, its corners; 0: it folds over
 
-    model%node_count = model%kinds(model%kind)%nodes
-    model%points = sum(model%kinds(model%kind)%points)
-    allocate (model%first_point(model%elements + 1), model%point_element(model%points))
-    !$omp parallel do num_threads(threads_over(model%elements))
-    do e = 1, model%elements
+    model%mesh%node_count = model%mesh%kinds(model%mesh%kind)%nodes
+    model%mesh%points = sum(model%mesh%kinds(model%mesh%kind)%points)
+    allocate (model%mesh%first_point(model%mesh%elements + 1), model%mesh%point_element(model%mesh%points))
+    !$omp parallel do num_threads(threads_over(model%mesh%elements))
+    do e = 1, model%mesh%elements
       call turn_plain(e, plain(e), model)
     end do
     !$omp end parallel do
     next = 1
-    do e = 1, model%elements
-      model%first_point(e) = next
-      next = next + model%kinds(model%kind(e))%points
-      model%point_element(model%first_point(e):next - 1) = e
+    do e = 1, model%mesh%elements
+      model%mesh%first_point(e) = next
+      next = next + model%mesh%kinds(model%mesh%kind(e))%points
+      model%mesh%point_element(model%mesh%first_point(e):next - 1) = e
       if (.not. plain(e)) call check_shape()
     end do
-    model%first_point(e) = next
-    model%around = new_incidence(model%connectivity, model%nodes)
-    is_ring = [(model%is_ring(e), e=1, model%elements)]
+    model%mesh%first_point(e) = next
+    model%mesh%around = new_incidence(model%mesh%connectivity, model%mesh%nodes)
+    is_ring = [(model%is_ring(e), e=1, model%mesh%elements)]
     ring = findloc(is_ring, .true., dim=1)
-    plane = findloc(model%section > 0 .and. .not. is_ring, .true., dim=1)
+    plane = findloc(model%mesh%section > 0 .and. .not. is_ring, .true., dim=1)
     if (ring > 0 .and. plane > 0) call found%add_error(of_element, ring, 0, &
       ': a ring in a deck of plane elements ('//model%name_of(of_element, plane)//')', &
       'plane elements only, or rings only')
@@ -58,9 +58,10 @@ contains
       integer :: k
       real(wp) :: extent   ! from its first corner [length]
 
-      n = model%corners(e)
-      associate (node => model%connectivity(:model%node_count(e), e), kind => model%kinds(model%kind(e)))
-        x(:, :size(node)) = model%x(:, node)
+      n = model%mesh%corners(e)
+      associate (node => model%mesh%connectivity(:model%mesh%node_count(e), e), &
+                 kind => model%mesh%kinds(model%mesh%kind(e)))
+        x(:, :size(node)) = model%mesh%x(:, node)
         straight(:, :n) = x(:, :n)
         do k = 1, n
           straight(:, n + k) = 0.5_wp*(x(:, k) + x(:, mod(k, n) + 1))
@@ -99,8 +100,8 @@ contains
         part = sum((x(:, n + 1:2*n) - middle)**2, dim=1)/sum((x(:, :n) - middle)**2, dim=1)
       end associate
       if (turn /= 0 .and. all(part <= 1.0_wp)) return
-      node = model%connectivity(n + maxloc(part, dim=1), e)
-      name = ': middle node '//text_of(model%node_id(node))
+      node = model%mesh%connectivity(n + maxloc(part, dim=1), e)
+      name = ': middle node '//text_of(model%mesh%node_id(node))
       if (turn == 0) then
         call found%add_error(of_element, e, -node, name//' is so far from the middle of its side that '// &
                              'the element folds over', remedy)
@@ -116,9 +117,9 @@ contains
       character(len=:), allocatable :: text
       integer :: k
 
-      text = text_of(model%node_id(node(1)))
+      text = text_of(model%mesh%node_id(node(1)))
       do k = 2, size(node)
-        text = text//trim(merge(' and', ',   ', k == size(node)))//' '//text_of(model%node_id(node(k)))
+        text = text//trim(merge(' and', ',   ', k == size(node)))//' '//text_of(model%mesh%node_id(node(k)))
       end do
     end function ids
   end subroutine complete_elements
@@ -131,11 +132,12 @@ contains
     real(wp) :: x(2, most_nodes)
     integer :: k, turn
 
-    associate (node => model%connectivity(:, e), n => model%node_count(e), kind => model%kinds(model%kind(e)))
+    associate (node => model%mesh%connectivity(:, e), n => model%mesh%node_count(e), &
+               kind => model%mesh%kinds(model%mesh%kind(e)))
       plain = any(node(:n) == 0)
       if (plain .or. n > kind%corners) return
       do k = 1, n
-        x(:, k) = model%x(:, node(k))
+        x(:, k) = model%mesh%x(:, node(k))
       end do
       turn = kind%turn(x)
       plain = turn /= 0 .and. &
@@ -149,26 +151,26 @@ contains
   subroutine check_axis(model, found)
     type(model_type), intent(in) :: model   !! the scene
     type(findings), intent(inout) :: found   !! what is wrong with it is added
-    logical, dimension(model%nodes) :: beyond, in_ring, loose
+    logical, dimension(model%mesh%nodes) :: beyond, in_ring, loose
     real(wp) :: control, radius(3)
     integer :: e, i
 
     in_ring = .false.
     beyond = .false.
-    do e = 1, model%elements
-      associate (node => model%connectivity(:model%node_count(e), e))
+    do e = 1, model%mesh%elements
+      associate (node => model%mesh%connectivity(:model%mesh%node_count(e), e))
         if (.not. (model%is_ring(e) .and. all(node > 0))) cycle
         in_ring(node) = .true.
-        do i = model%corners(e) + 1, size(node)
-          radius = model%x(1, model%edge(e, i - model%corners(e)))
+        do i = model%mesh%corners(e) + 1, size(node)
+          radius = model%mesh%x(1, model%mesh%edge(e, i - model%mesh%corners(e)))
           control = 2.0_wp*radius(3) - 0.5_wp*(radius(1) + radius(2))
           ! The least is (radius(1) radius(2) - control**2)/(radius(1) + radius(2) - 2 control)
           beyond(node(i)) = -control > sqrt(abs(radius(1)*radius(2))) + cancelled*maxval(radius)
         end do
       end associate
     end do
-    do i = 1, model%nodes
-      if (in_ring(i) .and. model%x(1, i) < 0.0_wp) then
+    do i = 1, model%mesh%nodes
+      if (in_ring(i) .and. model%mesh%x(1, i) < 0.0_wp) then
         call found%add_error(of_node, i, 3, ': belongs to a ring and lies at a negative radius', &
                              'X1 of at least 0.0: x is the radius')
       else if (beyond(i)) then
@@ -176,12 +178,13 @@ contains
                              'x of at least 0.0 all along it: x is the radius')
       end if
     end do
-    loose = in_ring .and. model%x(1, :) == 0.0_wp .and. .not. model%held(1, model%leader(1, :))
+    loose = in_ring .and. model%mesh%x(1, :) == 0.0_wp .and. &
+      .not. model%constraints%held(1, model%constraints%leader(1, :))
     if (.not. any(loose)) return
     call found%add_error(of_node, findloc(loose, .true., dim=1), 3, &
                          ': lies on the axis of rings and could leave it'// &
                          and_more(count(loose), '; so could ', ' more'), 'direction 1 held')
-    found%list(found%count)%node = pack([(i, i=1, model%nodes)], loose)
+    found%list(found%count)%node = pack([(i, i=1, model%mesh%nodes)], loose)
   end subroutine check_axis
 
   !> Two elements on the same corners are as stiff as both: meant for laminae, and else a mesh read twice. Of
@@ -191,10 +194,10 @@ contains
     type(model_type), intent(in) :: model    !! the scene
     integer, intent(in) :: over(:)          !! which element before it each lies over; 0: none [elements]
     type(findings), intent(inout) :: found   !! what is wrong with it is added
-    logical :: twice(model%elements)
+    logical :: twice(model%mesh%elements)
     integer :: e
 
-    twice = [(on_the_same_corners(e), e=1, model%elements)]
+    twice = [(on_the_same_corners(e), e=1, model%mesh%elements)]
     e = findloc(twice, .true., dim=1)
     if (e > 0) call found%add_warning(of_element, e, 1, ' has the nodes of '// &
       model%name_of(of_element, over(e))//': both count, one upon the other'// &
@@ -213,9 +216,9 @@ contains
 
       same = .false.
       if (over(element) == 0) return
-      associate (other => model%connectivity(:model%corners(over(element)), over(element)))
-        same = all([(any(model%connectivity(k, element) == other), k=1, model%corners(element))]) &
-               .and. size(other) == model%corners(element)
+      associate (other => model%mesh%connectivity(:model%mesh%corners(over(element)), over(element)))
+        same = all([(any(model%mesh%connectivity(k, element) == other), k=1, model%mesh%corners(element))]) &
+               .and. size(other) == model%mesh%corners(element)
       end associate
     end function on_the_same_corners
   end subroutine check_overlaps

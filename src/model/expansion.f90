@@ -18,22 +18,25 @@ contains
     type(integration_point) :: point(most_points)
     integer :: e
 
-    if (allocated(model%free_strain)) deallocate (model%free_strain)
-    if (.not. allocated(model%temperature)) return
-    allocate (model%free_strain(model%points), source=0.0_wp)
-    do e = 1, model%elements
-      associate (s => model%section(e), node => model%connectivity(:model%node_count(e), e), &
-                 kind => model%kinds(model%kind(e)), &
-                 strain => model%free_strain(model%first_point(e):model%first_point(e + 1) - 1))
-        if (model%expansion(s) == 0.0_wp) cycle
-        strain = model%expansion(s)*matmul(model%temperature(node) - model%reference_temperature(s), &
+    if (allocated(model%loads%free_strain)) deallocate (model%loads%free_strain)
+    if (.not. allocated(model%loads%temperature)) return
+    allocate (model%loads%free_strain(model%mesh%points), source=0.0_wp)
+    do e = 1, model%mesh%elements
+      associate (s => model%mesh%section(e), node => model%mesh%connectivity(:model%mesh%node_count(e), e), &
+                 kind => model%mesh%kinds(model%mesh%kind(e)), &
+                 strain => model%loads%free_strain(model%mesh%first_point(e):model%mesh%first_point(e + 1) - &
+                                                   1))
+        if (model%sections%expansion(s) == 0.0_wp) cycle
+        strain = model%sections%expansion(s)*matmul(model%loads%temperature(node) - &
+                                                    model%sections%reference_temperature(s), &
                                            kind%values(:kind%nodes, :kind%points))
-        if (.not. kind%mean_dilatation .or. model%kinematics(s) == plane_stress) cycle
-        call evaluate_points(kind, model%x(:, node), model%kinematics(s), model%thickness(s), &
+        if (.not. kind%mean_dilatation .or. model%sections%kinematics(s) == plane_stress) cycle
+        call evaluate_points(kind, model%mesh%x(:, node), model%sections%kinematics(s), &
+                             model%sections%thickness(s), &
                              point(:kind%points))
         strain = dot_product(strain, point(:kind%points)%volume)/sum(point(:kind%points)%volume)
       end associate
     end do
-    if (all(model%free_strain == 0.0_wp)) deallocate (model%free_strain)
+    if (all(model%loads%free_strain == 0.0_wp)) deallocate (model%loads%free_strain)
   end subroutine find_free_strains
 end module epcont_model_expansion

@@ -8,7 +8,7 @@ module epcont_model_freedoms
   use epcont_base_text, only: text_of
   use epcont_base_tolerances, only: cancelled, same_place
   use epcont_element_kinematics, only: directions
-  use epcont_model_arrays, only: angle
+  use epcont_model_arrays, only: angle, dof_tie
   use epcont_model_finding, only: findings, of_node, of_reference, of_tie
   use epcont_model_model, only: model_type
   implicit none
@@ -21,17 +21,18 @@ module epcont_model_freedoms
 
 contains
 
-  !> Apply the k-th tie of the model data, if it is possible.
-  pure subroutine tie_freedom(model, k, found)
+  !> Apply a tie, if it is possible.
+  pure subroutine tie_freedom(model, k, tie, found)
     type(model_type), intent(inout) :: model   !! the scene
-    integer, intent(in) :: k                   !! which tie
+    integer, intent(in) :: k                   !! position of the tie
+    type(dof_tie), intent(in) :: tie
     type(findings), intent(inout) :: found     !! what is wrong with it is added
     character(len=:), allocatable :: remedy, why
 
-    associate (c => model%tie(k)%component, node => model%tie(k)%node, leader => model%tie(k)%leader)
+    associate (c => tie%component, node => tie%node, leader => tie%leader)
       call why_not_tied(model, c, node, leader, why, remedy)
       if (len(why) == 0) then
-        model%leader(c, node) = leader
+        model%constraints%leader(c, node) = leader
       else
         call found%add_error(of_tie, k, 0, ': '//freedom(model, c, node)//why, remedy)
       end if
@@ -49,18 +50,18 @@ contains
     why = ''
     remedy = ''
     at = leader
-    do while (model%leader(c, at) /= at .and. at /= node)
-      at = model%leader(c, at)
+    do while (model%constraints%leader(c, at) /= at .and. at /= node)
+      at = model%constraints%leader(c, at)
     end do
     if (at == node) then
       why = ' would follow itself'
       remedy = 'nodes that follow GN, without GN'
-    else if (model%leader(c, node) /= node .or. model%sum_of(c, node) > 0) then
+    else if (model%constraints%leader(c, node) /= node .or. model%constraints%sum_of(c, node) > 0) then
       why = ' follows another RBE2 already'
       remedy = 'one leader for each freedom'
-    else if (model%held(c, node)) then
+    else if (model%constraints%held(c, node)) then
       why = ' is held by a support too'
-      remedy = 'the support at GN '//text_of(model%node_id(leader))//' instead'
+      remedy = 'the support at GN '//text_of(model%mesh%node_id(leader))//' instead'
     end if
   end subroutine why_not_tied
 
@@ -86,10 +87,11 @@ contains
     logical :: is_free
 
     if (c == angle) then
-      is_free = .not. model%platen(findloc(model%platen%leader, node, dim=1))%held
+      is_free = .not. model%constraints%platen(findloc(model%constraints%platen%leader, node, dim=1))%held
     else
-      is_free = .not. model%is_held(c, node) .and. model%leader(c, node) == node .and. &
-                model%sum_of(c, node) == 0
+      is_free = .not. model%constraints%is_held(c, node) .and. &
+        model%constraints%leader(c, node) == node .and. &
+                model%constraints%sum_of(c, node) == 0
     end if
     if (.not. is_free) call found%add_error(of_reference, node, c, ': '//freedom(model, c, node)// &
       ' is held by a support or follows an RBE2', 'a freedom that is free to move')
@@ -113,15 +115,15 @@ contains
     type(partition) :: joined
     integer :: c, i, k
 
-    joined = new_partition(model%nodes)
-    do i = 1, model%elements
-      do k = 2, model%node_count(i)
-        call joined%join(model%connectivity(1, i), model%connectivity(k, i))
+    joined = new_partition(model%mesh%nodes)
+    do i = 1, model%mesh%elements
+      do k = 2, model%mesh%node_count(i)
+        call joined%join(model%mesh%connectivity(1, i), model%mesh%connectivity(k, i))
       end do
     end do
-    do i = 1, merge(model%nodes, 0, by_ties)
+    do i = 1, merge(model%mesh%nodes, 0, by_ties)
       do c = 1, directions
-        call joined%join(i, model%leader(c, i))
+        call joined%join(i, model%constraints%leader(c, i))
       end do
     end do
     if (by_ties) call join_others(model, joined)
@@ -134,39 +136,40 @@ contains
     type(partition), intent(inout) :: joined
     integer :: i, k
 
-    do k = 1, size(model%platen)
-      do i = 1, size(model%platen(k)%follower)
-        call joined%join(model%platen(k)%leader, model%platen(k)%follower(i))
+    do k = 1, size(model%constraints%platen)
+      do i = 1, size(model%constraints%platen(k)%follower)
+        call joined%join(model%constraints%platen(k)%leader, model%constraints%platen(k)%follower(i))
       end do
     end do
-    do k = 1, size(model%equation)
-      do i = 2, size(model%equation(k)%node)
-        call joined%join(model%equation(k)%node(1), model%equation(k)%node(i))
+    do k = 1, size(model%constraints%equation)
+      do i = 2, size(model%constraints%equation(k)%node)
+        call joined%join(model%constraints%equation(k)%node(1), model%constraints%equation(k)%node(i))
       end do
     end do
-    do k = 1, size(model%spring)
-      if (all(model%spring(k)%node > 0)) call joined%join(model%spring(k)%node(1), model%spring(k)%node(2))
+    do k = 1, size(model%constraints%spring)
+      if (all(model%constraints%spring(k)%node > 0)) call joined%join(model%constraints%spring(k)%node(1), &
+                                                                      model%constraints%spring(k)%node(2))
     end do
   end subroutine join_others
 
   !> Set the travel of each node, and what supports prescribe beyond it.
   pure subroutine find_travels(model)
     type(model_type), intent(inout) :: model   !! the scene
-    logical :: moved(model%bodies)
+    logical :: moved(model%mesh%bodies)
     integer :: b, i
 
-    model%travel = spread(spread(0.0_wp, 1, directions), 2, model%nodes)
-    model%beyond_travel = model%prescribed
+    model%loads%travel = spread(spread(0.0_wp, 1, directions), 2, model%mesh%nodes)
+    model%loads%beyond_travel = model%loads%prescribed
     moved = .false.
-    moved(pack(model%body, any(model%prescribed /= 0.0_wp, dim=1))) = .true.
-    do i = 1, size(model%equation)   ! what it joins need not follow a rigid motion
-      moved(model%body(model%equation(i)%node(1))) = .false.
+    moved(pack(model%mesh%body, any(model%loads%prescribed /= 0.0_wp, dim=1))) = .true.
+    do i = 1, size(model%constraints%equation)   ! what it joins need not follow a rigid motion
+      moved(model%mesh%body(model%constraints%equation(i)%node(1))) = .false.
     end do
-    do i = 1, size(model%spring)     ! nor is a spring without force then
-      moved(model%body(maxval(model%spring(i)%node))) = .false.
+    do i = 1, size(model%constraints%spring)     ! nor is a spring without force then
+      moved(model%mesh%body(maxval(model%constraints%spring(i)%node))) = .false.
     end do
-    do b = 1, model%bodies
-      if (moved(b)) call find_travel(model, pack([(i, i=1, model%nodes)], model%body == b))
+    do b = 1, model%mesh%bodies
+      if (moved(b)) call find_travel(model, pack([(i, i=1, model%mesh%nodes)], model%mesh%body == b))
     end do
   end subroutine find_travels
 
@@ -181,22 +184,23 @@ contains
     real(wp) :: shift(directions), turn
     integer :: c
 
-    known = model%held(:, node) .or. model%reference(:, node)
-    u = model%prescribed(:, node)
+    known = model%constraints%held(:, node) .or. model%constraints%reference(:, node)
+    u = model%loads%prescribed(:, node)
     do c = 1, directions
       shift(c) = mean(u(c, :), known(c, :))
-      arm(c, :) = (2*c - 3)*(model%x(3 - c, node) - mean(model%x(3 - c, node), known(c, :)))
+      arm(c, :) = (2*c - 3)*(model%mesh%x(3 - c, node) - mean(model%mesh%x(3 - c, node), known(c, :)))
     end do
     turn = 0.0_wp   ! freedoms that an RBE2 makes equal are not those of a body that turns
     if (model%has_rings()) then
       shift(1) = 0.0_wp
-    else if (sum(arm**2, mask=known) > same_place**2*maxval(arm**2) .and. .not. model%is_tied(node)) then
+    else if (sum(arm**2, mask=known) > same_place**2*maxval(arm**2) .and. &
+             .not. model%constraints%is_tied(node)) then
       turn = sum(arm*(u - spread(shift, 2, size(node))), mask=known)/sum(arm**2, mask=known)
     end if
     travel = spread(shift, 2, size(node)) + turn*arm
     if (maxval(abs(u - travel), mask=known) > follows*maxval(abs(u), mask=known)) return
-    model%travel(:, node) = travel
-    model%beyond_travel(:, node) = merge(u - travel, 0.0_wp, known .and. &
+    model%loads%travel(:, node) = travel
+    model%loads%beyond_travel(:, node) = merge(u - travel, 0.0_wp, known .and. &
         abs(u - travel) > cancelled*maxval(abs(u)))
   end subroutine find_travel
 

@@ -11,11 +11,11 @@ module epcont_model_given
   use epcont_model_controls, only: method_name, rule_name, solver_name
   use epcont_model_finding, only: findings, of_scene, of_section, of_spring
   use epcont_model_load_cases, only: load_cases, single_case
-  use epcont_model_model, only: model_type
+  use epcont_model_parts, only: kind_of
   use epcont_model_yield_curve, only: curve_fault, straighten
   implicit none
   private
-  public :: check_values, number_parts, take_arrays
+  public :: check_values, take_arrays
 
   integer, parameter :: any_shape(0) = [integer ::]   !! for `fit`
 
@@ -344,43 +344,4 @@ contains
 
     within = number >= 1 .and. number <= most
   end function within
-
-  !> The row of the table of elements that has a card; 0: none.
-  pure integer function kind_of(kinds, card)
-    type(element_kind), intent(in) :: kinds(:)
-    character(len=*), intent(in) :: card
-
-    kind_of = findloc(card /= '' .and. (kinds%plane_card == card .or. kinds%ring_card == card), .true., dim=1)
-  end function kind_of
-
-  !> All elements in one list, and ids for all parts of the scene if it has none.
-  pure subroutine number_parts(model)
-    type(model_type), intent(inout) :: model   !! with what is given; its blocks become the list
-    integer :: b, first, i, last
-
-    model%kinds = element_kinds()
-    model%nodes = size(model%x, 2)
-    model%pairs = size(model%initial_gap)
-    model%elements = sum([(size(model%block(b)%section), b=1, size(model%block))])
-    allocate (model%kind(model%elements), model%section(model%elements))
-    allocate (model%connectivity(maxval([0, (size(model%block(b)%node, 1), b=1, size(model%block))]), &
-        model%elements), source=0)
-    last = 0
-    do b = 1, size(model%block)
-      first = last + 1
-      last = last + size(model%block(b)%section)
-      model%kind(first:last) = kind_of(model%kinds, model%block(b)%name)
-      model%section(first:last) = model%block(b)%section
-      model%connectivity(:size(model%block(b)%node, 1), first:last) = model%block(b)%node
-    end do
-    deallocate (model%block)
-    if (allocated(model%node_id)) return
-    model%node_id = [(i, i=1, model%nodes)]
-    model%element_id = [(i, i=1, model%elements)]
-    model%property_id = [(i, i=1, size(model%young))]
-    model%material_id = model%property_id
-    model%pair_id = [(i, i=1, model%pairs)]
-    model%line%id = [(i, i=1, size(model%line))]
-    model%couple%id = [(i, i=1, size(model%couple))]
-  end subroutine number_parts
 end module epcont_model_given

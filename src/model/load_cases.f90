@@ -134,10 +134,10 @@ contains
     integer :: i
 
     associate (case => cases%case(k))
-      model%load = 0.0_wp
+      model%loads%load = 0.0_wp
       do i = 1, size(cases%force)
         share = case%share_of(cases%force(i)%set)
-        associate (load => model%load(:, cases%force(i)%node))
+        associate (load => model%loads%load(:, cases%force(i)%node))
           if (share /= 0.0_wp) load = load + share*cases%force(i)%force
         end associate
       end do
@@ -145,14 +145,14 @@ contains
         share = case%share_of(cases%pressure(i)%set)
         if (share /= 0.0_wp) call add_pressure(model, cases%pressure(i)%given, share)
       end do
-      model%body_load = cases%body%given
+      model%loads%body_load = cases%body%given
       do i = 1, size(cases%body)
-        model%body_load(i)%factor = case%share_of(cases%body(i)%set)*model%body_load(i)%factor
+        model%loads%body_load(i)%factor = case%share_of(cases%body(i)%set)*model%loads%body_load(i)%factor
       end do
       call put_body_forces(model)
       do i = 1, size(cases%moment)
         share = case%share_of(cases%moment(i)%set)
-        call add_moment(model, cases%moment(i)%platen, share*cases%moment(i)%moment, model%load)
+        call add_moment(model, cases%moment(i)%platen, share*cases%moment(i)%moment, model%loads%load)
       end do
     end associate
     model%controls%load_steps = cases%case(k)%load_steps
@@ -168,9 +168,9 @@ contains
     type(model_type), intent(inout) :: model
     integer :: k
 
-    if (allocated(model%temperature)) deallocate (model%temperature)
+    if (allocated(model%loads%temperature)) deallocate (model%loads%temperature)
     k = findloc(cases%heat%set, case%temperatures, dim=1)
-    if (k > 0) model%temperature = cases%heat(k)%temperature
+    if (k > 0) model%loads%temperature = cases%heat(k)%temperature
     call find_free_strains(model)
   end subroutine put_temperatures
 
@@ -182,7 +182,7 @@ contains
     real(wp), allocatable :: prescribed(:, :)   ! with the angles of platens
     integer :: i
 
-    allocate (prescribed(angle, max(model%nodes, size(model%platen))), source=0.0_wp)
+    allocate (prescribed(angle, max(model%mesh%nodes, size(model%constraints%platen))), source=0.0_wp)
     do i = 1, size(cases%held_at)
       associate (at => cases%held_at(i))
         if (at%set == case%supports) prescribed(at%c, at%node) = at%displacement
@@ -193,8 +193,8 @@ contains
         if (any(case%set == at%set)) prescribed(at%c, at%node) = case%share_of(at%set)*at%displacement
       end associate
     end do
-    model%prescribed = prescribed(:directions, :model%nodes)
-    model%platen%prescribed = prescribed(angle, :size(model%platen))
+    model%loads%prescribed = prescribed(:directions, :model%mesh%nodes)
+    model%constraints%platen%prescribed = prescribed(angle, :size(model%constraints%platen))
   end subroutine put_displacements
 
   !> The factor of a set of loads in a case; 0 where it is none of it.

@@ -40,7 +40,7 @@ contains
     behind = 0
     do k = 1, size(pressure)
       associate (e => pressure(k)%given%element)
-        if (any(model%connectivity(:model%node_count(e), e) == 0)) cycle
+        if (any(model%mesh%connectivity(:model%mesh%node_count(e), e) == 0)) cycle
         call find_side(model, pressure(k)%given, ends, behind(k))
         if (ends(1) == 0) call found%add_error(of_pressure, k, 0, &
           ': GA and GB are not the ends of a side of '//model%name_of(of_element, e), &
@@ -57,13 +57,14 @@ contains
   subroutine check_masses(model, found)
     type(model_type), intent(in) :: model
     type(findings), intent(inout) :: found
-    logical :: massless(size(model%density))
+    logical :: massless(size(model%sections%density))
     integer :: s
 
     massless = are_massless(model)
     do s = 1, size(massless)
       if (.not. massless(s)) cycle
-      if (any(massless(:s - 1) .and. model%material_id(:s - 1) == model%material_id(s))) cycle
+      if (any(massless(:s - 1) .and. model%sections%material_id(:s - 1) == &
+              model%sections%material_id(s))) cycle
       call found%add_error(of_section, s, item_density, ': field 6 (RHO) leaves '// &
                            model%name_of(of_section, s)//' without mass, on which GRAV and RFORCE act', &
                            'a density above 0.0')
@@ -99,7 +100,7 @@ contains
     real(wp) :: largest
     integer :: k
 
-    if (any(load%factor /= 0.0_wp) .and. .not. allocated(model%mass)) call weigh_nodes(model)
+    if (any(load%factor /= 0.0_wp) .and. .not. allocated(model%loads%mass)) call weigh_nodes(model)
     do k = 1, size(load)
       if (load(k)%factor == 0.0_wp) cycle
       largest = maxval(abs(body_forces(model, load(k))))
@@ -119,15 +120,15 @@ contains
       integer :: c, e, edge(3), side
       real(wp) :: extent
 
-      extent = maxval(extent_of(model%x(:, model%around%members())))
-      do e = 1, model%elements
-        do side = 1, model%corners(e)
-          edge = model%edge(e, side)
+      extent = maxval(extent_of(model%mesh%x(:, model%mesh%around%members())))
+      do e = 1, model%mesh%elements
+        do side = 1, model%mesh%corners(e)
+          edge = model%mesh%edge(e, side)
           associate (a => edge(1), b => edge(2), centre => load(k)%centre)
             do c = 1, 2
               if (.not. (holds_across(c, a) .and. holds_across(c, b))) cycle
-              if (abs(model%x(c, a) - model%x(c, b)) > same_place*extent .or. &
-                  abs(model%x(c, a) - centre(c)) <= same_place*max(extent, abs(centre(c)))) cycle
+              if (abs(model%mesh%x(c, a) - model%mesh%x(c, b)) > same_place*extent .or. &
+                  abs(model%mesh%x(c, a) - centre(c)) <= same_place*max(extent, abs(centre(c)))) cycle
               call found%add_warning(of_body_load, k, 0, ': its axis lies beside the line from '// &
                 model%name_of(of_node, a)//' to '//model%name_of(of_node, b)//', which is held across'// &
                 ' and free along itself: what is symmetric spins about a point of its line of symmetry', &
@@ -143,8 +144,8 @@ contains
     pure logical function holds_across(c, node)
       integer, intent(in) :: c, node   !! the direction across
 
-      holds_across = model%is_held(c, node) .and. .not. model%is_held(3 - c, node)
-      if (holds_across) holds_across = model%prescribed(c, model%leader(c, node)) == 0.0_wp
+      holds_across = model%constraints%is_held(c, node) .and. .not. model%constraints%is_held(3 - c, node)
+      if (holds_across) holds_across = model%loads%prescribed(c, model%constraints%leader(c, node)) == 0.0_wp
     end function holds_across
   end subroutine check_body_forces
 end module epcont_model_load_checks

@@ -22,12 +22,12 @@ contains
     integer, allocatable :: beside(:)
     integer :: k
 
-    ends = model%edge_between(given%element, given%corner(1), given%corner(2))
+    ends = model%mesh%edge_between(given%element, given%corner(1), given%corner(2))
     behind = 0
-    if (ends(1) == 0 .or. model%section(given%element) == 0) return
-    beside = model%with_side(ends(1), ends(2))
+    if (ends(1) == 0 .or. model%mesh%section(given%element) == 0) return
+    beside = model%mesh%with_side(ends(1), ends(2))
     do k = size(beside), 1, -1   ! the element behind goes the other way along the side
-      if (all(model%edge_between(beside(k), ends(1), ends(2)) == ends([2, 1, 3]))) behind = beside(k)
+      if (all(model%mesh%edge_between(beside(k), ends(1), ends(2)) == ends([2, 1, 3]))) behind = beside(k)
     end do
   end subroutine find_side
 
@@ -40,16 +40,16 @@ contains
     real(wp) :: depth, direction(directions), at_ends(2), value
     integer :: ends(3), k, p
 
-    ends = model%edge_between(given%element, given%corner(1), given%corner(2))
+    ends = model%mesh%edge_between(given%element, given%corner(1), given%corner(2))
     at_ends = share*merge(given%pressure, given%pressure([2, 1]), ends(1) == given%corner(1))
-    point = edge_points(model%edge_coordinates(ends))
+    point = edge_points(model%mesh%edge_coordinates(ends))
     do p = 1, edge_point_count
       ! From inward: the element lies to the left
       direction = turned([-point(p)%tangent(2), point(p)%tangent(1)], given%theta)
       depth = model%depth(given%element, point(p)%x(1))
       value = at_ends(1) + (at_ends(2) - at_ends(1))*point(p)%along
       do k = 1, size(ends)
-        if (ends(k) > 0) model%load(:, ends(k)) = model%load(:, ends(k)) + &
+        if (ends(k) > 0) model%loads%load(:, ends(k)) = model%loads%load(:, ends(k)) + &
             value*depth*point(p)%values(k)*direction
       end do
     end do

@@ -25,16 +25,17 @@ contains
     real(wp) :: between(directions)
     integer :: i, overlaps
 
-    do i = 1, model%pairs
-      associate (a => model%pair_node(1, i), b => model%pair_node(2, i), normal => model%normal(:, i))
+    do i = 1, model%contact%pairs
+      associate (a => model%contact%pair_node(1, i), b => model%contact%pair_node(2, i), &
+                 normal => model%contact%normal(:, i))
         if (a == b .or. a == 0 .or. b == 0) then
           if (a == b .and. a > 0) &
             call found%add_error(of_pair, i, 4, ': GA and GB are the same GRID', &
                                  'a node on each side of the gap')
-          model%initial_gap(i) = 0.0_wp
+          model%contact%initial_gap(i) = 0.0_wp
           cycle
         end if
-        between = model%x(:, b) - model%x(:, a)
+        between = model%mesh%x(:, b) - model%mesh%x(:, a)
         if (all(normal == 0.0_wp)) then
           if (.not. allocated(shortest)) shortest = shortest_edge()
           if (norm2(between) > coincident*min(shortest(a), shortest(b))) then
@@ -47,36 +48,39 @@ contains
         else if (abs(norm2(normal) - 1.0_wp) > few_ulps) then
           normal = normal/norm2(normal)
         end if
-        if (model%gap_by_geometry) model%initial_gap(i) = model%initial_gap(i) + dot_product(normal, between)
+        if (model%contact%gap_by_geometry) model%contact%initial_gap(i) = model%contact%initial_gap(i) + &
+          dot_product(normal, between)
       end associate
     end do
-    model%row_start = [(2*i - 1, i=1, model%pairs + 1)]
-    model%row_node = reshape(model%pair_node([2, 1], :), [2*model%pairs])
-    model%row_weight = [(1.0_wp, -1.0_wp, i=1, model%pairs)]
-    overlaps = count(model%initial_gap < 0.0_wp)
+    model%contact%row_start = [(2*i - 1, i=1, model%contact%pairs + 1)]
+    model%contact%row_node = reshape(model%contact%pair_node([2, 1], :), [2*model%contact%pairs])
+    model%contact%row_weight = [(1.0_wp, -1.0_wp, i=1, model%contact%pairs)]
+    overlaps = count(model%contact%initial_gap < 0.0_wp)
     if (overlaps == 0) return
     ! One warning for all: shrink fits have many.
-    i = findloc(model%initial_gap < 0.0_wp, .true., dim=1)
+    i = findloc(model%contact%initial_gap < 0.0_wp, .true., dim=1)
     others = ''
     if (overlaps > 1) others = '; '//text_of(overlaps)//' pairs overlap, by up to '// &
-                               short_real(-minval(model%initial_gap))
-    call found%add_warning(of_pair, i, 1, ': the initial gap is '//short_real(model%initial_gap(i))//others, &
+                               short_real(-minval(model%contact%initial_gap))
+    call found%add_warning(of_pair, i, 1, ': the initial gap is '// &
+                           short_real(model%contact%initial_gap(i))//others, &
                            'a gap of 0.0 or more, unless a fit is meant')
 
   contains
 
     !> Shortest edge at each node; 0 at nodes without elements, which say nothing of the mesh's size.
     pure function shortest_edge() result(edge)
-      real(wp) :: edge(model%nodes)
+      real(wp) :: edge(model%mesh%nodes)
       integer :: e, k, side(3)
 
       edge = huge(1.0_wp)
-      do e = 1, model%elements
-        if (any(model%connectivity(:model%node_count(e), e) == 0)) cycle
-        do k = 1, model%corners(e)
-          side = model%edge(e, k)
+      do e = 1, model%mesh%elements
+        if (any(model%mesh%connectivity(:model%mesh%node_count(e), e) == 0)) cycle
+        do k = 1, model%mesh%corners(e)
+          side = model%mesh%edge(e, k)
           associate (node => side(:merge(3, 2, side(3) > 0)))
-            edge(node) = min(edge(node), norm2(model%x(:, side(1)) - model%x(:, side(2)))/(size(node) - 1))
+            edge(node) = min(edge(node), norm2(model%mesh%x(:, side(1)) - model%mesh%x(:, &
+              side(2)))/(size(node) - 1))
           end associate
         end do
       end do

@@ -16,8 +16,8 @@ contains
     integer :: bare, grounded   ! end without a direction; with the direction of the ground; 0: none
     integer :: k
 
-    do k = 1, size(model%spring)
-      associate (node => model%spring(k)%node, component => model%spring(k)%component)
+    do k = 1, size(model%constraints%spring)
+      associate (node => model%constraints%spring(k)%node, component => model%constraints%spring(k)%component)
         grounded = findloc(node == 0 .and. component > 0, .true., dim=1)
         bare = findloc(node > 0 .and. component == 0, .true., dim=1)
         if (all(node == 0)) then
@@ -44,7 +44,7 @@ contains
 
     stretch = 0.0_wp
     do i = 1, 2
-      associate (node => model%spring(k)%node(i), c => model%spring(k)%component(i))
+      associate (node => model%constraints%spring(k)%node(i), c => model%constraints%spring(k)%component(i))
         if (node > 0) stretch = stretch + (2*i - 3)*displacement(c, node)
       end associate
     end do
@@ -59,10 +59,10 @@ contains
     integer :: i, k
 
     allocate (force(size(displacement, 1), size(displacement, 2)), source=0.0_wp)
-    do k = 1, size(model%spring)
-      pull = model%spring(k)%stiffness*spring_stretch(model, k, displacement)
+    do k = 1, size(model%constraints%spring)
+      pull = model%constraints%spring(k)%stiffness*spring_stretch(model, k, displacement)
       do i = 1, 2
-        associate (node => model%spring(k)%node(i), c => model%spring(k)%component(i))
+        associate (node => model%constraints%spring(k)%node(i), c => model%constraints%spring(k)%component(i))
           if (node > 0) force(c, node) = force(c, node) + (2*i - 3)*pull
         end associate
       end do

@@ -22,20 +22,20 @@ contains
     logical, allocatable :: follows(:)
     integer :: c, i
 
-    associate (node => model%platen(platen)%follower)
+    associate (node => model%constraints%platen(platen)%follower)
       allocate (follows(size(node)), source=.true.)
       do i = 1, size(node)
         do c = 1, directions
-          call why_not_tied(model, c, node(i), model%platen(platen)%leader, why, remedy)
+          call why_not_tied(model, c, node(i), model%constraints%platen(platen)%leader, why, remedy)
           if (len(why) == 0) cycle
           call found%add_error(of_platen, platen, -i, ': '//freedom(model, c, node(i))//why, remedy)
           follows(i) = .false.
           exit
         end do
-        if (follows(i)) model%sum_of(:, node(i)) = 1   ! a number until there are rows
+        if (follows(i)) model%constraints%sum_of(:, node(i)) = 1   ! a number until there are rows
       end do
     end associate
-    model%platen(platen)%follower = pack(model%platen(platen)%follower, follows)
+    model%constraints%platen(platen)%follower = pack(model%constraints%platen(platen)%follower, follows)
   end subroutine turn_followers
 
   !> The first freedom of an equation follows the others: it must be free to do so.
@@ -45,20 +45,20 @@ contains
     type(findings), intent(inout) :: found     !! what is wrong with it is added
     character(len=:), allocatable :: why
 
-    associate (c => model%equation(k)%component(1), node => model%equation(k)%node(1))
+    associate (c => model%constraints%equation(k)%component(1), node => model%constraints%equation(k)%node(1))
       why = ''
-      if (model%equation(k)%coefficient(1) == 0.0_wp) then
+      if (model%constraints%equation(k)%coefficient(1) == 0.0_wp) then
         why = ' has the coefficient 0.0'
-      else if (model%sum_of(c, node) > 0 .or. model%leader(c, node) /= node) then
+      else if (model%constraints%sum_of(c, node) > 0 .or. model%constraints%leader(c, node) /= node) then
         why = ' follows an RBE2 or another MPC already'
-      else if (model%held(c, node)) then
+      else if (model%constraints%held(c, node)) then
         why = ' is held by a support'
-      else if (model%reference(c, node)) then
+      else if (model%constraints%reference(c, node)) then
         why = ' is a SUPORT freedom'
       end if
       if (len(why) > 0) call found%add_error(of_equation, k, -1, ': '//freedom(model, c, node)//why// &
         ', and cannot follow the others', 'first a freedom that nothing else holds or moves')
-      model%sum_of(c, node) = 1
+      model%constraints%sum_of(c, node) = 1
     end associate
   end subroutine check_equation
 
@@ -72,26 +72,31 @@ contains
     real(wp), allocatable :: weight(:)
     integer :: c, i, k, last, rows
 
-    model%sum_of = spread([0, 0], 2, model%nodes)
-    rows = directions*sum([(size(model%platen(k)%follower), k=1, size(model%platen))]) + size(model%equation)
+    model%constraints%sum_of = spread([0, 0], 2, model%mesh%nodes)
+    rows = directions*sum([(size(model%constraints%platen(k)%follower), k=1, &
+                            size(model%constraints%platen))]) + size(model%constraints%equation)
     allocate (first(rows + 1), source=1)
     allocate (equation(rows), state(rows), source=untouched)
-    allocate (model%sum%first(rows), model%sum%last(rows), source=0)
+    allocate (model%constraints%sum%first(rows), model%constraints%sum%last(rows), source=0)
     last = 0
     rows = 0
-    k = 2*size(state) + sum([(size(model%equation(k)%node), k=1, size(model%equation))])
+    k = 2*size(state) + sum([(size(model%constraints%equation(k)%node), k=1, &
+                              size(model%constraints%equation))])
     allocate (component(k), node(k), weight(k))
-    do k = 1, size(model%platen)
+    do k = 1, size(model%constraints%platen)
       call add_platen()
-      if (size(model%platen(k)%follower) > 0) then
-        if (any(model%x(:, model%platen(k)%follower) /= &
-                spread(model%x(:, model%platen(k)%leader), 2, size(model%platen(k)%follower)))) cycle
+      if (size(model%constraints%platen(k)%follower) > 0) then
+        if (any(model%mesh%x(:, model%constraints%platen(k)%follower) /= &
+                spread(model%mesh%x(:, model%constraints%platen(k)%leader), 2, &
+                       size(model%constraints%platen(k)%follower)))) cycle
       end if
-      call found%add_error(of_node, model%platen(k)%leader, 0, ': turns, and no node that follows it is'// &
+      call found%add_error(of_node, model%constraints%platen(k)%leader, 0, &
+                           ': turns, and no node that follows it is'// &
                            ' anywhere else', 'a node at another place for GM of its RBE2')
     end do
-    do k = 1, size(model%equation)
-      associate (given => model%equation(k), first_one => model%equation(k)%coefficient(1))
+    do k = 1, size(model%constraints%equation)
+      associate (given => model%constraints%equation(k), &
+                 first_one => model%constraints%equation(k)%coefficient(1))
         ! A first coefficient of 0.0 has been reported; it must not divide.
         call add_row(given%component(1), given%node(1), given%component(2:), given%node(2:), &
                      -given%coefficient(2:)/merge(1.0_wp, first_one, first_one == 0.0_wp))
@@ -103,9 +108,10 @@ contains
       if (state(k) == untouched) call resolve(k)
     end do
     call make_room(last, last, model)
-    do i = 1, model%nodes
+    do i = 1, model%mesh%nodes
       do c = 1, directions
-        if (model%leader(c, i) /= i) model%sum_of(c, i) = model%sum_of(c, model%leader(c, i))
+        if (model%constraints%leader(c, i) /= i) model%constraints%sum_of(c, i) = &
+          model%constraints%sum_of(c, model%constraints%leader(c, i))
       end do
     end do
 
@@ -116,9 +122,9 @@ contains
       real(wp) :: arm(directions)
       integer :: j
 
-      associate (platen => model%platen(k))
+      associate (platen => model%constraints%platen(k))
         do j = 1, size(platen%follower)
-          arm = model%x(:, platen%follower(j)) - model%x(:, platen%leader)
+          arm = model%mesh%x(:, platen%follower(j)) - model%mesh%x(:, platen%leader)
           call add_row(1, platen%follower(j), [1, angle], [platen%leader, k], [1.0_wp, -arm(2)])
           call add_row(2, platen%follower(j), [2, angle], [platen%leader, k], [1.0_wp, arm(1)])
         end do
@@ -131,7 +137,7 @@ contains
       real(wp), intent(in) :: weights(:)
 
       rows = rows + 1
-      model%sum_of(c, follower) = rows
+      model%constraints%sum_of(c, follower) = rows
       first(rows + 1) = first(rows) + size(nodes)
       associate (from => first(rows), to => first(rows + 1) - 1)
         component(from:to) = components
@@ -148,14 +154,14 @@ contains
       state(row) = begun
       do i = first(row), first(row + 1) - 1
         if (component(i) == angle) cycle
-        node(i) = model%leader(component(i), node(i))
-        j = model%sum_of(component(i), node(i))
+        node(i) = model%constraints%leader(component(i), node(i))
+        j = model%constraints%sum_of(component(i), node(i))
         if (j == 0) cycle
         if (state(j) == begun) then
           call found%add_error(of_equation, equation(row), 0, ': '// &
                                freedom(model, component(i), node(i))//' would follow itself', &
                                'equations that do not go round in a circle')
-          model%sum_of(component(i), node(i)) = 0
+          model%constraints%sum_of(component(i), node(i)) = 0
         else if (state(j) == untouched) then
           call resolve(j)
         end if
@@ -173,20 +179,20 @@ contains
     integer, intent(inout) :: last
     integer :: i, j
 
-    model%sum%first(row) = last + 1
+    model%constraints%sum%first(row) = last + 1
     do i = first(row), first(row + 1) - 1
       j = 0
-      if (component(i) /= angle) j = model%sum_of(component(i), node(i))
+      if (component(i) /= angle) j = model%constraints%sum_of(component(i), node(i))
       if (j == 0) then
         call put([component(i)], [node(i)], [weight(i)])
       else
-        associate (from => model%sum%first(j), to => model%sum%last(j))
-          call put([model%sum%component(from:to)], [model%sum%node(from:to)], &
-                   weight(i)*model%sum%weight(from:to))
+        associate (from => model%constraints%sum%first(j), to => model%constraints%sum%last(j))
+          call put([model%constraints%sum%component(from:to)], [model%constraints%sum%node(from:to)], &
+                   weight(i)*model%constraints%sum%weight(from:to))
         end associate
       end if
     end do
-    model%sum%last(row) = last
+    model%constraints%sum%last(row) = last
 
   contains
 
@@ -194,10 +200,11 @@ contains
       integer, intent(in) :: components(:), nodes(:)
       real(wp), intent(in) :: weights(:)
 
-      if (last + size(nodes) > size(model%sum%node)) call make_room(last, 2*(last + size(nodes)), model)
-      model%sum%component(last + 1:last + size(nodes)) = components
-      model%sum%node(last + 1:last + size(nodes)) = nodes
-      model%sum%weight(last + 1:last + size(nodes)) = weights
+      if (last + size(nodes) > size(model%constraints%sum%node)) call make_room(last, &
+        2*(last + size(nodes)), model)
+      model%constraints%sum%component(last + 1:last + size(nodes)) = components
+      model%constraints%sum%node(last + 1:last + size(nodes)) = nodes
+      model%constraints%sum%weight(last + 1:last + size(nodes)) = weights
       last = last + size(nodes)
     end subroutine put
   end subroutine put_terms
@@ -210,13 +217,13 @@ contains
     real(wp) :: new_weight(terms)
 
     if (last > 0) then
-      new_component(:last) = model%sum%component(:last)
-      new_node(:last) = model%sum%node(:last)
-      new_weight(:last) = model%sum%weight(:last)
+      new_component(:last) = model%constraints%sum%component(:last)
+      new_node(:last) = model%constraints%sum%node(:last)
+      new_weight(:last) = model%constraints%sum%weight(:last)
     end if
-    model%sum%component = new_component
-    model%sum%node = new_node
-    model%sum%weight = new_weight
+    model%constraints%sum%component = new_component
+    model%constraints%sum%node = new_node
+    model%constraints%sum%weight = new_weight
   end subroutine make_room
 
   !> A moment at the leader of a platen that turns: forces on those that follow it, across their arms and as
@@ -226,11 +233,12 @@ contains
     integer, intent(in) :: platen             !! which of those that turn
     real(wp), intent(in) :: moment            !! counter-clockwise [force*length]
     real(wp), intent(inout) :: load(:, :)     !! it is added to them [force] [2, nodes]
-    real(wp) :: arm(directions, size(model%platen(platen)%follower)), force(directions), squares
+    real(wp) :: arm(directions, size(model%constraints%platen(platen)%follower)), force(directions), squares
     integer :: i
 
-    associate (follower => model%platen(platen)%follower, leader => model%platen(platen)%leader)
-      arm = model%x(:, follower) - spread(model%x(:, leader), 2, size(follower))
+    associate (follower => model%constraints%platen(platen)%follower, &
+               leader => model%constraints%platen(platen)%leader)
+      arm = model%mesh%x(:, follower) - spread(model%mesh%x(:, leader), 2, size(follower))
       squares = sum(arm**2)
       do i = 1, size(follower)
         force = moment/squares*[-arm(2, i), arm(1, i)]
@@ -251,9 +259,10 @@ contains
 
     turn = 0.0_wp
     squares = 0.0_wp
-    associate (follower => model%platen(platen)%follower, leader => model%platen(platen)%leader)
+    associate (follower => model%constraints%platen(platen)%follower, &
+               leader => model%constraints%platen(platen)%leader)
       do i = 1, size(follower)
-        arm = model%x(:, follower(i)) - model%x(:, leader)
+        arm = model%mesh%x(:, follower(i)) - model%mesh%x(:, leader)
         moved = displacement(:, follower(i)) - displacement(:, leader)
         turn = turn + arm(1)*moved(2) - arm(2)*moved(1)
         squares = squares + sum(arm**2)

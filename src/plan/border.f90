@@ -21,7 +21,7 @@ contains
     integer, intent(out) :: border               !! unknowns
     !> Sums of these that DOFs are; the first rows are each one of them
     type(sparse_rows), intent(out) :: tied
-    integer :: angles(size(model%platen))        ! number of each angle; 0 if it has none
+    integer :: angles(size(model%constraints%platen))        ! number of each angle; 0 if it has none
     integer :: c, i
 
     equation(:, own) = 0
@@ -32,8 +32,9 @@ contains
         call take_leaders(c, own(i))
       end do
     end do
-    do i = 1, size(model%spring)
-      if (model%body(maxval(model%spring(i)%node)) == model%body(own(1))) call take_ends(i)
+    do i = 1, size(model%constraints%spring)
+      if (model%mesh%body(maxval(model%constraints%spring(i)%node)) == &
+          model%mesh%body(own(1))) call take_ends(i)
     end do
     tied%start = [(i, i=1, border + 1)]
     tied%equation = [(i, i=1, border)]
@@ -41,7 +42,7 @@ contains
     call add_sums(model, own, angles, equation, tied)
     do i = 1, size(own)
       do c = 1, directions
-        equation(c, own(i)) = equation(c, model%leader(c, own(i)))
+        equation(c, own(i)) = equation(c, model%constraints%leader(c, own(i)))
       end do
     end do
 
@@ -52,12 +53,13 @@ contains
       integer, intent(in) :: c, node
       integer :: i
 
-      if (model%sum_of(c, node) == 0) then
-        if (model%leader(c, node) /= node) call take(c, model%leader(c, node))
+      if (model%constraints%sum_of(c, node) == 0) then
+        if (model%constraints%leader(c, node) /= node) call take(c, model%constraints%leader(c, node))
         return
       end if
-      do i = model%sum%first(model%sum_of(c, node)), model%sum%last(model%sum_of(c, node))
-        call take(model%sum%component(i), model%sum%node(i))
+      do i = model%constraints%sum%first(model%constraints%sum_of(c, node)), &
+        model%constraints%sum%last(model%constraints%sum_of(c, node))
+        call take(model%constraints%sum%component(i), model%constraints%sum%node(i))
       end do
     end subroutine take_leaders
 
@@ -67,9 +69,10 @@ contains
       integer :: i
 
       do i = 1, 2
-        associate (c => model%spring(k)%component(i), node => model%spring(k)%node(i))
+        associate (c => model%constraints%spring(k)%component(i), node => model%constraints%spring(k)%node(i))
           if (node == 0) cycle
-          if (model%leader(c, node) == node .and. model%sum_of(c, node) == 0) call take(c, node)
+          if (model%constraints%leader(c, node) == node .and. &
+              model%constraints%sum_of(c, node) == 0) call take(c, node)
         end associate
       end do
     end subroutine take_ends
@@ -106,26 +109,28 @@ contains
     terms = 0
     do i = 1, size(nodes)
       do c = 1, directions
-        associate (k => model%sum_of(c, nodes(i)))
-          if (k > 0) terms = terms + model%sum%last(k) - model%sum%first(k) + 1
+        associate (k => model%constraints%sum_of(c, nodes(i)))
+          if (k > 0) terms = terms + model%constraints%sum%last(k) - model%constraints%sum%first(k) + 1
         end associate
       end do
     end do
     if (terms == 0) return
-    tied = sparse_rows([tied%start, spread(0, 1, count(model%sum_of(:, nodes) > 0))], &
+    tied = sparse_rows([tied%start, spread(0, 1, count(model%constraints%sum_of(:, nodes) > 0))], &
                        [tied%equation, spread(0, 1, terms)], [tied%weight, spread(0.0_wp, 1, terms)])
     do i = 1, size(nodes)
       do c = 1, directions
-        if (model%leader(c, nodes(i)) /= nodes(i) .or. model%sum_of(c, nodes(i)) == 0) cycle
-        do e = model%sum%first(model%sum_of(c, nodes(i))), model%sum%last(model%sum_of(c, nodes(i)))
-          associate (of => model%sum%component(e), node => model%sum%node(e))
+        if (model%constraints%leader(c, nodes(i)) /= nodes(i) .or. &
+            model%constraints%sum_of(c, nodes(i)) == 0) cycle
+        do e = model%constraints%sum%first(model%constraints%sum_of(c, nodes(i))), &
+          model%constraints%sum%last(model%constraints%sum_of(c, nodes(i)))
+          associate (of => model%constraints%sum%component(e), node => model%constraints%sum%node(e))
             if (of == angle) number = angles(node)
             if (of /= angle) number = abs(equation(of, node))
           end associate
           if (number == 0) cycle
           entries = entries + 1
           tied%equation(entries) = number
-          tied%weight(entries) = model%sum%weight(e)
+          tied%weight(entries) = model%constraints%sum%weight(e)
         end do
         if (entries < tied%start(row + 1)) cycle
         row = row + 1
@@ -144,9 +149,10 @@ contains
     integer, intent(in) :: component, node   !! component 1: x, 2: y; `angle`: of the platen with this number
 
     if (component == angle) then
-      is_free = .not. (model%platen(node)%held .or. model%platen(node)%reference)
+      is_free = .not. (model%constraints%platen(node)%held .or. model%constraints%platen(node)%reference)
     else
-      is_free = .not. (model%held(component, node) .or. model%reference(component, node))
+      is_free = .not. (model%constraints%held(component, node) .or. &
+                       model%constraints%reference(component, node))
     end if
   end function is_free
 end module epcont_plan_border

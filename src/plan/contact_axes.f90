@@ -49,24 +49,25 @@ contains
     logical, allocatable :: leads(:)        ! the node is a master, or has a spring
     integer :: i, k, node, turned
 
-    allocate (axes%pair(model%nodes), axes%turn(model%nodes), source=0)
-    allocate (axes%wanted(directions, model%nodes), is_whole(model%nodes), source=.false.)
-    allocate (first(directions, model%nodes))
-    do k = 1, model%pairs
-      do i = model%row_start(k), model%row_start(k + 1) - 1
-        call want(model%row_node(i), model%normal(:, k))
+    allocate (axes%pair(model%mesh%nodes), axes%turn(model%mesh%nodes), source=0)
+    allocate (axes%wanted(directions, model%mesh%nodes), is_whole(model%mesh%nodes), source=.false.)
+    allocate (first(directions, model%mesh%nodes))
+    do k = 1, model%contact%pairs
+      do i = model%contact%row_start(k), model%contact%row_start(k + 1) - 1
+        call want(model%contact%row_node(i), model%contact%normal(:, k))
       end do
     end do
     leads = followed_nodes(model)
-    do k = 1, size(model%spring)
-      leads(pack(model%spring(k)%node, model%spring(k)%node > 0)) = .true.
+    do k = 1, size(model%constraints%spring)
+      leads(pack(model%constraints%spring(k)%node, model%constraints%spring(k)%node > 0)) = .true.
     end do
     turned = 0
-    do node = 1, model%nodes
+    do node = 1, model%mesh%nodes
       if (axes%pair(node) == 0) cycle
       axes%wanted(:, node) = is_whole(node) .or. abs(first(:, node)) > rounding
       if (.not. all(axes%wanted(:, node)) .or. is_whole(node) .or. leads(node) .or. &
-          any(model%leader(:, node) /= node .or. model%sum_of(:, node) > 0 .or. fixed(:, node))) cycle
+          any(model%constraints%leader(:, node) /= node .or. model%constraints%sum_of(:, node) > 0 .or. &
+              fixed(:, node))) cycle
       turned = turned + 1
       axes%turn(node) = turned
       axes%wanted(:, node) = [.true., .false.]
@@ -94,17 +95,17 @@ contains
   !> Is each node the master of an RBE2, or does an MPC depend on it? [nodes]
   pure function followed_nodes(model) result(leads)
     type(model_type), intent(in) :: model
-    logical :: leads(model%nodes)
+    logical :: leads(model%mesh%nodes)
     integer :: c, i
 
     leads = .false.
-    do i = 1, model%nodes
+    do i = 1, model%mesh%nodes
       do c = 1, directions
-        if (model%leader(c, i) /= i) leads(model%leader(c, i)) = .true.
+        if (model%constraints%leader(c, i) /= i) leads(model%constraints%leader(c, i)) = .true.
       end do
     end do
-    leads(model%platen%leader) = .true.
-    leads(pack(model%sum%node, model%sum%component /= angle)) = .true.
+    leads(model%constraints%platen%leader) = .true.
+    leads(pack(model%constraints%sum%node, model%constraints%sum%component /= angle)) = .true.
   end function followed_nodes
 
   !> Let no gap depend on any DOF, with all DOFs along x and y.

@@ -79,7 +79,7 @@ contains
     allocate (work%below(size(nodes) + 1), work%noted(size(free)), source=0)
     work%order = [(i, i=1, size(free))]
     do i = 1, size(free)
-      associate (x => model%x(1, free(i)), y => model%x(2, free(i)))
+      associate (x => model%mesh%x(1, free(i)), y => model%mesh%x(2, free(i)))
         work%coordinate(:, i) = [x + y, x - y, x, y, further(free(i))]
       end associate
     end do
@@ -232,13 +232,14 @@ contains
     integer, intent(in) :: node(:)
     type(incidence), intent(in), optional :: pairs   !! of each node; the nodes of a pair are neighbours
     type(incidence) :: beside
-    integer :: place(0:size(model%x, 2)), seen(0:size(node)), i, j, k, n
+    integer :: place(0:size(model%mesh%x, 2)), seen(0:size(node)), i, j, k, n
 
     place = 0
     place(node) = [(i, i=1, size(node))]
-    associate (start => model%around%start, element => model%around%group)
-      n = sum(start(node + 1) - start(node))*(size(model%connectivity, 1) - 1)
-      if (present(pairs)) n = n + sum(model%row_start(pairs%group + 1) - model%row_start(pairs%group) - 1)
+    associate (start => model%mesh%around%start, element => model%mesh%around%group)
+      n = sum(start(node + 1) - start(node))*(size(model%mesh%connectivity, 1) - 1)
+      if (present(pairs)) n = n + sum(model%contact%row_start(pairs%group + 1) - &
+                                      model%contact%row_start(pairs%group) - 1)
       allocate (beside%start(size(node) + 1), beside%group(n))
       n = 0
       seen = 0
@@ -246,14 +247,14 @@ contains
         beside%start(i) = n + 1
         seen([0, i]) = i
         do j = start(node(i)), start(node(i) + 1) - 1
-          do k = 1, size(model%connectivity, 1)
-            call add(place(model%connectivity(k, element(j))))
+          do k = 1, size(model%mesh%connectivity, 1)
+            call add(place(model%mesh%connectivity(k, element(j))))
           end do
         end do
         if (.not. present(pairs)) cycle
         do j = pairs%start(node(i)), pairs%start(node(i) + 1) - 1
-          do k = model%row_start(pairs%group(j)), model%row_start(pairs%group(j) + 1) - 1
-            call add(place(model%row_node(k)))
+          do k = model%contact%row_start(pairs%group(j)), model%contact%row_start(pairs%group(j) + 1) - 1
+            call add(place(model%contact%row_node(k)))
           end do
         end do
       end do

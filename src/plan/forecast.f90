@@ -97,12 +97,13 @@ contains
     else
       call add_bodies(model, motions, numbering, expected)
     end if
-    expected%bytes = expected%bytes + of_process + of_node*model%nodes + of_point*model%points
-    do p = 1, model%points
-      expected%bytes = expected%bytes + of_node_of_point*model%node_count(model%point_element(p)) + &
-                       merge(of_yielding_point, 0_i8, model%can_yield(model%point_element(p)))
+    expected%bytes = expected%bytes + of_process + of_node*model%mesh%nodes + of_point*model%mesh%points
+    do p = 1, model%mesh%points
+      expected%bytes = expected%bytes + &
+        of_node_of_point*model%mesh%node_count(model%mesh%point_element(p)) + &
+                       merge(of_yielding_point, 0_i8, model%can_yield(model%mesh%point_element(p)))
     end do
-    expected%apart_bytes = expected%bytes + int(pair_matrices*real(model%pairs, wp)**2, i8)*real_bytes
+    expected%apart_bytes = expected%bytes + int(pair_matrices*real(model%contact%pairs, wp)**2, i8)*real_bytes
     ! The factors of the unloaded state are kept beside those of the last state.
     if (cases > 1 .and. plan%yields) expected%bytes = 2*expected%bytes - of_process
   end function forecast
@@ -117,7 +118,7 @@ contains
 
     associate (fronts => numbering%body(1)%fronts, entries => numbering%body(1)%fronts%entries(kept=.true.))
       expected%bytes = real_bytes*entries + &
-                       load_of_node*model%nodes*(min(most_assessed, motions%count) + usual_sums)
+                       load_of_node*model%mesh%nodes*(min(most_assessed, motions%count) + usual_sums)
       expected%operations = (1.0_wp + of_sets)*fronts%operations() + of_solves*entries
     end associate
   end subroutine add_joined
@@ -132,8 +133,8 @@ contains
     integer(i8) :: entries, factor, flexibility, last, own, pairs, passing, updates, unit_loads
     integer :: b
 
-    pairs = model%pairs
-    of_bodies = new_incidence(model%bodies_of_pairs(), model%bodies)
+    pairs = model%contact%pairs
+    of_bodies = new_incidence(model%bodies_of_pairs(), model%mesh%bodies)
     entries = 0       ! of the factors
     flexibility = 0   ! of the part of F of one body
     unit_loads = 0    ! bytes of the adjoint fields of one body

@@ -53,9 +53,9 @@ contains
     real(wp), intent(inout) :: displacement(:, :)      !! [length] [directions, nodes]
     integer :: k, node
 
-    !$omp parallel do num_threads(threads_over(model%nodes)) private(k)
-    do node = 1, model%nodes
-      associate (b => model%body(node))
+    !$omp parallel do num_threads(threads_over(model%mesh%nodes)) private(k)
+    do node = 1, model%mesh%nodes
+      associate (b => model%mesh%body(node))
         do k = self%first(b), self%first(b + 1) - 1
           displacement(:, node) = displacement(:, node) + motion(k)*self%displacement(model, node, k)
         end do
@@ -72,7 +72,7 @@ contains
     real(wp) :: u(directions)
 
     u = 0.0_wp
-    if (self%body(k) /= model%body(node)) return
+    if (self%body(k) /= model%mesh%body(node)) return
     associate (part => self%coefficient(:, self%before(k) + self%parts%own(self%parts%of_node(node))))
       u = part(:directions) + part(part_motions)*self%parts%turn(model, node)
     end associate
@@ -103,7 +103,7 @@ contains
         if (size(own) == 0) cycle
         node = pack(own, [(count(own == own(i)) == directions, i=1, size(own))])
         if (size(node) == 0) node = own
-        associate (x => model%x(:, own))
+        associate (x => model%mesh%x(:, own))
           apart = maxval([((norm2(x(:, i) - x(:, k)), i=1, k), k=1, size(own))])
         end associate
       end associate
@@ -128,15 +128,15 @@ contains
     integer :: b
 
     motions%parts = find_rigid_parts(model)
-    nodes = new_incidence(reshape(model%body, [1, model%nodes]), model%bodies)
-    allocate (motions%first(model%bodies + 1))
+    nodes = new_incidence(reshape(model%mesh%body, [1, model%mesh%nodes]), model%mesh%bodies)
+    allocate (motions%first(model%mesh%bodies + 1))
     allocate (motions%body(0), motions%node(0), motions%component(0), motions%before(0))
     allocate (motions%coefficient(part_motions, 0))
-    do b = 1, model%bodies
+    do b = 1, model%mesh%bodies
       motions%first(b) = motions%count + 1
       call examine_body(model, nodes%of(b), motions, found)
     end do
-    motions%first(model%bodies + 1) = motions%count + 1
+    motions%first(model%mesh%bodies + 1) = motions%count + 1
   end subroutine find_free_motions
 
   !> Find the rigid-body modes of one body.
@@ -150,13 +150,14 @@ contains
     integer, allocatable :: platen(:)               ! platens whose angles are the last SUPORT DOFs
     integer :: b, i, info, m, translations
 
-    b = model%body(nodes(1))
-    node = pack(spread(nodes, 1, directions), model%reference(:, nodes))
-    component = pack(spread([(i, i=1, directions)], 2, size(nodes)), model%reference(:, nodes))
-    platen = pack([(i, i=1, size(model%platen))], &
-                  model%platen%reference .and. model%body(model%platen%leader) == b)
+    b = model%mesh%body(nodes(1))
+    node = pack(spread(nodes, 1, directions), model%constraints%reference(:, nodes))
+    component = pack(spread([(i, i=1, directions)], 2, size(nodes)), model%constraints%reference(:, nodes))
+    platen = pack([(i, i=1, size(model%constraints%platen))], &
+                  model%constraints%platen%reference .and. &
+                    model%mesh%body(model%constraints%platen%leader) == b)
     translations = size(node)
-    node = [node, model%platen(platen)%leader]
+    node = [node, model%constraints%platen(platen)%leader]
     component = [component, spread(angle, 1, size(platen))]
     basis = null_space(restraint_rows(model, motions%parts, nodes), dependent)
     allocate (measured(size(node), size(basis, 1)))

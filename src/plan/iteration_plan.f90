@@ -49,7 +49,7 @@ contains
       plan%rule_chosen_here = asked%rule == rule_auto
       plan%joined = joined
       plan%from_first_pivot = asked%original
-      plan%yields = any([(model%can_yield(e), e=1, model%elements)])
+      plan%yields = any([(model%can_yield(e), e=1, model%mesh%elements)])
       if (plan%yields) plan%load_steps = asked%load_steps
       plan%chosen_here = asked%method == method_auto
       plan%method = asked%method

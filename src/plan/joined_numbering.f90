@@ -34,25 +34,25 @@ contains
     integer, allocatable, intent(out) :: first(:)    !! equation of each front, and one more [fronts + 1]
     integer, intent(out) :: first_contact            !! first equation of the other fronts
     type(dissection) :: found
-    integer :: springs(0:model%nodes)   ! number of nodes with springs, up to a position in the order
+    integer :: springs(0:model%mesh%nodes)   ! number of nodes with springs, up to a position in the order
     logical, allocatable :: acted(:)    ! pairs or SUPORT act on the node, or in the front
     integer, allocatable :: order(:)    ! of the fronts
     integer :: apart, begun, i, last, p
 
-    found = dissect(model, 2.0_wp*model%x(1, :) + model%x(2, :), [(i, i=1, model%nodes)], &
-                    followed_nodes(model), new_incidence(model%nodes_of_pairs(), model%nodes))
-    acted = any(model%reference, dim=1)
-    acted(model%row_node) = .true.
+    found = dissect(model, 2.0_wp*model%mesh%x(1, :) + model%mesh%x(2, :), [(i, i=1, model%mesh%nodes)], &
+                    followed_nodes(model), new_incidence(model%contact%nodes_of_pairs(), model%mesh%nodes))
+    acted = any(model%constraints%reference, dim=1)
+    acted(model%contact%row_node) = .true.
     springs(0) = 0
-    do i = 1, model%nodes
+    do i = 1, model%mesh%nodes
       springs(i) = springs(i - 1) + merge(1, 0, acted(found%node(i)))
     end do
     acted = springs(found%first(2:) - 1) > springs(found%below - 1)
     apart = count(.not. acted)
     order = [pack([(p, p=1, size(acted))], .not. acted), pack([(p, p=1, size(acted))], acted)]
-    allocate (equation(directions, model%nodes), source=0)
+    allocate (equation(directions, model%mesh%nodes), source=0)
     angles = 0
-    allocate (node(model%nodes), first(size(order) + 1))
+    allocate (node(model%mesh%nodes), first(size(order) + 1))
     begun = 0
     last = 0
     first_contact = 0
@@ -70,9 +70,10 @@ contains
     ! Component by component: gfortran 12 leaves empty ones of a structure constructor unallocated.
     allocate (tied%start(1), source=1)
     allocate (tied%equation(0), tied%weight(0))
-    call add_sums(model, [(i, i=1, model%nodes)], angles, equation, tied)
-    do i = 1, model%nodes
-      equation(:, i) = [equation(1, model%leader(1, i)), equation(2, model%leader(2, i))]
+    call add_sums(model, [(i, i=1, model%mesh%nodes)], angles, equation, tied)
+    do i = 1, model%mesh%nodes
+      equation(:, i) = [equation(1, model%constraints%leader(1, i)), &
+                        equation(2, model%constraints%leader(2, i))]
     end do
 
   contains
@@ -83,12 +84,13 @@ contains
       integer :: c, k
 
       do c = 1, directions
-        if (model%held(c, own) .or. model%leader(c, own) /= own .or. model%sum_of(c, own) > 0) cycle
+        if (model%constraints%held(c, own) .or. model%constraints%leader(c, own) /= own .or. &
+            model%constraints%sum_of(c, own) > 0) cycle
         last = last + 1
         equation(c, own) = last
       end do
       do k = 1, size(angles)
-        if (model%platen(k)%leader /= own .or. model%platen(k)%held) cycle
+        if (model%constraints%platen(k)%leader /= own .or. model%constraints%platen(k)%held) cycle
         last = last + 1
         angles(k) = last
       end do
@@ -128,30 +130,34 @@ contains
     integer :: i, k, last, longest, row
 
     longest = maxval([1, tied%start(2:) - tied%start(:size(tied%start) - 1)])   ! entries of a DOF
-    associate (suports => count(model%reference) + count(model%platen%reference))
-      allocate (spring%start(model%pairs + suports + size(model%spring) + 1), source=1)
-      k = longest*(directions*size(model%row_node) + suports + 2*size(model%spring))
+    associate (suports => count(model%constraints%reference) + count(model%constraints%platen%reference))
+      allocate (spring%start(model%contact%pairs + suports + size(model%constraints%spring) + 1), source=1)
+      k = longest*(directions*size(model%contact%row_node) + suports + 2*size(model%constraints%spring))
       allocate (spring%equation(k), spring%weight(k))
     end associate
     row = 0
     last = 0
-    do k = 1, model%pairs
-      do i = model%row_start(k), model%row_start(k + 1) - 1
-        call put(equation(1, model%row_node(i)), model%row_weight(i)*model%normal(1, k))
-        call put(equation(2, model%row_node(i)), model%row_weight(i)*model%normal(2, k))
+    do k = 1, model%contact%pairs
+      do i = model%contact%row_start(k), model%contact%row_start(k + 1) - 1
+        call put(equation(1, model%contact%row_node(i)), &
+                 model%contact%row_weight(i)*model%contact%normal(1, k))
+        call put(equation(2, model%contact%row_node(i)), &
+                 model%contact%row_weight(i)*model%contact%normal(2, k))
       end do
       call end_row()
     end do
-    associate (at_suport => [pack(equation, model%reference), pack(angles, model%platen%reference)])
+    associate (at_suport => [pack(equation, model%constraints%reference), &
+                             pack(angles, model%constraints%platen%reference)])
       do i = 1, size(at_suport)
         call put(at_suport(i), 1.0_wp)
         call end_row()
       end do
     end associate
-    do k = 1, size(model%spring)
+    do k = 1, size(model%constraints%spring)
       do i = 1, 2
-        if (model%spring(k)%node(i) > 0) &
-          call put(equation(model%spring(k)%component(i), model%spring(k)%node(i)), 2*i - 3.0_wp)
+        if (model%constraints%spring(k)%node(i) > 0) &
+          call put(equation(model%constraints%spring(k)%component(i), model%constraints%spring(k)%node(i)), &
+                   2*i - 3.0_wp)
       end do
       call end_row()
     end do

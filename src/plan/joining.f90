@@ -26,7 +26,7 @@ contains
     type(model_type), intent(in) :: model
 
     joins = model%controls%rule == rule_joined .or. model%controls%rule == rule_auto .and. &
-            of_pairs*real(model%pairs, wp)**3 > many_of(model)*model%nodes
+            of_pairs*real(model%contact%pairs, wp)**3 > many_of(model)*model%mesh%nodes
     if (joins) joins = can_join(model)
   end function joins
 
@@ -35,7 +35,7 @@ contains
     type(model_type), intent(in) :: model
     integer :: e
 
-    many_of = merge(many_where_yielding, many_of_pairs, any([(model%can_yield(e), e=1, model%elements)]))
+    many_of = merge(many_where_yielding, many_of_pairs, any([(model%can_yield(e), e=1, model%mesh%elements)]))
   end function many_of
 
   !> Can the bodies be joined? At least one pair needs a body that deforms.
@@ -43,7 +43,9 @@ contains
     type(model_type), intent(in) :: model
     integer :: i
 
-    can_join = any([(model%around%start(model%row_node(i) + 1) > model%around%start(model%row_node(i)) .and. &
-                     .not. all(model%is_held([1, 2], model%row_node(i))), i=1, size(model%row_node))])
+    can_join = any([(model%mesh%around%start(model%contact%row_node(i) + &
+                                             1) > model%mesh%around%start(model%contact%row_node(i)) .and. &
+                     .not. all(model%constraints%is_held([1, 2], model%contact%row_node(i))), i=1, &
+                       size(model%contact%row_node))])
   end function can_join
 end module epcont_plan_joining

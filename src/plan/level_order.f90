@@ -42,14 +42,14 @@ contains
         end_of_level = filled
       end if
       first = filled + 1
-      do k = model%around%start(order%node(at)), model%around%start(order%node(at) + 1) - 1
-        e = model%around%group(k)
-        call add_new(model%connectivity(:model%node_count(e), e), seen, order%node, filled)
+      do k = model%mesh%around%start(order%node(at)), model%mesh%around%start(order%node(at) + 1) - 1
+        e = model%mesh%around%group(k)
+        call add_new(model%mesh%connectivity(:model%mesh%node_count(e), e), seen, order%node, filled)
       end do
       if (filled > first) then
         found = order%node(first:filled)
-        order%node(first:filled) = found(sorted_order(model%around%start(found + 1) - &
-            model%around%start(found)))
+        order%node(first:filled) = found(sorted_order(model%mesh%around%start(found + 1) - &
+            model%mesh%around%start(found)))
       end if
     end do
   end subroutine sweep

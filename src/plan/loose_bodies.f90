@@ -63,7 +63,7 @@ contains
         motion(:, i, :) = matmul(parts%rows(model, nodes(i)), of_part)
         if (moving == 0 .and. any(abs(of_part) > no_effect*maxval(abs(loose)))) moving = nodes(i)
       end associate
-      follows(:, i) = model%sum_of(:, nodes(i)) > 0
+      follows(:, i) = model%constraints%sum_of(:, nodes(i)) > 0
     end do
     text = ''
     cards = ''
@@ -74,7 +74,7 @@ contains
       associate (beside => parts%of_node(nodes) == parts%of_node(nodes(at(2))))
         text = text//', '//words(model, motion(:, :, k), nodes, at(2), beside)
       end associate
-      cards = cards//','//text_of(model%node_id(nodes(at(2))))//','//text_of(at(1))
+      cards = cards//','//text_of(model%mesh%node_id(nodes(at(2))))//','//text_of(at(1))
     end do
     body = 'the body of '//model%name_of(of_node, nodes(1))
     if (moving /= nodes(1)) body = 'a part of '//body//', with '//model%name_of(of_node, moving)//','

@@ -94,22 +94,22 @@ contains
     type(numbering_type) :: numbering
     type(numberer) :: work
     type(incidence) :: elements, nodes      ! elements and nodes of each body
-    logical :: fixed(directions, model%nodes)
+    logical :: fixed(directions, model%mesh%nodes)
     integer :: b, i
 
-    allocate (work%equation(directions, model%nodes), source=0)
-    allocate (work%body(merge(1, model%bodies, joined)), work%seen(model%nodes))
-    fixed = model%held .or. model%reference
-    work%free = .not. fixed .and. model%sum_of == 0 .and. &
-                model%leader == spread([(i, i=1, model%nodes)], 1, directions)
+    allocate (work%equation(directions, model%mesh%nodes), source=0)
+    allocate (work%body(merge(1, model%mesh%bodies, joined)), work%seen(model%mesh%nodes))
+    fixed = model%constraints%held .or. model%constraints%reference
+    work%free = .not. fixed .and. model%constraints%sum_of == 0 .and. &
+                model%constraints%leader == spread([(i, i=1, model%mesh%nodes)], 1, directions)
     work%axes = new_contact_axes(model, fixed)
     work%stands_last = work%axes%pair > 0 .and. .not. any(work%free .and. .not. work%axes%wanted, dim=1)
     if (joined) then
       call work%number_all(model)
     else
-      nodes = new_incidence(reshape(model%body, [1, model%nodes]), model%bodies)
-      elements = model%elements_of_bodies()
-      do b = 1, model%bodies
+      nodes = new_incidence(reshape(model%mesh%body, [1, model%mesh%nodes]), model%mesh%bodies)
+      elements = model%mesh%elements_of_bodies()
+      do b = 1, model%mesh%bodies
         work%own = nodes%of(b)
         work%body(b)%element = elements%of(b)
         call work%number_body(model, b)
@@ -126,21 +126,21 @@ contains
     class(numberer), intent(inout) :: self
     type(model_type), intent(in) :: model
     integer, allocatable :: first(:)
-    integer :: angles(size(model%platen)), i
+    integer :: angles(size(model%constraints%platen)), i
 
     self%joined = .true.
     call self%axes%ask_nothing()
     associate (all => self%body(1))
       call number_joined(model, self%equation, angles, all%tied, all%node, first, all%first_contact)
       all%spring = spring_rows(model, self%equation, angles, all%tied)
-      all%element = [(i, i=1, model%elements)]
+      all%element = [(i, i=1, model%mesh%elements)]
       all%equations = first(size(first)) - 1
       all%can_yield = any(model%can_yield(all%element))
       all%solver = solver_frontal
       all%fronts = new_front_layout(first, self%equations_of(model, 1))
       all%operations = all%fronts%operations()
       all%part = all%fronts%element
-      all%element = pack(all%part, all%part <= model%elements)
+      all%element = pack(all%part, all%part <= model%mesh%elements)
     end associate
   end subroutine number_all
 
@@ -170,7 +170,7 @@ contains
     integer, intent(in) :: b
     type(level_order) :: outward
     type(dissection) :: found
-    real(wp) :: distance(model%nodes)
+    real(wp) :: distance(model%mesh%nodes)
     integer, allocatable :: first(:), roots(:)
     integer :: i, others
 
@@ -365,7 +365,7 @@ contains
     last = 0
     do e = 1, element
       equations%start(e) = last + 1
-      n = directions*model%node_count(self%body(b)%element(e))
+      n = directions*model%mesh%node_count(self%body(b)%element(e))
       number = self%of_element(model, self%body(b)%element(e))
       own = number(:n)
       if (self%joined .and. any(own < 0)) call find_terms(self%body(1)%tied, number(:n), own, freedom, weight)
@@ -390,8 +390,8 @@ contains
     integer :: i
 
     number = 0
-    do i = 1, model%node_count(element)
-      number(directions*(i - 1) + 1:directions*i) = self%equation(:, model%connectivity(i, element))
+    do i = 1, model%mesh%node_count(element)
+      number(directions*(i - 1) + 1:directions*i) = self%equation(:, model%mesh%connectivity(i, element))
     end do
   end function of_element
 end module epcont_plan_numbering

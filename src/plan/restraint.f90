@@ -23,15 +23,17 @@ contains
     real(wp) :: of_node(directions, part_motions)
     integer :: b, c, i, k, last
 
-    b = model%body(nodes(1))
-    bound = model%held(:, nodes) .or. model%leader(:, nodes) /= spread(nodes, 1, directions) .or. &
-            model%sum_of(:, nodes) > 0
+    b = model%mesh%body(nodes(1))
+    bound = model%constraints%held(:, nodes) .or. &
+      model%constraints%leader(:, nodes) /= spread(nodes, 1, directions) .or. &
+            model%constraints%sum_of(:, nodes) > 0
     own = pack([(i, i=1, parts%count)], parts%body == b)
-    hinge = pack([(i, i=1, size(parts%hinge, 2))], model%body(parts%hinge(1, :)) == b)
-    platen = pack([(i, i=1, size(model%platen))], &
-                  model%platen%held .and. model%body(model%platen%leader) == b)
-    spring = pack([(i, i=1, size(model%spring))], &
-                  [(model%body(maxval(model%spring(i)%node)) == b, i=1, size(model%spring))])
+    hinge = pack([(i, i=1, size(parts%hinge, 2))], model%mesh%body(parts%hinge(1, :)) == b)
+    platen = pack([(i, i=1, size(model%constraints%platen))], &
+                  model%constraints%platen%held .and. model%mesh%body(model%constraints%platen%leader) == b)
+    spring = pack([(i, i=1, size(model%constraints%spring))], &
+                  [(model%mesh%body(maxval(model%constraints%spring(i)%node)) == b, i=1, &
+                    size(model%constraints%spring))])
     last = directions*size(hinge) + count(parts%cannot(:, own)) + count(bound) + size(platen) + size(spring)
     allocate (rows(last, part_motions*size(own)), source=0.0_wp)
     last = 0
@@ -63,7 +65,7 @@ contains
     end do
     last = last + size(platen)
     do i = 1, size(spring)
-      rows(last + i, :) = row_of_spring(model, parts, size(rows, 2), model%spring(spring(i)))
+      rows(last + i, :) = row_of_spring(model, parts, size(rows, 2), model%constraints%spring(spring(i)))
     end do
   end function restraint_rows
 
@@ -96,13 +98,15 @@ contains
     integer :: i
 
     row = row_of(model, parts, columns, c, node)
-    if (model%leader(c, node) /= node) then
-      row = row - row_of(model, parts, columns, c, model%leader(c, node))
-    else if (model%sum_of(c, node) > 0) then
-      do i = model%sum%first(model%sum_of(c, node)), model%sum%last(model%sum_of(c, node))
-        weight = model%sum%weight(i)
-        if (model%sum%component(i) == angle) weight = weight/parts%extent(model%body(node))
-        row = row - weight*row_of(model, parts, columns, model%sum%component(i), model%sum%node(i))
+    if (model%constraints%leader(c, node) /= node) then
+      row = row - row_of(model, parts, columns, c, model%constraints%leader(c, node))
+    else if (model%constraints%sum_of(c, node) > 0) then
+      do i = model%constraints%sum%first(model%constraints%sum_of(c, node)), &
+        model%constraints%sum%last(model%constraints%sum_of(c, node))
+        weight = model%constraints%sum%weight(i)
+        if (model%constraints%sum%component(i) == angle) weight = weight/parts%extent(model%mesh%body(node))
+        row = row - weight*row_of(model, parts, columns, model%constraints%sum%component(i), &
+                                  model%constraints%sum%node(i))
       end do
     end if
   end function row_of_tie

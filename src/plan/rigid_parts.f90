@@ -44,27 +44,27 @@ contains
 
     call join_elements()
     parts%count = solid
-    allocate (parts%of_node(model%nodes))
-    do i = 1, model%nodes
-      if (model%around%start(i) < model%around%start(i + 1)) then
-        parts%of_node(i) = of_element(model%around%group(model%around%start(i)))
+    allocate (parts%of_node(model%mesh%nodes))
+    do i = 1, model%mesh%nodes
+      if (model%mesh%around%start(i) < model%mesh%around%start(i + 1)) then
+        parts%of_node(i) = of_element(model%mesh%around%group(model%mesh%around%start(i)))
       else
         parts%count = parts%count + 1
         parts%of_node(i) = parts%count
       end if
     end do
     points = parts%count
-    parts%count = points + size(model%platen)
+    parts%count = points + size(model%constraints%platen)
     parts%of_platen = [(i, i=points + 1, parts%count)]
     allocate (parts%body(parts%count))
     allocate (parts%cannot(part_motions, parts%count), source=.false.)
     parts%cannot(part_motions, solid + 1:points) = .true.
     parts%cannot(:directions, points + 1:) = .true.
-    parts%body(parts%of_node) = model%body
-    parts%body(parts%of_platen) = model%body(model%platen%leader)
-    do e = 1, model%elements
-      parts%body(of_element(e)) = model%body(model%connectivity(1, e))
-      if (model%kinematics(model%section(e)) == axisymmetric) &
+    parts%body(parts%of_node) = model%mesh%body
+    parts%body(parts%of_platen) = model%mesh%body(model%constraints%platen%leader)
+    do e = 1, model%mesh%elements
+      parts%body(of_element(e)) = model%mesh%body(model%mesh%connectivity(1, e))
+      if (model%sections%kinematics(model%mesh%section(e)) == axisymmetric) &
         parts%cannot(::directions, of_element(e)) = .true.
     end do
     call number_parts()
@@ -75,7 +75,7 @@ contains
 
     !> Number the parts of each body.
     subroutine number_parts()
-      integer :: last(model%bodies), k
+      integer :: last(model%mesh%bodies), k
 
       last = 0
       allocate (parts%own(parts%count))
@@ -91,13 +91,13 @@ contains
       integer, allocatable :: met_by(:)   ! the last element with which each was found to share a node
       integer :: j, k, neighbour, node
 
-      sets = new_partition(model%elements)
-      allocate (met_by(model%elements), source=0)
-      do e = 1, model%elements
-        do k = 1, model%node_count(e)
-          node = model%connectivity(k, e)
-          do j = model%around%start(node), model%around%start(node + 1) - 1
-            neighbour = model%around%group(j)
+      sets = new_partition(model%mesh%elements)
+      allocate (met_by(model%mesh%elements), source=0)
+      do e = 1, model%mesh%elements
+        do k = 1, model%mesh%node_count(e)
+          node = model%mesh%connectivity(k, e)
+          do j = model%mesh%around%start(node), model%mesh%around%start(node + 1) - 1
+            neighbour = model%mesh%around%group(j)
             if (neighbour >= e) exit
             if (met_by(neighbour) == e) call sets%join(e, neighbour)
             met_by(neighbour) = e
@@ -112,11 +112,11 @@ contains
       integer :: here, hinges, k
       integer, allocatable :: met(:)   ! parts of the elements at a node
 
-      allocate (parts%hinge(3, size(model%around%group)))
+      allocate (parts%hinge(3, size(model%mesh%around%group)))
       hinges = 0
-      do i = 1, model%nodes
+      do i = 1, model%mesh%nodes
         here = parts%of_node(i)
-        met = of_element(model%around%of(i))
+        met = of_element(model%mesh%around%of(i))
         do k = 1, size(met)
           if (met(k) == here .or. any(met(:k - 1) == met(k))) cycle
           hinges = hinges + 1
@@ -129,16 +129,16 @@ contains
     !> Measure centre and extent of the elements of each body. A body without elements does not rotate: it
     !! gets the centre 0 and the extent 1.
     subroutine measure()
-      real(wp), dimension(directions, model%bodies) :: low, high
+      real(wp), dimension(directions, model%mesh%bodies) :: low, high
       integer, allocatable :: node(:)
 
       low = huge(1.0_wp)
       high = -huge(1.0_wp)
-      node = model%around%members()
+      node = model%mesh%around%members()
       do i = 1, size(node)
-        associate (b => model%body(node(i)))
-          low(:, b) = min(low(:, b), model%x(:, node(i)))
-          high(:, b) = max(high(:, b), model%x(:, node(i)))
+        associate (b => model%mesh%body(node(i)))
+          low(:, b) = min(low(:, b), model%mesh%x(:, node(i)))
+          high(:, b) = max(high(:, b), model%mesh%x(:, node(i)))
         end associate
       end do
       parts%centre = 0.5_wp*low + 0.5_wp*high
@@ -175,8 +175,9 @@ contains
 
     turn = 0.0_wp
     if (self%cannot(part_motions, self%of_node(node))) return
-    associate (b => model%body(node))
-      turn = [-(model%x(2, node) - self%centre(2, b)), model%x(1, node) - self%centre(1, b)]/self%extent(b)
+    associate (b => model%mesh%body(node))
+      turn = [-(model%mesh%x(2, node) - self%centre(2, b)), &
+              model%mesh%x(1, node) - self%centre(1, b)]/self%extent(b)
     end associate
   end function turn
 end module epcont_plan_rigid_parts

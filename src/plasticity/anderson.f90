@@ -52,7 +52,7 @@ contains
     if (allocated(self%weight)) then
       call remember()
     else
-      self%weight = volume*model%young(model%section(model%point_element))
+      self%weight = volume*model%sections%young(model%mesh%section(model%mesh%point_element))
     end if
     self%last = now
     share = 0.0_wp

@@ -95,9 +95,9 @@ contains
       self%factored_before = linear%factorizations
       linear%rule%keeps = self%keeps .and. .not. linear%materials%yields
       if (allocated(linear%materials%committed)) deallocate (linear%materials%committed)   ! of another case
-      allocate (self%about%displacement(directions, model%nodes), source=0.0_wp)
-      allocate (self%about%strain(components, model%points), source=0.0_wp)
-      allocate (self%force(model%pairs), source=0.0_wp)
+      allocate (self%about%displacement(directions, model%mesh%nodes), source=0.0_wp)
+      allocate (self%about%strain(components, model%mesh%points), source=0.0_wp)
+      allocate (self%force(model%contact%pairs), source=0.0_wp)
       if (linear%materials%yields) self%about%point = linear%materials%states(self%about%strain)
     end associate
     allocate (self%history(0), self%pivot(0))
@@ -138,7 +138,8 @@ contains
       travel = maxval(abs(found%displacement))
       if (iteration == 1) farthest = far_away*travel
       ! Do not report a diverged state: its numbers may be close to overflow.
-      self%runs_away = .not. self%converged .and. scene%model%has_flat_curve() .and. travel > farthest
+      self%runs_away = .not. self%converged .and. scene%model%sections%has_flat_curve() .and. &
+        travel > farthest
       if (self%runs_away) return
       if (.not. self%plan%from_first_pivot) self%touching = found%contact%touching
       self%force = found%contact%force
@@ -305,7 +306,7 @@ contains
     associate (now => self%now, method => self%plan%method)
       wants_test = method /= method_secant .or. now%iteration <= few_solves .or. &
                    now%iteration > many_solves .or. now%error > slow*now%change .or. &
-                   any(scene%model%prescribed /= 0.0_wp)
+                   any(scene%model%loads%prescribed /= 0.0_wp)
       wants_test = wants_test .and. now%residual > solved_to .and. method /= method_newton .and. &
                    .not. scene%model%controls%paper_ratio
     end associate

@@ -22,8 +22,8 @@ contains
     class(observer), intent(inout) :: watch            !! takes the time
     integer :: p
 
-    !$omp parallel do num_threads(threads_over(scene%model%points))
-    do p = 1, scene%model%points
+    !$omp parallel do num_threads(threads_over(scene%model%mesh%points))
+    do p = 1, scene%model%mesh%points
       if (linear%materials%can_yield(p)) call method%linearise(p, about, linear)
     end do
     !$omp end parallel do

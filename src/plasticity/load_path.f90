@@ -51,7 +51,7 @@ contains
     type(followed_loads), intent(out) :: answer                !! what came of it
     class(observer), intent(inout) :: watch                    !! takes the time, called after each solve
     type(equilibrium_iteration) :: iteration
-    real(wp) :: strained(scene%model%points)   ! e of points that yielded in the last load step, else 0
+    real(wp) :: strained(scene%model%mesh%points)   ! e of points that yielded in the last load step, else 0
     integer :: step
 
     iteration%plan = plan

@@ -127,11 +127,11 @@ contains
         work(p) = linear%operator%volume(p)*dot_product(state(p)%stress, along(:, p))
       end do
       !$omp end parallel do
-      slope = -load_factor*sum(model%load*travel)
+      slope = -load_factor*sum(model%loads%load*travel)
       do p = 1, size(work)   ! in their order
         slope = slope + work(p)
       end do
-      if (size(model%spring) > 0) &
+      if (size(model%constraints%spring) > 0) &
         slope = slope + sum(spring_forces(model, about%displacement + length*travel)*travel)
     end function slope_of
   end subroutine advance

@@ -21,12 +21,12 @@ contains
     real(wp), intent(inout) :: strained(:)
     integer, intent(inout) :: unloaded             !! elements, at each load once
     integer, intent(inout) :: first                !! one of them; 0: none
-    logical :: fell(model%elements)
+    logical :: fell(model%mesh%elements)
     integer :: p
 
     fell = .false.
-    do p = 1, model%points
-      associate (e => model%point_element(p), now => point(p))
+    do p = 1, model%mesh%points
+      associate (e => model%mesh%point_element(p), now => point(p))
         fell(e) = fell(e) .or. now%deviatoric < (1.0_wp - max(tolerance, least_fall))*strained(p)
         strained(p) = merge(now%deviatoric, 0.0_wp, now%yielded)
       end associate

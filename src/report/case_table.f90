@@ -50,7 +50,7 @@ contains
     if (.not. row%has_answer) return
     row%touching = count(run%answer%contact%touching)
     row%plastic = count(run%answer%plastic)
-    if (run%model%pairs > 0) then
+    if (run%model%contact%pairs > 0) then
       row%pressure = run%answer%largest_pressure()
       row%pressure_error = run%accuracy%max_pressure
       row%limit = limit_of_pressure(run)

@@ -99,7 +99,7 @@ contains
     end if
     if (.not. run%outcome%has_answer) return
     if (run%iteration%yields) call list_iterations(listing, run)
-    if (run%model%pairs > 0) call list_contact(listing, run)
+    if (run%model%contact%pairs > 0) call list_contact(listing, run)
     if (run%wants_nodes(all_tables)) call put_table(run, 'nodes', listing)
     if (run%wants_elements(all_tables)) call put_table(run, 'elements', listing)
     call list_summary()
@@ -170,7 +170,7 @@ contains
     if (any(run%answer%history%by_tangent)) call listing%say(&
       'the last step uses the tangent: its change is the error that the other steps have left')
     call listing%say(text_of(count(run%answer%plastic))//' of '// &
-             plural(run%model%elements, 'element')//' yielded')
+             plural(run%model%mesh%elements, 'element')//' yielded')
   end subroutine list_iterations
 
   !> Pairs, contact zones, contact lines, and contact forces on bodies.
@@ -194,7 +194,7 @@ contains
       if (scene%deepest%ratio >= little .and. scene%deepest%depth > deeper*scene%inside%depth) &
         call list_place('  where it is deepest / tolerance', scene%deepest)
       if (scene%passed%side > 0) call list_place('  of bodies that passed through each other', scene%passed)
-      if (run%model%pairs == 0) return
+      if (run%model%contact%pairs == 0) return
       call list_place('gap at a loaded pair / tolerance', scene%apart)
       if (scene%widest%ratio >= little .and. scene%widest%depth > deeper*scene%apart%depth) &
         call list_place('  where it is widest / tolerance', scene%widest)
@@ -225,10 +225,10 @@ contains
 
     call list_figures(listing, figures, [character(len=21) :: 'contact_amplification', 'mesh_error_'])
     if (size(run%accuracy%worst) > 0) &
-      call listing%say('refine elements '//joined(run%model%element_id(run%accuracy%worst), ' ')// &
+      call listing%say('refine elements '//joined(run%model%mesh%element_id(run%accuracy%worst), ' ')// &
                ' first: '//percent(sum(run%accuracy%element(run%accuracy%worst)), &
                                    sum(run%accuracy%element))//' of the error; element '// &
-               text_of(run%model%element_id(run%accuracy%worst(1)))//' is at '// &
+               text_of(run%model%mesh%element_id(run%accuracy%worst(1)))//' is at '// &
                centre_name(run%model, run%accuracy%worst(1)))
     if (.not. any(run%accuracy%weak)) return   ! nor is it known of each pair
     call list_pairs('closed pair', 'carry less force than its estimated error and may be open', .true.)
@@ -247,7 +247,7 @@ contains
         if (any(uncertain)) call listing%say(text_of(count(uncertain))//' of '// &
             plural(count(chosen), noun)//' '//what// &
             when(2*count(uncertain) > count(chosen) .and. touching, ': the mesh is too coarse', &
-                 ': '//joined(pack(run%model%pair_id, uncertain), ' ', most_pairs)))
+                 ': '//joined(pack(run%model%contact%pair_id, uncertain), ' ', most_pairs)))
       end associate
     end subroutine list_pairs
   end subroutine list_mesh

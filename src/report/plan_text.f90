@@ -5,7 +5,8 @@ module epcont_report_plan_text
   use epcont_geometry_boundary_line, only: boundary_line
   use epcont_model_controls, only: method_inistr, method_name, method_newton, rule_joined, solver_auto, &
       solver_band, solver_frontal, solver_name
-  use epcont_model_model, only: line_contact, model_type
+  use epcont_model_contact_rows, only: line_contact
+  use epcont_model_model, only: model_type
   use epcont_plan_joining, only: many_of
   use epcont_plan_numbering, only: many_of_flexibility, many_operations
   use epcont_plan_planned_model, only: planned_model
@@ -39,25 +40,26 @@ contains
     character(len=*), intent(in), optional :: of   !! names of the load cases
     character(len=:), allocatable :: text
     type(table_type) :: plan
-    logical :: deformable(scene%model%bodies)
+    logical :: deformable(scene%model%mesh%bodies)
     integer :: k
 
     deformable = .false.
-    deformable(scene%model%body(scene%model%connectivity(1, :))) = .true.
+    deformable(scene%model%mesh%body(scene%model%mesh%connectivity(1, :))) = .true.
     plan%text = ''
     if (present(of)) call plan%heading('PLAN  ('//of//')')
     if (.not. present(of)) call plan%heading('PLAN')
-    call plan%say(plural(scene%model%nodes, 'node')//', '//plural(scene%model%elements, 'element')//', '// &
-             plural(scene%model%pairs, 'contact pair')//'; bodies: '//text_of(count(deformable))// &
+    call plan%say(plural(scene%model%mesh%nodes, 'node')//', '// &
+                  plural(scene%model%mesh%elements, 'element')//', '// &
+             plural(scene%model%contact%pairs, 'contact pair')//'; bodies: '//text_of(count(deformable))// &
              ' deformable'//when(.not. all(deformable), ', '//text_of(count(.not. deformable))//' rigid'))
     if (scene%iteration%from_first_pivot) &
       call plan%say('ORIGINAL: as in about 1980, with all pivots of the simplex in each iteration')
     call say_iteration(plan, scene)
     call say_rule(plan, scene)
-    do k = 1, min(most, size(scene%model%line_contact))
-      call say_contact(plan, scene, scene%model%line_contact(k))
+    do k = 1, min(most, size(scene%model%contact%line_contact))
+      call say_contact(plan, scene, scene%model%contact%line_contact(k))
     end do
-    call say_further(size(scene%model%line_contact), 'further contact', ' of lines')
+    call say_further(size(scene%model%contact%line_contact), 'further contact', ' of lines')
     do k = 1, min(most, scene%motions%count)
       call plan%say('rigid-body mode solved for (SUPORT): '//motion_name(scene, k))
     end do
@@ -170,7 +172,7 @@ contains
     type(table_type), intent(inout) :: plan
     type(planned_model), intent(in) :: scene
 
-    if (scene%model%pairs == 0) then
+    if (scene%model%contact%pairs == 0) then
       call plan%say('no contact pairs')
     else if (scene%iteration%joined) then
       call plan%say('contact solver JOINED: all bodies in one sparse system, no flexibility matrix')
@@ -191,7 +193,7 @@ contains
     character(len=:), allocatable :: master
 
     master = joined(contact%master_id, ', ')
-    associate (gap => scene%model%initial_gap(contact%first:contact%last))
+    associate (gap => scene%model%contact%initial_gap(contact%first:contact%last))
       call plan%say('BCONP '//joined(contact%bconp, ', ')//': nodes of BLSEG '// &
                joined(contact%slave_id, ', ')//' against edges of BLSEG '//master//': '// &
                plural(size(gap), 'pair')//', initial gaps '//short_real(minval(gap))//' to '// &
@@ -220,19 +222,19 @@ contains
       node = [pack(line%segment(1, :), ends(1, :)), &
               pack(line%segment(2, :), ends(2, :) .and. line%neighbour(2, :) == 0)]
       if (size(node) > 0) call plan%say('  corners of BLSEG '//joined(id, ', ')//': GRID '// &
-          joined(scene%model%node_id(node), ', ', most_corners))
+          joined(scene%model%mesh%node_id(node), ', ', most_corners))
     end subroutine say_corners
   end subroutine say_contact
 
   !> Has a body elements that can yield? [bodies]
   pure function yielding_bodies(model) result(yields)
     type(model_type), intent(in) :: model
-    logical :: yields(model%bodies)
+    logical :: yields(model%mesh%bodies)
     integer :: e
 
     yields = .false.
-    do e = 1, model%elements
-      if (model%can_yield(e)) yields(model%body(model%connectivity(1, e))) = .true.
+    do e = 1, model%mesh%elements
+      if (model%can_yield(e)) yields(model%mesh%body(model%mesh%connectivity(1, e))) = .true.
     end do
   end function yielding_bodies
 

@@ -130,7 +130,7 @@ contains
     case ('.lst', '.summary.csv')
       is_wanted = .true.
     case ('.bodies.csv')
-      is_wanted = is_wanted .and. run%model%pairs > 0
+      is_wanted = is_wanted .and. run%model%contact%pairs > 0
     case ('.pivots.csv')
       is_wanted = is_wanted .and. self%all_tables
       if (is_wanted) is_wanted = size(run%answer%pivot) > 0

@@ -71,7 +71,8 @@ contains
     real(wp) :: farthest
 
     farthest = maxval(abs(run%answer%displacement))
-    if (run%model%pairs > 0) call figures%put('max_pressure', stress, known, run%answer%largest_pressure(), &
+    if (run%model%contact%pairs > 0) call figures%put('max_pressure', stress, known, &
+                                                      run%answer%largest_pressure(), &
         'largest pressure', reason_of(limit_of_pressure(run)))
     do k = 1, run%motions%count
       call figures%put('approach_'//motion_key(run, k), motion_unit(run, k), number, &
@@ -82,15 +83,15 @@ contains
                                          merge(0.0_wp, farthest, run%motions%component(k) == angle)))
     end do
     call put_platens(run, figures)
-    do k = 1, size(run%model%spring)
-      id = text_of(run%model%spring(k)%id)
-      call figures%put('spring_'//id, force, number, run%model%spring(k)%stiffness* &
+    do k = 1, size(run%model%constraints%spring)
+      id = text_of(run%model%constraints%spring(k)%id)
+      call figures%put('spring_'//id, force, number, run%model%constraints%spring(k)%stiffness* &
                        spring_stretch(run%model, k, run%answer%displacement), 'force of spring '//id)
     end do
     call figures%put('total_contact_force', force, number, sum(run%answer%contact%force), &
-                     when(run%model%pairs > 0, 'total contact force'))
+                     when(run%model%contact%pairs > 0, 'total contact force'))
     call figures%put_word('pairs_in_contact', text_of(count(run%answer%contact%touching)), &
-                          when(run%model%pairs > 0, 'pairs in contact'))
+                          when(run%model%contact%pairs > 0, 'pairs in contact'))
     call figures%put_word('plastic_elements', text_of(count(run%answer%plastic)), &
                           when(any(run%answer%plastic), 'yielded elements'))
     call figures%put_word('iterations', text_of(size(run%answer%history)), '')
@@ -99,7 +100,7 @@ contains
     call put_largest_stress(run, figures, first_largest(run%answer%largest_stress))
     call figures%put('max_displacement', length, number, maxval(norm2(run%answer%displacement, dim=1)), &
                      'largest displacement')
-    if (allocated(run%model%free_strain)) call put_temperatures(run, figures)
+    if (allocated(run%model%loads%free_strain)) call put_temperatures(run, figures)
   end subroutine put_answer
 
   !> How far from those without strain they are, in elements that expand.
@@ -112,11 +113,13 @@ contains
     lowest = huge(lowest)
     highest = -huge(highest)
     associate (model => run%model)
-      do e = 1, model%elements
-        associate (node => model%connectivity(:model%node_count(e), e), s => model%section(e))
-          if (model%expansion(s) == 0.0_wp) cycle
-          lowest = min(lowest, minval(model%temperature(node)) - model%reference_temperature(s))
-          highest = max(highest, maxval(model%temperature(node)) - model%reference_temperature(s))
+      do e = 1, model%mesh%elements
+        associate (node => model%mesh%connectivity(:model%mesh%node_count(e), e), s => model%mesh%section(e))
+          if (model%sections%expansion(s) == 0.0_wp) cycle
+          lowest = min(lowest, minval(model%loads%temperature(node)) - &
+                       model%sections%reference_temperature(s))
+          highest = max(highest, maxval(model%loads%temperature(node)) - &
+                        model%sections%reference_temperature(s))
         end associate
       end do
     end associate
@@ -131,11 +134,11 @@ contains
     integer :: k
     character(len=:), allocatable :: id
 
-    do k = 1, size(run%model%platen)
-      id = text_of(run%model%node_id(run%model%platen(k)%leader))
+    do k = 1, size(run%model%constraints%platen)
+      id = text_of(run%model%mesh%node_id(run%model%constraints%platen(k)%leader))
       call figures%put('angle_'//id, radian, number, run%answer%angle(k), &
                        'rotation of GRID '//id//' [radian]')
-      if (run%model%platen(k)%held) call figures%put('moment_'//id, 'force*length', number, &
+      if (run%model%constraints%platen(k)%held) call figures%put('moment_'//id, 'force*length', number, &
                                                      run%answer%moment(k), &
                                              'moment of the support of GRID '//id)
     end do
@@ -149,7 +152,7 @@ contains
     character(len=:), allocatable :: id
     real(wp) :: place(directions)
 
-    id = text_of(run%model%element_id(element))
+    id = text_of(run%model%mesh%element_id(element))
     place = place_of_point(run%model, run%answer%largest_at(element))
     call figures%put('max_equivalent_stress', stress, number, run%answer%largest_stress(element), &
                      'largest equivalent stress', '   in element '//id//' at '//point_name(place))
@@ -213,7 +216,7 @@ contains
     call figures%put('iteration_error_displacement', none, rounding, run%answer%history(last)%error, &
                      when(size(run%answer%history) > 1, 'iteration error / largest displacement'))
     call figures%put('iteration_error_force', none, rounding, run%answer%history(last)%force_error, &
-                     when(size(run%answer%history) > 1 .and. run%model%pairs > 0, &
+                     when(size(run%answer%history) > 1 .and. run%model%contact%pairs > 0, &
                           'iteration error / largest force'))
     if (run%model%controls%paper_ratio .and. run%iteration%yields) &
       call figures%put('stress_below_curve', none, part, run%answer%shortfall)
@@ -227,7 +230,7 @@ contains
 
     call figures%put('mesh_error_energy_norm', none, part, run%accuracy%energy_norm, &
                      'mesh: error in the energy norm')
-    if (run%model%pairs > 0) then
+    if (run%model%contact%pairs > 0) then
       call figures%put_word('max_pressure_is', limit_of_pressure(run), '')
       call figures%put('mesh_error_max_pressure', stress, known, run%accuracy%max_pressure)
     end if
@@ -244,7 +247,8 @@ contains
                      merge(-1.0_wp, run%accuracy%approach(k), run%accuracy%approach_unbounded(k)), &
                      abs(run%answer%contact%approach(k)), when(run%accuracy%approach_unbounded(k), unbounded))
     end do
-    if (run%model%pairs > 0) call figures%put_error('total_contact_force', force, 'total contact force', &
+    if (run%model%contact%pairs > 0) call figures%put_error('total_contact_force', force, &
+                                                            'total contact force', &
         run%accuracy%total_force, sum(run%answer%contact%force), '')
   end subroutine put_mesh_errors
 
@@ -276,7 +280,7 @@ contains
     integer, intent(in) :: k
     character(len=:), allocatable :: key
 
-    key = text_of(run%model%node_id(run%motions%node(k)))//'_'//direction_of(run%motions, k)
+    key = text_of(run%model%mesh%node_id(run%motions%node(k)))//'_'//direction_of(run%motions, k)
   end function motion_key
 
   !> Add a number; it has that many digits in the listing.

@@ -155,9 +155,10 @@ contains
         call table%begin('CONTACT', contact_columns, &
                          [spread(0.0_wp, 1, 5), maxval(abs(contact%force)), maxval(run%answer%pressure), &
                           max(maxval(abs(contact%gap)), maxval(abs(run%answer%displacement)))])
-        do k = 1, model%pairs
-          call table%row([model%pair_id(k), model%node_id(model%pair_node(:, k))], &
-                         [model%x(:, model%pair_node(2, k)), model%normal(:, k), model%initial_gap(k), &
+        do k = 1, model%contact%pairs
+          call table%row([model%contact%pair_id(k), model%mesh%node_id(model%contact%pair_node(:, k))], &
+                         [model%mesh%x(:, model%contact%pair_node(2, k)), model%contact%normal(:, k), &
+                          model%contact%initial_gap(k), &
                           contact%force(k), run%answer%pressure(k), contact%gap(k)], &
                          [merge('touching          ', 'open              ', contact%touching(k)), &
                           merge(', force not unique', '                  ', contact%indeterminate(k))])
@@ -174,7 +175,7 @@ contains
       do k = 1, size(run%answer%zones)
         limit = limit_of_pressure(run, k)
         associate (zone => run%answer%zones(k))
-          call table%row([k, run%model%pair_id([zone%first, zone%last])], &
+          call table%row([k, run%model%contact%pair_id([zone%first, zone%last])], &
                          [zone%force, zone%max_pressure, zone%half_width_pairs, zone%half_width], [limit])
         end associate
       end do
@@ -186,7 +187,7 @@ contains
                        'its nodal forces)', line_columns, &
                        [0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp])
       do k = 1, size(run%answer%lines)
-        associate (contact => run%model%line_contact(k), line => run%answer%lines(k))
+        associate (contact => run%model%contact%line_contact(k), line => run%answer%lines(k))
           call table%row([contact%last - contact%first + 1, contact%nodes_left_out, line%touching], &
                          [line%force, line%on_slave, line%on_master, line%difference], &
                          [first_of(contact%bconp), first_of(contact%slave_id), first_of(contact%master_id)])
@@ -205,7 +206,7 @@ contains
                          text_of(most_bodies)//' bodies)', &
                          columns, spread(maxval([(abs(bodies(k)%resultant), k=1, size(bodies))]), 1, 5))
         do k = 1, size(bodies)
-          call table%row([bodies(k)%body, run%model%node_id(bodies(k)%node)], &
+          call table%row([bodies(k)%body, run%model%mesh%node_id(bodies(k)%node)], &
                          [bodies(k)%resultant(1), run%accuracy%body_force(1, k), &
                           bodies(k)%resultant(2), run%accuracy%body_force(:, k)])
         end do
@@ -217,9 +218,9 @@ contains
       call table%begin('DISPLACEMENTS AND REACTIONS', node_columns, &
                        [0.0_wp, 0.0_wp, spread(maxval(abs(run%answer%displacement)), 1, directions), &
                         spread(maxval(abs(run%answer%reaction)), 1, directions)])
-      do k = 1, run%model%nodes
-        call table%row([run%model%node_id(k)], &
-                       [run%model%x(:, k), run%answer%displacement(:, k), run%answer%reaction(:, k)])
+      do k = 1, run%model%mesh%nodes
+        call table%row([run%model%mesh%node_id(k)], &
+                       [run%model%mesh%x(:, k), run%answer%displacement(:, k), run%answer%reaction(:, k)])
       end do
     end subroutine put_nodes
 
@@ -261,8 +262,8 @@ contains
       character(len=14) :: text
 
       text = 'load'
-      if (code > 0) text = 'force '//text_of(run%model%pair_id(code))
-      if (code < 0) text = 'gap '//text_of(run%model%pair_id(-code))
+      if (code > 0) text = 'force '//text_of(run%model%contact%pair_id(code))
+      if (code < 0) text = 'gap '//text_of(run%model%contact%pair_id(-code))
     end function variable
   end subroutine put_pivots
 
@@ -276,9 +277,9 @@ contains
                      'nearest to that GRID of it)', element_columns, &
                      [0.0_wp, 0.0_wp, spread(maxval(abs(run%answer%stress)), 1, 6), 0.0_wp, 0.0_wp, &
                       maxval(run%answer%equivalent_strain), 0.0_wp])
-    do k = 1, run%model%elements
-      call table%row([run%model%element_id(k)], &
-                     [sum(run%model%coordinates(k), dim=2)/run%model%node_count(k), &
+    do k = 1, run%model%mesh%elements
+      call table%row([run%model%mesh%element_id(k)], &
+                     [sum(run%model%mesh%coordinates(k), dim=2)/run%model%mesh%node_count(k), &
                       run%answer%stress(:, k), run%answer%equivalent_stress(k), &
                       run%answer%largest_stress(k), place_of_point(run%model, run%answer%largest_at(k)), &
                       run%answer%equivalent_strain(k), run%answer%secant_modulus(k)], &
@@ -294,13 +295,13 @@ contains
       character(len=8) :: id
       real(wp) :: x(directions)
 
-      associate (model => run%model, e => run%model%point_element(point))
+      associate (model => run%model, e => run%model%mesh%point_element(point))
         id = '-'
-        if (model%first_point(e + 1) - model%first_point(e) == 1) return
+        if (model%mesh%first_point(e + 1) - model%mesh%first_point(e) == 1) return
         x = place_of_point(model, point)
-        associate (corner => model%connectivity(:model%corners(e), e))
-          id = text_of(model%node_id(corner(minloc((model%x(1, corner) - x(1))**2 + &
-              (model%x(2, corner) - x(2))**2, dim=1))))
+        associate (corner => model%mesh%connectivity(:model%mesh%corners(e), e))
+          id = text_of(model%mesh%node_id(corner(minloc((model%mesh%x(1, corner) - x(1))**2 + &
+              (model%mesh%x(2, corner) - x(2))**2, dim=1))))
         end associate
       end associate
     end function nearest_grid

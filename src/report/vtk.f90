@@ -48,7 +48,7 @@ contains
     type(error_type), allocatable, intent(out) :: error   !! a file cannot be written
 
     call write_bodies(run, stem, error)
-    if (run%model%pairs > 0 .and. .not. allocated(error)) call write_contact(run, stem, error)
+    if (run%model%contact%pairs > 0 .and. .not. allocated(error)) call write_contact(run, stem, error)
   end subroutine write_vtk
 
   !> Bodies: nodes that belong to elements are the points, in the order of the deck; elements are the cells.
@@ -62,28 +62,28 @@ contains
     integer :: i
 
     associate (model => run%model, answer => run%answer)
-      node = model%around%members()
-      allocate (point(model%nodes))
+      node = model%mesh%around%members()
+      allocate (point(model%mesh%nodes))
       point(node) = [(i, i=1, size(node))]
-      last = model%node_count
+      last = model%mesh%node_count
       do i = 2, size(last)
         last(i) = last(i - 1) + last(i)
       end do
-      call file%begin(stem//'.vtu', run%outcome%status, model%x(:, node), &
-                 vtk_cells(model%kinds(model%kind)%vtk, last, &
-                           point(pack(model%connectivity, model%connectivity > 0))), error)
+      call file%begin(stem//'.vtu', run%outcome%status, model%mesh%x(:, node), &
+                 vtk_cells(model%mesh%kinds(model%mesh%kind)%vtk, last, &
+                           point(pack(model%mesh%connectivity, model%mesh%connectivity > 0))), error)
       if (allocated(error)) return
       call file%line('<PointData Vectors="displacement">')
-      call file%put('node_id', model%node_id(node))
+      call file%put('node_id', model%mesh%node_id(node))
       call file%put('displacement', answer%displacement(:, node))
       force = pair_forces(model, answer%contact%force)
       call file%put('contact_force', force(:, node))
       call file%put('reaction', answer%reaction(:, node))
       call file%line('</PointData>'//newline//'<CellData Scalars="equivalent_stress">')
-      call file%put('element_id', model%element_id)
-      call file%put('body', model%body(model%connectivity(1, :)))
-      call file%put('property_id', model%property_id(model%section))
-      call file%put('material_id', model%material_id(model%section))
+      call file%put('element_id', model%mesh%element_id)
+      call file%put('body', model%mesh%body(model%mesh%connectivity(1, :)))
+      call file%put('property_id', model%sections%property_id(model%mesh%section))
+      call file%put('material_id', model%sections%material_id(model%mesh%section))
       call file%put('stress', answer%stress)
       call file%put('equivalent_stress', answer%equivalent_stress)
       call file%put('max_equivalent_stress', answer%largest_stress)
@@ -103,32 +103,32 @@ contains
     type(vtk_file) :: file
     type(contact_line) :: line
     type(vtk_cells) :: cells
-    integer, dimension(run%model%pairs) :: bconp, zone   ! 0: of a CGAP; none
-    real(wp) :: force(directions, run%model%pairs)
+    integer, dimension(run%model%contact%pairs) :: bconp, zone   ! 0: of a CGAP; none
+    real(wp) :: force(directions, run%model%contact%pairs)
     integer :: k
 
     line = find_contact_line(run%model)
     cells = cells_along(line)
-    call file%begin(stem//'.contact.vtu', run%outcome%status, run%model%x(:, line%node), cells, error)
+    call file%begin(stem//'.contact.vtu', run%outcome%status, run%model%mesh%x(:, line%node), cells, error)
     if (allocated(error)) return
-    do k = 1, run%model%pairs
-      force(:, k) = run%answer%contact%force(k)*run%model%normal(:, k)
-      if (line%node(k) /= run%model%pair_node(2, k)) force(:, k) = -force(:, k)
+    do k = 1, run%model%contact%pairs
+      force(:, k) = run%answer%contact%force(k)*run%model%contact%normal(:, k)
+      if (line%node(k) /= run%model%contact%pair_node(2, k)) force(:, k) = -force(:, k)
     end do
     zone = 0
     do k = 1, size(run%answer%zones)
       zone(run%answer%zones(k)%pairs) = k
     end do
     bconp = 0
-    do k = 1, size(run%model%line_contact)
-      associate (contact => run%model%line_contact(k))
+    do k = 1, size(run%model%contact%line_contact)
+      associate (contact => run%model%contact%line_contact(k))
         bconp(contact%first:contact%last) = contact%bconp(1)
       end associate
     end do
     call file%line('<PointData Scalars="pressure" Vectors="displacement">')
-    call file%put('pair_id', run%model%pair_id)
-    call file%put('node_a', run%model%node_id(run%model%pair_node(1, :)))
-    call file%put('node_b', run%model%node_id(run%model%pair_node(2, :)))
+    call file%put('pair_id', run%model%contact%pair_id)
+    call file%put('node_a', run%model%mesh%node_id(run%model%contact%pair_node(1, :)))
+    call file%put('node_b', run%model%mesh%node_id(run%model%contact%pair_node(2, :)))
     call file%put('displacement', run%answer%displacement(:, line%node))
     call file%put('contact_force', force)
     call file%put('pressure', max(0.0_wp, run%answer%pressure))

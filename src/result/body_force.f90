@@ -24,19 +24,19 @@ contains
     type(model_type), intent(in) :: model   !! model
     real(wp), intent(in) :: force(:)        !! [force] [pairs]
     type(body_force), allocatable :: found(:)
-    real(wp) :: sums(directions, model%bodies)
-    logical :: has_elements(model%bodies)
-    integer :: b, first(model%bodies), i
+    real(wp) :: sums(directions, model%mesh%bodies)
+    logical :: has_elements(model%mesh%bodies)
+    integer :: b, first(model%mesh%bodies), i
 
     has_elements = .false.
-    has_elements(model%body(model%connectivity(1, :))) = .true.
+    has_elements(model%mesh%body(model%mesh%connectivity(1, :))) = .true.
     sums = resultants(model, force)
     where (abs(sums) <= cancelled*sum(force)) sums = 0.0_wp
     if (model%has_rings()) sums(1, :) = 0.0_wp
-    do i = model%nodes, 1, -1
-      first(model%body(i)) = i
+    do i = model%mesh%nodes, 1, -1
+      first(model%mesh%body(i)) = i
     end do
-    associate (bodies => pack([(b, b=1, model%bodies)], has_elements))
+    associate (bodies => pack([(b, b=1, model%mesh%bodies)], has_elements))
       found = [(body_force(body=bodies(i), node=first(bodies(i)), resultant=sums(:, bodies(i))), &
                 i=1, size(bodies))]
     end associate
@@ -46,14 +46,14 @@ contains
   pure function resultants(model, force) result(sums)
     type(model_type), intent(in) :: model   !! model
     real(wp), intent(in) :: force(:)        !! [force] [pairs]
-    real(wp) :: sums(directions, model%bodies)
+    real(wp) :: sums(directions, model%mesh%bodies)
     real(wp), allocatable :: nodal(:, :)
     integer :: i
 
     sums = 0.0_wp
     nodal = pair_forces(model, force)
-    do i = 1, model%nodes
-      sums(:, model%body(i)) = sums(:, model%body(i)) + nodal(:, i)
+    do i = 1, model%mesh%nodes
+      sums(:, model%mesh%body(i)) = sums(:, model%mesh%body(i)) + nodal(:, i)
     end do
   end function resultants
 
@@ -61,14 +61,14 @@ contains
   pure function shares_of_pairs(model, body, c) result(share)
     type(model_type), intent(in) :: model   !! model
     integer, intent(in) :: body, c          !! the body, the component
-    real(wp) :: share(model%pairs)
+    real(wp) :: share(model%contact%pairs)
     integer :: first, k, last
 
-    do k = 1, model%pairs
-      first = model%row_start(k)
-      last = model%row_start(k + 1) - 1
-      share(k) = model%normal(c, k)*sum(model%row_weight(first:last), &
-          mask=model%body(model%row_node(first:last)) == body)
+    do k = 1, model%contact%pairs
+      first = model%contact%row_start(k)
+      last = model%contact%row_start(k + 1) - 1
+      share(k) = model%contact%normal(c, k)*sum(model%contact%row_weight(first:last), &
+          mask=model%mesh%body(model%contact%row_node(first:last)) == body)
     end do
   end function shares_of_pairs
 end module epcont_result_body_force

@@ -7,7 +7,8 @@ module epcont_result_contact_line
   use epcont_element_kinematics, only: directions
   use epcont_geometry_edge, only: edge_point, edge_point_count, edge_points
   use epcont_geometry_plane, only: cross_product
-  use epcont_model_model, only: line_contact, model_type
+  use epcont_model_contact_rows, only: line_contact
+  use epcont_model_model, only: model_type
   implicit none
   private
   public :: contact_line, find_contact_line, outer_sides, shares_of_nodes
@@ -65,28 +66,29 @@ contains
     integer, allocatable :: place(:)
     integer :: c, many
 
-    associate (n => model%pairs, a => model%pair_node(1, :), b => model%pair_node(2, :))
-      line%node = merge(b, a, model%around%start(b + 1) > model%around%start(b))
-      line%x = model%x(:, line%node)
+    associate (n => model%contact%pairs, a => model%contact%pair_node(1, :), &
+               b => model%contact%pair_node(2, :))
+      line%node = merge(b, a, model%mesh%around%start(b + 1) > model%mesh%around%start(b))
+      line%x = model%mesh%x(:, line%node)
       allocate (line%tributary(n), line%part(2, n), source=0.0_wp)
       allocate (line%neighbour(2, n), source=0)
       allocate (line%middle(n), line%mirrored(n), source=.false.)
       work%places = new_partition(n)
     end associate
     work%model => model
-    work%at = new_incidence(reshape(line%node, [1, model%pairs]), model%nodes)
+    work%at = new_incidence(reshape(line%node, [1, model%contact%pairs]), model%mesh%nodes)
     work%line = line
     ! A node may have a pair in each of several contacts. Neighbours belong to the same contact.
-    call find_edges(work, 1, model%single_pairs())
-    do c = 1, size(model%line_contact)
-      associate (contact => model%line_contact(c))
+    call find_edges(work, 1, model%contact%single_pairs())
+    do c = 1, size(model%contact%line_contact)
+      associate (contact => model%contact%line_contact(c))
         call find_edges(work, contact%first, contact%first_of_master - 1)
         if (contact%last >= contact%first_of_master) call insert_masters(work, contact)
       end associate
     end do
     line = work%line
     call work%places%numbers(place, many)
-    line%at_place = new_incidence(reshape(place, [1, model%pairs]), many)
+    line%at_place = new_incidence(reshape(place, [1, model%contact%pairs]), many)
   end function find_contact_line
 
   !> Find the edges at a range of pairs, and the neighbours among these.
@@ -103,8 +105,8 @@ contains
         longest = 0.0_wp
         sides = outer_sides(model, line%node(pair))
         do i = 1, size(sides, 2)
-          associate (side => sides(:3, i), n => model%normal(:, pair))
-            longest = max(longest, norm2(model%x(:, side(2)) - model%x(:, side(1))))
+          associate (side => sides(:3, i), n => model%contact%normal(:, pair))
+            longest = max(longest, norm2(model%mesh%x(:, side(2)) - model%mesh%x(:, side(1))))
             if (.not. is_along(model, side, n)) cycle
             own = findloc(side, line%node(pair), dim=1)
             share = shares_of_nodes(model, sides(4, i), side, n)
@@ -140,17 +142,18 @@ contains
     integer :: along, i
 
     is_on_symmetry = .false.
-    along = merge(1, 2, abs(model%normal(2, pair)) > abs(model%normal(1, pair)))
-    if (abs(model%normal(3 - along, pair)) <= along_line .or. .not. model%is_held(along, node)) return
+    along = merge(1, 2, abs(model%contact%normal(2, pair)) > abs(model%contact%normal(1, pair)))
+    if (abs(model%contact%normal(3 - along, pair)) <= along_line .or. &
+        .not. model%constraints%is_held(along, node)) return
     ends = .false.
     guided = is_guided(model, along, node)
     rigid = .true.
-    do i = model%row_start(pair), model%row_start(pair + 1) - 1
-      associate (other => model%row_node(i))
+    do i = model%contact%row_start(pair), model%contact%row_start(pair + 1) - 1
+      associate (other => model%contact%row_node(i))
         if (other == node) cycle
-        if (.not. model%is_held(along, other)) then
+        if (.not. model%constraints%is_held(along, other)) then
           rigid = .false.
-        else if (abs(model%x(along, other) - model%x(along, node)) <= beside_line*side) then
+        else if (abs(model%mesh%x(along, other) - model%mesh%x(along, node)) <= beside_line*side) then
           ends = .true.
           guided = guided .or. is_guided(model, along, other)
         end if
@@ -164,7 +167,7 @@ contains
     type(model_type), intent(in) :: model        !! the model
     integer, intent(in) :: along, node
 
-    is_guided = model%held(along, node) .and. .not. model%is_held(3 - along, node)
+    is_guided = model%constraints%held(along, node) .and. .not. model%constraints%is_held(3 - along, node)
   end function is_guided
 
   !> Is an edge along the tangent?
@@ -173,7 +176,7 @@ contains
     integer, intent(in) :: side(3)
     real(wp), intent(in) :: n(directions)   !! normal of the contact
 
-    associate (edge => model%x(:, side(2)) - model%x(:, side(1)))
+    associate (edge => model%mesh%x(:, side(2)) - model%mesh%x(:, side(1)))
       is_along = abs(dot_product(edge, n)) <= along_tangent*norm2(edge)
     end associate
   end function is_along
@@ -189,9 +192,9 @@ contains
     if (node == 0) return
     there = work%at%of(node)
     there = pack(there, there >= work%within(1) .and. there <= work%within(2))
-    associate (edge => work%model%x(:, side(2)) - work%model%x(:, side(1)))
+    associate (edge => work%model%mesh%x(:, side(2)) - work%model%mesh%x(:, side(1)))
       if (size(there) > 0) &
-        pair = there(minloc(abs(matmul(edge, work%model%normal(:, there))), dim=1))
+        pair = there(minloc(abs(matmul(edge, work%model%contact%normal(:, there))), dim=1))
     end associate
   end function pair_of_side
 
@@ -219,11 +222,11 @@ contains
     real(wp) :: x(directions)
 
     associate (model => work%model)
-      x = model%x(:, work%line%node(pair))
+      x = model%mesh%x(:, work%line%node(pair))
       if (pair < contact%first_of_master) return
       ! weights of the opposite edge
-      associate (first => model%row_start(pair) + 1, last => model%row_start(pair + 1) - 1)
-        x = -matmul(model%x(:, model%row_node(first:last)), model%row_weight(first:last))
+      associate (first => model%contact%row_start(pair) + 1, last => model%contact%row_start(pair + 1) - 1)
+        x = -matmul(model%mesh%x(:, model%contact%row_node(first:last)), model%contact%row_weight(first:last))
       end associate
     end associate
   end function foot_of
@@ -241,7 +244,7 @@ contains
     associate (node => contact%slave%segment(:, side))
       pairs = [(pair_of_side(work, node, node(i)), i=1, 3), masters]
       pairs = pack(pairs, pairs > 0)
-      away = [(norm2(foot_of(work, contact, pairs(i)) - work%model%x(:, node(1))), i=1, size(pairs))]
+      away = [(norm2(foot_of(work, contact, pairs(i)) - work%model%mesh%x(:, node(1))), i=1, size(pairs))]
     end associate
     allocate (run(0))
     do i = 1, size(pairs)
@@ -262,7 +265,7 @@ contains
 
     associate (element => contact%slave%element(segment), side => contact%slave%segment(:, segment), &
                chord => contact%slave%chord_length(segment), line => work%line, &
-               normal => work%model%normal)
+               normal => work%model%contact%normal)
       do i = 1, size(run)
         pair = run(i)
         share = shares_of_nodes(work%model, element, side, normal(:, pair))
@@ -312,10 +315,10 @@ contains
     integer :: i, k, side(3)
 
     allocate (sides(4, 0))
-    associate (elements => model%around%of(node))
+    associate (elements => model%mesh%around%of(node))
       do i = 1, size(elements)
-        do k = 1, model%corners(elements(i))
-          side = model%edge(elements(i), k)
+        do k = 1, model%mesh%corners(elements(i))
+          side = model%mesh%edge(elements(i), k)
           if (.not. any(side == node)) cycle
           if (is_shared(side, elements(i))) cycle
           sides = reshape([sides, side, elements(i)], [4, size(sides, 2) + 1])
@@ -331,10 +334,11 @@ contains
       integer :: i
 
       is_shared = .false.
-      do i = model%around%start(side(1)), model%around%start(side(1) + 1) - 1
-        associate (other => model%around%group(i))
-          if (other == element .or. all(model%connectivity(:model%corners(other), other) /= side(2))) cycle
-          is_shared = any(model%edge_between(other, side(1), side(2)) > 0)
+      do i = model%mesh%around%start(side(1)), model%mesh%around%start(side(1) + 1) - 1
+        associate (other => model%mesh%around%group(i))
+          if (other == element .or. all(model%mesh%connectivity(:model%mesh%corners(other), &
+                                                                other) /= side(2))) cycle
+          is_shared = any(model%mesh%edge_between(other, side(1), side(2)) > 0)
         end associate
         if (is_shared) return
       end do
@@ -352,7 +356,7 @@ contains
     real(wp) :: seen
     integer :: p
 
-    point = edge_points(model%edge_coordinates(side))
+    point = edge_points(model%mesh%edge_coordinates(side))
     share = 0.0_wp
     do p = 1, edge_point_count
       seen = norm2(point(p)%tangent)

@@ -31,10 +31,10 @@ contains
     logical :: rings
 
     rings = model%has_rings()
-    do e = 1, model%elements
+    do e = 1, model%mesh%elements
       gradient = norm_at(e)
       if (gradient > large_gradient) &
-        found%part = found%part + sum(volume(model%first_point(e):model%first_point(e + 1) - 1))
+        found%part = found%part + sum(volume(model%mesh%first_point(e):model%mesh%first_point(e + 1) - 1))
       if (gradient <= found%largest) cycle
       found%largest = gradient
       found%worst = e
@@ -51,8 +51,8 @@ contains
       real(wp) :: p(2), q(2), radius, s(2), t(2)
       integer :: n
 
-      n = model%corners(e)
-      associate (node => model%connectivity(:n, e), x => model%x, u => displacement)
+      n = model%mesh%corners(e)
+      associate (node => model%mesh%connectivity(:n, e), x => model%mesh%x, u => displacement)
         ! From the diagonals of a quadrilateral, or two edges of a triangle: gradient (s t) = (p q).
         t = x(:, node(n - 1)) - x(:, node(max(1, n - 3)))
         q = u(:, node(n - 1)) - u(:, node(max(1, n - 3)))

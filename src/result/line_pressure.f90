@@ -4,7 +4,8 @@ module epcont_result_line_pressure
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: no_area
   use epcont_geometry_boundary_line, only: boundary_line
-  use epcont_model_model, only: line_contact, model_type
+  use epcont_model_contact_rows, only: line_contact
+  use epcont_model_model, only: model_type
   use epcont_result_contact_line, only: shares_of_nodes
   implicit none
   private
@@ -32,10 +33,10 @@ contains
     real(wp), allocatable, intent(out) :: apart(:)
     integer :: c
 
-    apart = spread(0.0_wp, 1, model%pairs)
-    allocate (found(size(model%line_contact)))
+    apart = spread(0.0_wp, 1, model%contact%pairs)
+    allocate (found(size(model%contact%line_contact)))
     do c = 1, size(found)
-      call compare(model%line_contact(c), found(c), apart)
+      call compare(model%contact%line_contact(c), found(c), apart)
     end do
 
   contains
@@ -48,18 +49,21 @@ contains
       real(wp), allocatable :: area(:), received(:)
       integer :: corner(2), first, i, k, last, middle
 
-      associate (row => model%row_node(model%row_start(contact%first):model%row_start(contact%last + 1) - 1))
-        call find_areas(contact%master, [row, pack(contact%master%segment, contact%master%segment > 0)], area)
+      associate (row => model%contact%row_node, from => model%contact%row_start(contact%first), &
+                 to => model%contact%row_start(contact%last + 1) - 1)
+        call find_areas(contact%master, &
+                        [row(from:to), pack(contact%master%segment, contact%master%segment > 0)], area)
       end associate
       allocate (received, mold=area)
       received = 0.0_wp
       do k = contact%first, contact%first_of_master - 1
-        do i = model%row_start(k) + 1, model%row_start(k + 1) - 1
-          received(model%row_node(i)) = received(model%row_node(i)) - model%row_weight(i)*force(k)
+        do i = model%contact%row_start(k) + 1, model%contact%row_start(k + 1) - 1
+          received(model%contact%row_node(i)) = received(model%contact%row_node(i)) - &
+            model%contact%row_weight(i)*force(k)
         end do
       end do
       do k = contact%first_of_master, contact%last
-        received(model%pair_node(2, k)) = received(model%pair_node(2, k)) + force(k)
+        received(model%contact%pair_node(2, k)) = received(model%contact%pair_node(2, k)) + force(k)
       end do
       where (area > 0.0_wp) received = received/area
       do i = 1, size(contact%master%element)
@@ -76,9 +80,10 @@ contains
       if (found%on_slave == 0.0_wp) return
       do k = contact%first, contact%first_of_master - 1
         if (.not. touching(k)) cycle
-        first = model%row_start(k) + 1
-        last = model%row_start(k + 1) - 1
-        apart(k) = -dot_product(model%row_weight(first:last), received(model%row_node(first:last))) &
+        first = model%contact%row_start(k) + 1
+        last = model%contact%row_start(k + 1) - 1
+        apart(k) = -dot_product(model%contact%row_weight(first:last), &
+                                received(model%contact%row_node(first:last))) &
                    - pressure(k)
         found%difference = max(found%difference, abs(apart(k))/found%on_slave)
       end do

@@ -32,15 +32,17 @@ contains
     real(wp) :: scatter, size_of_stress
     integer :: e
 
-    allocate (about(model%nodes), weight(model%nodes), source=0.0_wp)
-    allocate (locks(model%elements), source=.false.)
-    do e = 1, model%elements
-      associate (s => model%section(e))
-        if (.not. model%kinds(model%kind(e))%locks .or. model%kinematics(s) == plane_stress) cycle
-        locks(e) = 0.5_wp - (0.5_wp - model%poisson(s))*secant_modulus(e)/model%young(s) >= high_poisson
+    allocate (about(model%mesh%nodes), weight(model%mesh%nodes), source=0.0_wp)
+    allocate (locks(model%mesh%elements), source=.false.)
+    do e = 1, model%mesh%elements
+      associate (s => model%mesh%section(e))
+        if (.not. model%mesh%kinds(model%mesh%kind(e))%locks .or. &
+            model%sections%kinematics(s) == plane_stress) cycle
+        locks(e) = 0.5_wp - &
+          (0.5_wp - model%sections%poisson(s))*secant_modulus(e)/model%sections%young(s) >= high_poisson
       end associate
       if (.not. locks(e)) cycle
-      associate (node => model%connectivity(:3, e), v => volume(model%first_point(e)))
+      associate (node => model%mesh%connectivity(:3, e), v => volume(model%mesh%first_point(e)))
         about(node) = about(node) + v*sum(stress(:3, e))/3.0_wp
         weight(node) = weight(node) + v
       end associate
@@ -50,10 +52,10 @@ contains
     where (weight > 0.0_wp) about = about/weight
     scatter = 0.0_wp
     size_of_stress = 0.0_wp
-    do e = 1, model%elements
+    do e = 1, model%mesh%elements
       if (.not. locks(e)) cycle
-      associate (v => volume(model%first_point(e)))
-        scatter = scatter + v*(sum(stress(:3, e)) - sum(about(model%connectivity(:3, e))))**2/9.0_wp
+      associate (v => volume(model%mesh%first_point(e)))
+        scatter = scatter + v*(sum(stress(:3, e)) - sum(about(model%mesh%connectivity(:3, e))))**2/9.0_wp
         size_of_stress = size_of_stress + v*equivalent_stress(e)**2
       end associate
     end do

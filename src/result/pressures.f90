@@ -44,7 +44,7 @@ contains
     logical, target, intent(in) :: touching(:)      !! pairs `in_contact` [pairs]
     real(wp), target, intent(in) :: force(:)        !! [force] [pairs]
     real(wp), allocatable :: pressure(:)
-    logical :: done(model%pairs)
+    logical :: done(model%contact%pairs)
     type(run_type) :: run
     integer :: k
 
@@ -54,7 +54,7 @@ contains
     run%touching => touching
     run%force => force
     done = .false.
-    do k = 1, model%pairs
+    do k = 1, model%contact%pairs
       if (done(k) .or. .not. is_whole(run, k)) cycle
       call find_run(run, k)
       call sum_up(run)
@@ -64,7 +64,7 @@ contains
     do k = 1, size(line%at_place%start) - 1
       call level(line%at_place%of(k))
     end do
-    do k = 1, model%pairs
+    do k = 1, model%contact%pairs
       if (line%tributary(k) <= 0.0_wp) call complete(k, maxval(line%neighbour(:, k)))
     end do
 

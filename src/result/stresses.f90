@@ -31,31 +31,31 @@ contains
     real(wp) :: shortfall
     integer :: c, e, leader, node
 
-    associate (n => model%elements)
+    associate (n => model%mesh%elements)
       if (.not. allocated(answer%stress)) &
         allocate (answer%stress(components, n), answer%equivalent_stress(n), answer%equivalent_strain(n), &
                   answer%secant_modulus(n), answer%largest_stress(n), answer%largest_at(n), &
                   answer%plastic(n), answer%beyond(n))
     end associate
     shortfall = 0.0_wp
-    !$omp parallel do num_threads(threads_over(model%elements)) reduction(max:shortfall)
-    do e = 1, model%elements
+    !$omp parallel do num_threads(threads_over(model%mesh%elements)) reduction(max:shortfall)
+    do e = 1, model%mesh%elements
       call recover_element(model, linear, e, answer, shortfall)
     end do
     !$omp end parallel do
     answer%shortfall = shortfall
     force = linear%operator%nodal_forces(model, answer%point_stress)
-    if (size(model%spring) > 0) force = force + spring_forces(model, answer%deformation)
-    answer%reaction = spread([0.0_wp, 0.0_wp], 2, model%nodes)
-    answer%moment = spread(0.0_wp, 1, size(model%platen))
-    answer%angle = [(platen_angle(model, node, answer%displacement), node=1, size(model%platen))]
-    do node = 1, model%nodes
+    if (size(model%constraints%spring) > 0) force = force + spring_forces(model, answer%deformation)
+    answer%reaction = spread([0.0_wp, 0.0_wp], 2, model%mesh%nodes)
+    answer%moment = spread(0.0_wp, 1, size(model%constraints%platen))
+    answer%angle = [(platen_angle(model, node, answer%displacement), node=1, size(model%constraints%platen))]
+    do node = 1, model%mesh%nodes
       do c = 1, directions
-        if (model%sum_of(c, node) > 0) then
-          call add_to_terms(model%sum_of(c, node), force(c, node) - applied(c, node))
+        if (model%constraints%sum_of(c, node) > 0) then
+          call add_to_terms(model%constraints%sum_of(c, node), force(c, node) - applied(c, node))
         else
-          leader = model%leader(c, node)
-          if (model%held(c, leader)) &
+          leader = model%constraints%leader(c, node)
+          if (model%constraints%held(c, leader)) &
             answer%reaction(c, leader) = answer%reaction(c, leader) + force(c, node) - applied(c, node)
         end if
       end do
@@ -69,11 +69,12 @@ contains
       real(wp), intent(in) :: force
       integer :: i
 
-      do i = model%sum%first(row), model%sum%last(row)
-        associate (c => model%sum%component(i), at => model%sum%node(i), share => model%sum%weight(i)*force)
+      do i = model%constraints%sum%first(row), model%constraints%sum%last(row)
+        associate (c => model%constraints%sum%component(i), at => model%constraints%sum%node(i), &
+                   share => model%constraints%sum%weight(i)*force)
           if (c == angle) then
-            if (model%platen(at)%held) answer%moment(at) = answer%moment(at) + share
-          else if (model%held(c, at)) then
+            if (model%constraints%platen(at)%held) answer%moment(at) = answer%moment(at) + share
+          else if (model%constraints%held(c, at)) then
             answer%reaction(c, at) = answer%reaction(c, at) + share
           end if
         end associate
@@ -92,8 +93,8 @@ contains
     real(wp) :: mises(most_points), modulus, share, whole
     integer :: p
 
-    associate (law => linear%materials%section(model%section(e)), first => model%first_point(e), &
-               last => model%first_point(e + 1) - 1, volume => linear%operator%volume)
+    associate (law => linear%materials%section(model%mesh%section(e)), first => model%mesh%first_point(e), &
+               last => model%mesh%first_point(e + 1) - 1, volume => linear%operator%volume)
       answer%stress(:, e) = 0.0_wp
       answer%equivalent_stress(e) = 0.0_wp
       answer%equivalent_strain(e) = 0.0_wp
@@ -122,7 +123,8 @@ contains
         answer%plastic(e) = answer%plastic(e) .or. point%plastic
         answer%beyond(e) = answer%beyond(e) .or. point%beyond
         if (model%controls%paper_ratio) &
-          shortfall = max(shortfall, below_curve(model%curve(model%section(e)), law%elasticity, point))
+          shortfall = max(shortfall, below_curve(model%sections%curve(model%mesh%section(e)), &
+                                                 law%elasticity, point))
       end do
     end associate
   end subroutine recover_element
@@ -153,8 +155,9 @@ contains
     integer, intent(in) :: point            !! its number
     real(wp) :: x(directions)
 
-    associate (e => model%point_element(point), kind => model%kinds(model%kind(model%point_element(point))))
-      x = matmul(model%coordinates(e), kind%values(:kind%nodes, point - model%first_point(e) + 1))
+    associate (e => model%mesh%point_element(point), &
+               kind => model%mesh%kinds(model%mesh%kind(model%mesh%point_element(point))))
+      x = matmul(model%mesh%coordinates(e), kind%values(:kind%nodes, point - model%mesh%first_point(e) + 1))
     end associate
   end function place_of_point
 end module epcont_result_stresses

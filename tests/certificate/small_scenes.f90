@@ -30,16 +30,16 @@ contains
     real(wp), intent(in) :: by(2)
     integer, intent(in), optional :: last   !! the last of those nodes, not 8
     type(overlaps_type) :: scene
-    real(wp) :: u(2, model%nodes)
+    real(wp) :: u(2, model%mesh%nodes)
     integer :: highest, i
 
     highest = 8
     if (present(last)) highest = last
     u = 0.0_wp
-    do i = 1, model%nodes
-      if (model%node_id(i) >= 5 .and. model%node_id(i) <= highest) u(:, i) = by
+    do i = 1, model%mesh%nodes
+      if (model%mesh%node_id(i) >= 5 .and. model%mesh%node_id(i) <= highest) u(:, i) = by
     end do
-    scene = look_through(model, u, spread(1.0_wp, 1, model%pairs))
+    scene = look_through(model, u, spread(1.0_wp, 1, model%contact%pairs))
   end function moved
 
   !> The scene displaced, where nothing presses.

@@ -74,8 +74,8 @@ contains
     real(wp), allocatable :: r(:)
     logical, allocatable :: there(:)
 
-    r = norm2(solved%model%x, dim=1)
+    r = norm2(solved%model%mesh%x, dim=1)
     there = abs(r - radius) < 1.0e-6_wp*radius
-    outward = sum(sum(solved%model%x*solved%answer%displacement, dim=1)/r, mask=there)/count(there)
+    outward = sum(sum(solved%model%mesh%x*solved%answer%displacement, dim=1)/r, mask=there)/count(there)
   end function outward
 end module solved_scene

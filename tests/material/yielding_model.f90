@@ -20,16 +20,17 @@ contains
     type(model_type) :: model
     integer :: s
 
-    model%young = spread(200.0_wp, 1, 6)
-    model%poisson = [0.3_wp, 0.3_wp, 0.25_wp, 0.25_wp, 0.4999_wp, 0.3_wp]
-    model%kinematics = [plane_strain, plane_stress, plane_strain, plane_stress, plane_strain, plane_strain]
-    allocate (model%curve(sections), model%section(0), model%point_element(0))
+    model%sections%young = spread(200.0_wp, 1, 6)
+    model%sections%poisson = [0.3_wp, 0.3_wp, 0.25_wp, 0.25_wp, 0.4999_wp, 0.3_wp]
+    model%sections%kinematics = [plane_strain, plane_stress, plane_strain, plane_stress, plane_strain, &
+                                 plane_strain]
+    allocate (model%sections%curve(sections), model%mesh%section(0), model%mesh%point_element(0))
     do s = 1, 2
-      model%curve(s)%strain = [0.0_wp, 0.005_wp, 0.01_wp, 0.02_wp, 0.05_wp]
-      model%curve(s)%stress = [0.0_wp, 1.0_wp, 1.4_wp, 1.6_wp, 1.9_wp]
+      model%sections%curve(s)%strain = [0.0_wp, 0.005_wp, 0.01_wp, 0.02_wp, 0.05_wp]
+      model%sections%curve(s)%stress = [0.0_wp, 1.0_wp, 1.4_wp, 1.6_wp, 1.9_wp]
     end do
     do s = 3, 5
-      model%curve(s) = bilinear_curve(200.0_wp, 1.0_wp, 0.0_wp)
+      model%sections%curve(s) = bilinear_curve(200.0_wp, 1.0_wp, 0.0_wp)
     end do
     model%controls%paper_ratio = paper_ratio
   end function new_yielding_model

@@ -87,7 +87,7 @@ contains
     operator = new_strain_operator(model)
     call find_materials(model, materials)
     law = elastic_law(materials)
-    problem%initial_gap = model%initial_gap
+    problem%initial_gap = model%contact%initial_gap
     call see_motions(model, motions, problem%motion, problem%resultant)
   end subroutine read_scene
 
@@ -127,7 +127,7 @@ contains
     begun = now()
     spent(assembly) = 0.0_wp
     spent(factor) = 0.0_wp
-    do b = 1, model%bodies
+    do b = 1, model%mesh%bodies
       if (numbering%body(b)%solver == solver_frontal) then
         call make_elements(numbering%body(b)%element)
         alone = lap()
@@ -142,20 +142,20 @@ contains
       spent(factor) = spent(factor) + lap()
     end do
     if (allocated(problem%flexibility)) deallocate (problem%flexibility)
-    allocate (problem%flexibility(model%pairs, model%pairs), source=0.0_wp)
-    pairs = new_incidence(model%bodies_of_pairs(), model%bodies)
-    do b = 1, model%bodies
+    allocate (problem%flexibility(model%contact%pairs, model%contact%pairs), source=0.0_wp)
+    pairs = new_incidence(model%bodies_of_pairs(), model%mesh%bodies)
+    do b = 1, model%mesh%bodies
       call find_flexibility(model, numbering, b, pairs%of(b), bodies%body(b), part)
       call add_part(part, problem%flexibility)
     end do
     call complete_flexibility(problem%flexibility)
     spent(flexibility) = lap()
-    problem%load_gap = gap_opening(model, bodies%displacements(scene, model%load, 1.0_wp))
+    problem%load_gap = gap_opening(model, bodies%displacements(scene, model%loads%load, 1.0_wp))
     spent(load_gap) = lap()
     call solve_contact(problem, solution, start)
     spent(contact) = lap()
     if (solution%state /= contact_solved) error stop 'no contact found'
-    displacement = bodies%displacements(scene, model%load + pair_forces(model, solution%force), 1.0_wp)
+    displacement = bodies%displacements(scene, model%loads%load + pair_forces(model, solution%force), 1.0_wp)
     spent(displacing) = lap()
   end subroutine solve_once
 
@@ -166,7 +166,7 @@ contains
     integer :: e
 
     do e = 1, size(element)
-      call operator%element_stiffness(model, element(e), law, 2*model%node_count(element(e)), k)
+      call operator%element_stiffness(model, element(e), law, 2*model%mesh%node_count(element(e)), k)
     end do
   end subroutine make_elements
 
@@ -194,9 +194,9 @@ contains
     call number_along_nodes(equation, n)
     call list_entries(equation, row, column, value)
     call list_rows(equation, n_start, n_equation, n_weight)
-    force = model%load + bodies%settlement
+    force = model%loads%load + bodies%settlement
     open (newunit=unit, file=path, access='stream', form='unformatted', status='replace', action='write')
-    write (unit) n, size(row), model%pairs, size(n_equation), motions%count, row, column, value
+    write (unit) n, size(row), model%contact%pairs, size(n_equation), motions%count, row, column, value
     write (unit) n_start, n_equation, n_weight, problem%initial_gap + problem%load_gap, problem%motion%dense(), problem%resultant
     write (unit) merge(1, 0, solution%touching), gathered(equation, n, force), taken(equation, n, displacement)
     close (unit)
@@ -208,17 +208,17 @@ contains
     integer, intent(out) :: n
     integer :: c, node
 
-    allocate (equation(2, model%nodes), source=0)
+    allocate (equation(2, model%mesh%nodes), source=0)
     n = 0
-    do node = 1, model%nodes
+    do node = 1, model%mesh%nodes
       do c = 1, 2
-        if (model%leader(c, node) /= node .or. numbering%equation(c, node) == 0) cycle
+        if (model%constraints%leader(c, node) /= node .or. numbering%equation(c, node) == 0) cycle
         n = n + 1
         equation(c, node) = n
       end do
     end do
     do c = 1, 2
-      equation(c, :) = equation(c, model%leader(c, :))
+      equation(c, :) = equation(c, model%constraints%leader(c, :))
     end do
   end subroutine number_along_nodes
 
@@ -231,13 +231,13 @@ contains
     integer, allocatable :: number(:)
     integer :: e, i, j, last, n
 
-    last = sum((2*model%node_count)**2)
+    last = sum((2*model%mesh%node_count)**2)
     allocate (row(last), column(last), value(last))
     last = 0
-    do e = 1, model%elements
-      n = model%node_count(e)
+    do e = 1, model%mesh%elements
+      n = model%mesh%node_count(e)
       call operator%element_stiffness(model, e, law, 2*n, k)
-      number = reshape(equation(:, model%connectivity(:n, e)), [2*n])
+      number = reshape(equation(:, model%mesh%connectivity(:n, e)), [2*n])
       do j = 1, 2*n
         do i = 1, 2*n
           if (number(j) == 0 .or. number(i) < number(j)) cycle
@@ -262,12 +262,12 @@ contains
 
     allocate (start(1), source=1)
     allocate (number(0), weight(0))
-    do k = 1, model%pairs
-      do i = model%row_start(k), model%row_start(k + 1) - 1
+    do k = 1, model%contact%pairs
+      do i = model%contact%row_start(k), model%contact%row_start(k + 1) - 1
         do c = 1, 2
-          if (equation(c, model%row_node(i)) == 0 .or. model%normal(c, k) == 0.0_wp) cycle
-          number = [number, equation(c, model%row_node(i))]
-          weight = [weight, model%row_weight(i)*model%normal(c, k)]
+          if (equation(c, model%contact%row_node(i)) == 0 .or. model%contact%normal(c, k) == 0.0_wp) cycle
+          number = [number, equation(c, model%contact%row_node(i))]
+          weight = [weight, model%contact%row_weight(i)*model%contact%normal(c, k)]
         end do
       end do
       start = [start, size(number) + 1]
@@ -282,7 +282,7 @@ contains
     integer :: c, node
 
     values = 0.0_wp
-    do node = 1, model%nodes
+    do node = 1, model%mesh%nodes
       do c = 1, 2
         if (equation(c, node) > 0) values(equation(c, node)) = values(equation(c, node)) + nodal(c, node)
       end do
@@ -296,7 +296,7 @@ contains
     real(wp) :: values(n)
     integer :: c, node
 
-    do node = 1, model%nodes
+    do node = 1, model%mesh%nodes
       do c = 1, 2
         if (equation(c, node) > 0) values(equation(c, node)) = nodal(c, node)
       end do

@@ -1,5 +1,5 @@
 !> Nodes, materials, sections and elements from their cards.
-module epcont_build_mesh
+module epcont_build_mesh_cards
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: short_real
   use epcont_build_reference, only: card_index, index_of, resolve
@@ -88,21 +88,23 @@ contains
   end subroutine read_mesh
 
   !> Take the ids of nodes, elements, sections and pairs from their cards.
-  subroutine take_ids(deck, kinds, model)
+  subroutine take_ids(deck, kinds, pairs, model)
     type(deck_type), intent(in) :: deck          !! its cards
     type(element_kind), intent(in) :: kinds(:)   !! of elements
-    type(model_type), intent(inout) :: model     !! with its data; gets the ids
+    integer, intent(in) :: pairs                 !! of CGAP, if they are not switched off
+    type(model_type), intent(inout) :: model     !! gets the ids
     integer, allocatable :: cards(:)
     integer :: i
 
     cards = element_cards(deck, kinds)
-    model%node_id = int(deck%card(card_grid)%value(1, :))
-    model%element_id = [(int(deck%card(cards(i))%value(1, :)), i=1, size(cards))]
+    model%mesh%node_id = int(deck%card(card_grid)%value(1, :))
+    model%mesh%element_id = [(int(deck%card(cards(i))%value(1, :)), i=1, size(cards))]
     associate (shell => deck%card(card_pshell), solid => deck%card(card_psolid))
-      model%property_id = nint([shell%value(1, :), solid%value(1, :)])
-      model%material_id = nint([shell%value(shell%column('MID1'), :), solid%value(solid%column('MID'), :)])
+      model%sections%property_id = nint([shell%value(1, :), solid%value(1, :)])
+      model%sections%material_id = nint([shell%value(shell%column('MID1'), :), &
+                                         solid%value(solid%column('MID'), :)])
     end associate
-    model%pair_id = nint(deck%card(card_cgap)%value(1, :size(model%initial_gap)))
+    model%contact%pair_id = nint(deck%card(card_cgap)%value(1, :pairs))
   end subroutine take_ids
 
   !> A field is at fault.
@@ -300,4 +302,4 @@ contains
     cards = pack([(c, c=1, size(name))], &
                  [(any(kinds%plane_card == name(c) .or. kinds%ring_card == name(c)), c=1, size(name))])
   end function element_cards
-end module epcont_build_mesh
+end module epcont_build_mesh_cards

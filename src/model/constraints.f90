@@ -1,0 +1,82 @@
+!> Supports of a model, and DOFs that depend on others.
+module epcont_model_constraints
+  use epcont_base_kinds, only: wp
+  use epcont_element_kinematics, only: directions
+  use epcont_model_arrays, only: angle, linear_equation, spring_type, turning_platen
+  implicit none
+  private
+  public :: constraints_type, freedom_sums
+
+  !> Freedoms that are sums of others, which follow nothing: row k has the terms first(k) to last(k).
+  type :: freedom_sums
+    integer, allocatable :: first(:), last(:)       !! [rows]
+    integer, allocatable :: component(:), node(:)   !! component `angle`: of the platen of that number [terms]
+    real(wp), allocatable :: weight(:)              !! [terms]
+  end type freedom_sums
+
+  type :: constraints_type
+    logical, allocatable :: held(:, :)          !! the DOF has a prescribed displacement [2, nodes]
+    logical, allocatable :: reference(:, :)     !! SUPORT DOFs [2, nodes]
+    !> Node whose displacement the DOF shares: itself if it is not tied [2, nodes]
+    integer, allocatable :: leader(:, :)
+    integer, allocatable :: sum_of(:, :)        !! row of each DOF that is a sum; 0 if it is none [2, nodes]
+    type(freedom_sums) :: sum
+    type(turning_platen), allocatable :: platen(:)    !! nodes that lead others and turn [any]
+    type(linear_equation), allocatable :: equation(:) !! between displacements [any]
+    type(spring_type), allocatable :: spring(:)       !! [any]
+  contains
+    procedure :: is_held
+    procedure :: is_tied
+    procedure :: is_rigid
+    procedure :: platen_of
+  end type constraints_type
+
+contains
+
+  !> Does a support hold a node along a component, itself or what it is tied to?
+  elemental logical function is_held(self, component, node)
+    class(constraints_type), intent(in) :: self
+    integer, intent(in) :: component, node   !! 1: x, 2: y
+
+    is_held = self%held(component, self%leader(component, node))
+  end function is_held
+
+  !> Does RBE2 or MPC say where one of these nodes goes?
+  pure logical function is_tied(self, node)
+    class(constraints_type), intent(in) :: self
+    integer, intent(in) :: node(:)   !! these nodes [any]
+
+    is_tied = any(self%leader(1, node) /= node) .or. any(self%leader(2, node) /= node) .or. &
+              any(self%sum_of(:, node) > 0)
+  end function is_tied
+
+  !> Do supports and RBE2 keep the shape between these nodes? In each direction they are all held, or all tied
+  !! to one, or they turn as one.
+  pure logical function is_rigid(self, node)
+    class(constraints_type), intent(in) :: self
+    integer, intent(in) :: node(:)   !! these nodes [any]
+    integer :: c, platen(size(node))
+
+    platen = [(self%platen_of(node(c)), c=1, size(node))]
+    is_rigid = all(platen == platen(1)) .and. platen(1) > 0
+    if (is_rigid) return
+    is_rigid = .true.
+    do c = 1, directions
+      associate (leader => self%leader(c, node))
+        is_rigid = is_rigid .and. (all(leader == leader(1)) .or. all(self%held(c, leader)))
+      end associate
+    end do
+  end function is_rigid
+
+  !> The platen that turns and that a node is of; 0: none.
+  pure integer function platen_of(self, node) result(platen)
+    class(constraints_type), intent(in) :: self
+    integer, intent(in) :: node   !! which node
+
+    platen = findloc(self%platen%leader, node, dim=1)
+    associate (row => self%sum_of(1, node))
+      if (row == 0) return
+      if (self%sum%component(self%sum%last(row)) == angle) platen = self%sum%node(self%sum%last(row))
+    end associate
+  end function platen_of
+end module epcont_model_constraints
