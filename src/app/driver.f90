@@ -41,7 +41,10 @@ contains
     run%deck => deck
     run%cases => cases
     stem = stem_of(path)
-    of_deck = deck_run(path, shown(stem), arguments%memory, arguments%asks('--quiet'))
+    of_deck%path = path   ! one by one: gfortran 12 leaks a function's result in a structure constructor
+    of_deck%name = shown(stem)
+    of_deck%memory = arguments%memory
+    of_deck%quiet = arguments%asks('--quiet')
     if (len(arguments%directory) > 0) stem = arguments%directory//'/'//stem
     call watch%begin(of_deck%name, arguments%asks('--progress'), of_deck%quiet)
     writes = .not. (arguments%asks('--check') .or. arguments%asks('--plan'))

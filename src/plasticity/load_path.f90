@@ -34,7 +34,7 @@ module epcont_plasticity_load_path
     integer :: unloaded = 0                !! elements whose strain fell, after yielding, as the load grew
     integer :: first_unloaded = 0          !! one of them
   contains
-    procedure, private :: keep_step
+    procedure, private :: keep_step, keep_committed
   end type followed_loads
 
 contains
@@ -65,7 +65,7 @@ contains
     do step = 1, plan%load_steps
       if (scene%model%controls%flow_theory .and. step > 1) then
         call iteration%linear%materials%commit(answer%strain, answer%point)
-        answer%committed = [answer%committed, committed_step(answer%load_factor, answer%deformation)]
+        call answer%keep_committed()
       end if
       call iteration%iterate(scene, real(step, wp)/plan%load_steps, watch)
       call answer%keep_step(scene, iteration, watch)
@@ -81,6 +81,23 @@ contains
     call iteration%finish(answer%failed_body == 0 .and. answer%contact%state == contact_solved, &
                           linear, virgin)
   end subroutine follow_loads
+
+  !> Keep the last load step, which is now committed. gfortran 12 leaks an array constructor of such a type.
+  pure subroutine keep_committed(self)
+    class(followed_loads), intent(inout) :: self
+    type(committed_step), allocatable :: more(:)
+    integer :: k, n
+
+    n = size(self%committed)
+    allocate (more(n + 1))
+    do k = 1, n
+      more(k)%load_factor = self%committed(k)%load_factor
+      call move_alloc(self%committed(k)%deformation, more(k)%deformation)
+    end do
+    more(n + 1)%load_factor = self%load_factor
+    more(n + 1)%deformation = self%deformation
+    call move_alloc(more, self%committed)
+  end subroutine keep_committed
 
   !> Take what a load step has found. Of a load that was not carried nothing is kept, if one was before.
   subroutine keep_step(self, scene, iteration, watch)
