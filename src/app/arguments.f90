@@ -15,8 +15,8 @@ module epcont_app_arguments
 
   type :: arguments_type
     type(word_type), allocatable :: deck(:)         !! paths
-    character(len=:), allocatable :: directory      !! for the results
-    character(len=:), allocatable :: card           !! name behind --cards, or empty
+    character(len=:), allocatable :: directory      !! for the results; empty for the current directory
+    character(len=:), allocatable :: card           !! name after --cards, or empty
     real(wp) :: memory = 16.0_wp                    !! limit for matrices [GB]
     logical, private :: asked(size(options)) = .false.
   contains
@@ -25,7 +25,7 @@ module epcont_app_arguments
 
 contains
 
-  !> The words of the command line.
+  !> Return the words of the command line.
   function command_line() result(words)
     type(word_type), allocatable :: words(:)
     integer :: i, length
@@ -38,10 +38,10 @@ contains
     end do
   end function command_line
 
-  !> Read the words of a command line: options by their table, and decks.
+  !> Read the words of a command line: options of the table, and decks.
   subroutine read_arguments(words, arguments, error)
     type(word_type), intent(in) :: words(:)   !! without the name of the program
-    type(arguments_type), intent(out) :: arguments   !! what they ask for
+    type(arguments_type), intent(out) :: arguments   !! requested options and decks
     type(error_type), allocatable, intent(out) :: error   !! of usage
     logical :: is_deck(size(words))
     integer :: i
@@ -62,10 +62,10 @@ contains
 
   contains
 
-    !> Take an option, and the word behind it where that is its value.
+    !> Take an option, and the next word if the option has a value.
     subroutine take_option()
       type(option_type) :: option
-      character(len=:), allocatable :: right   ! value, where this is not
+      character(len=:), allocatable :: right   ! expected value, if the value is wrong
       character(len=:), allocatable :: value
       integer :: outcome
 
@@ -86,7 +86,7 @@ contains
       case ('-o')
         arguments%directory = value
       case ('--tables')
-        if (value /= 'all') right = '--tables all'
+        if (value /= 'all') right = 'all'
       case ('--memory')
         call scan_real(value, arguments%memory, outcome)
         if (all(outcome /= [scan_sound, scan_no_point]) .or. verify(value, '0123456789.') > 0 .or. &
@@ -94,11 +94,11 @@ contains
       case ('--cards')
         arguments%card = value
       end select
-      if (len(right) > 0) call refuse(trim(option%name)//' '//value//': '//right//' would be right')
+      if (len(right) > 0) call refuse(trim(option%name)//' '//value//': give '//right)
     end subroutine take_option
 
-    !> There are decks; over none of them its own results might be written, and no two are of one stem: their
-    !! results would have one name.
+    !> Check that there are decks, that no deck has the name of a result, and that no two decks have the same
+    !! stem, since their results would have the same names.
     subroutine check_decks()
       integer :: j
 
@@ -106,7 +106,7 @@ contains
         if (size(deck) == 0) call refuse('no deck given: epcont [options] DECK...; epcont --help says more')
         do i = 1, size(deck)
           if (any(deck(i)%text(max(1, len(deck(i)%text) - 3):) == ['.lst', '.csv', '.vtu'])) &
-            call refuse(deck(i)%text//': results are written under such names: a deck is named DECK.dat')
+            call refuse(deck(i)%text//': results have such names: name the deck DECK.dat')
           do j = 1, i - 1
             if (stem_of(deck(i)%text) == stem_of(deck(j)%text)) &
               call refuse(deck(j)%text//' and '//deck(i)%text// &
@@ -116,7 +116,7 @@ contains
       end associate
     end subroutine check_decks
 
-    !> Say what is wrong; the first fault counts.
+    !> Report a fault; the first one counts.
     subroutine refuse(message)
       character(len=*), intent(in) :: message
 
@@ -127,12 +127,12 @@ contains
   !> Has an option been given?
   pure logical function asks(self, name)
     class(arguments_type), intent(in) :: self
-    character(len=*), intent(in) :: name   !! of the option, as its table has it
+    character(len=*), intent(in) :: name   !! of the option in its table
 
     asks = any(self%asked .and. options%name == name)
   end function asks
 
-  !> Name of a file without folder and without what follows its last point.
+  !> Find the name of a file without directory and extension.
   pure function stem_of(path) result(stem)
     character(len=*), intent(in) :: path   !! of a deck
     character(len=:), allocatable :: stem

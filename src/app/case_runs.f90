@@ -1,5 +1,5 @@
-!> Solves the load cases of a pattern one after the other. Each starts from the plan, the factors and the
-!> contact state of the case before. Also the texts that a run prints for a load case.
+!> Solve the load cases of a pattern one after the other. Each starts with the plan, the factors and the
+!> contact state of the previous one. Also the texts that a run prints for a load case.
 module epcont_app_case_runs
   use epcont_app_process, only: print_error, print_text
   use epcont_app_progress_display, only: progress_type
@@ -20,16 +20,16 @@ module epcont_app_case_runs
   !> Names, limits and outcome of the run of a deck.
   type :: deck_run
     character(len=:), allocatable :: path   !! of the deck
-    character(len=:), allocatable :: name   !! of the deck in lines of standard output
+    character(len=:), allocatable :: name   !! in lines of standard output
     real(wp) :: memory = huge(1.0_wp)       !! limit [GB]
     logical :: quiet = .false.              !! no lines on standard output
-    logical :: solved = .false.             !! one load case at least
+    logical :: solved = .false.             !! one load case or more
     integer :: status = status_valid        !! exit status: the largest of all load cases
   end type deck_run
 
 contains
 
-  !> Solve the load cases of a pattern, take their results and print what came of each.
+  !> Solve the load cases of a pattern, store their results, and print the outcome of each.
   subroutine solve_pattern(run, cases, of_deck, results, watch, error)
     type(run_results), intent(inout) :: run         !! with the plan of the pattern
     integer, intent(in) :: cases(:)                 !! of the pattern
@@ -50,7 +50,7 @@ contains
       end if
       run%outcome = judge(run)
       if (size(cases) > 1 .and. allocated(run%as_given)) call run%outcome%found%add_note(place_type(), &
-        'nodes came near that had no pair: solved again, in this load case alone, with '// &
+        'nodes without a pair came near: this load case was solved again with '// &
         plural(run%model%contact%pairs - run%as_given%model%contact%pairs, 'more pair'))
       of_deck%solved = .true.
       call results%add_case(run, error)
@@ -64,7 +64,8 @@ contains
     end do
   end subroutine solve_pattern
 
-  !> Lines of standard error: warnings, and why the answer is not valid, each behind the name of the deck.
+  !> Make lines for standard error: warnings, and the reason if the answer is not valid, each after the name
+  !! of the deck.
   pure function remarks_of(run, path) result(lines)
     type(run_results), intent(in) :: run     !! with its outcome
     character(len=*), intent(in) :: path     !! of the deck
@@ -82,8 +83,8 @@ contains
     end do
   end function remarks_of
 
-  !> Line of standard output: name, status, largest pressure and whether it is singular or not resolved, first
-  !! approach.
+  !> Make the line for standard output: name, status, largest pressure (with a note if it is singular or the
+  !! mesh too coarse), first approach.
   pure function line_of(run, name) result(text)
     type(run_results), intent(in) :: run     !! with its outcome
     character(len=*), intent(in) :: name     !! of the deck

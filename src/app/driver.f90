@@ -108,7 +108,7 @@ contains
     !> Plan a pattern of load cases. The model has the supports of the first one.
     subroutine plan_pattern(p)
       integer, intent(in) :: p
-      type(diagnostics) :: known   ! all of these faults are reported already
+      type(diagnostics) :: known   ! faults that are reported already
 
       if (p > 1) then
         call build_model(run%deck, run%model, known, of_pattern=p)

@@ -1,5 +1,5 @@
-!> What --help and --man print: the latter is the manual page epcont(1) as roff. Both come from the tables of
-!> options, of exit statuses and of files.
+!> The texts of --help and of --man, the manual page epcont(1) as roff. Both use the tables of options, of
+!> exit statuses and of files.
 module epcont_app_help
   use epcont_app_options, only: option_type, options
   use epcont_base_error, only: status_meaning
@@ -12,55 +12,57 @@ module epcont_app_help
   private
   public :: help_text, man_page
 
-  !> The macros of an entry, whose name follows.
+  !> Macros of an entry; its name follows.
   character(len=*), parameter :: entry = '.TP'//newline//'.B '
 
-  !> The page: what begins with a point is roff; `@options` and the like are lists; all else is a paragraph.
+  !> The manual page: lines that begin with a point are roff; `@options` and the like are lists; the rest are
+  !! paragraphs.
   character(len=*), parameter :: page(*) = [character(len=280) :: &
     '.TH EPCONT 1 '//program_date//' "'//program_name//' '//program_version//'" "User Commands"', &
     '.SH NAME'//newline// &
-    program_name//' \- contact and yielding of plane bodies and rings, from card decks', &
+    program_name//' \- frictionless elastoplastic contact of plane and axisymmetric bodies', &
     '.SH SYNOPSIS', &
     '.B '//program_name, &
     '.RI [ options ]', &
     '.IR DECK ...', &
     '.SH DESCRIPTION', &
-    'For each deck of NASTRAN bulk data: what touches, with what force, how far the bodies approach, and '// &
-    'where they have yielded.', &
-    'Contact is exact to rounding, yielding follows total theory, and every answer is certified by code '// &
-    'of its own: the exit status and the listing say whether the certificate holds.', &
-    'A deck is named DECK.dat; the same deck gives the same files, byte for byte.', &
-    'Faults go to standard error, one line of outcome for each deck to standard output.', &
+    'For each deck of NASTRAN bulk data, epcont finds the pairs in contact, their forces and pressures, '// &
+    'the approach of the bodies, and the yielded elements.', &
+    'Contact is exact to rounding. Yielding follows total (deformation) theory. Separate code checks '// &
+    'every answer (certificate): exit status and listing say whether it holds.', &
+    'A deck is named DECK.dat. The same deck gives the same files, byte for byte.', &
+    'Errors and warnings go to standard error, one line of outcome for each deck to standard output.', &
     '.SH OPTIONS', '@options', &
-    '.SH EXIT STATUS', 'Of several decks the largest counts.', '@statuses', &
-    '.SH FILES', 'In the current directory, or in DIR.', '@files', &
-    '.SH EXAMPLES', &   ! with the deck that is installed beside the page (a test runs them)
+    '.SH EXIT STATUS', 'For several decks, the largest status.', '@statuses', &
+    '.SH FILES', 'In the current directory, or in DIR of option -o.', '@files', &
+    '.SH EXAMPLES', &   ! with the deck installed beside the page (a test runs them)
     entry//'epcont hertz44.dat', 'Solve the deck; the answer is in hertz44.lst and tables beside it.', &
     entry//'epcont \-o out \-\-tables all hertz44.dat', &
-    'The same to the folder out, with displacements and stresses.', &
-    entry//'epcont \-\-check *.dat', 'Name every fault of many decks, and solve none.', &
-    entry//'epcont \-\-plan hertz44.dat', 'How many unknowns, which method and why, how much memory.', &
-    entry//'epcont \-\-cards PARAM', 'The fields of a card, and what may stand in them.', &
+    'The same in the directory out, with displacements and stresses.', &
+    entry//'epcont \-\-check *.dat', 'Report every error of many decks, without solving them.', &
+    entry//'epcont \-\-plan hertz44.dat', 'Print the number of unknowns, the methods and the memory.', &
+    entry//'epcont \-\-cards PARAM', 'Print the fields of a card and their permitted values.', &
     '.SH ENVIRONMENT', &
-    'OMP_NUM_THREADS: number of threads that may work on bodies in parallel, if a model has several '// &
-    'large ones; one if it is not set. Results are the same bytes for any number.', &
-    'OMP_WAIT_POLICY: what threads do that wait; PASSIVE, which leaves their core to others, if it is'// &
-    ' not set and OpenBLAS is a part of the program, as the scripts link it.', &
-    'OpenBLAS chooses its kernels by the processor, or by OPENBLAS_CORETYPE: others change the last of '// &
-    'the 17 digits of the tables.', &
+    'OMP_NUM_THREADS: number of threads that work on bodies in parallel, if a model has several '// &
+    'large ones; default 1. Results are the same bytes for any number.', &
+    'OMP_WAIT_POLICY: behaviour of waiting threads. The default is PASSIVE (others can use their core) '// &
+    'if OpenBLAS is linked into the program, as the build scripts do.', &
+    'OpenBLAS chooses its kernels by the processor, or by OPENBLAS_CORETYPE. Other kernels change the '// &
+    'last of the 17 digits of the tables.', &
     '.SH COPYRIGHT', 'The epcont authors; MIT License.']
 
 contains
 
-  !> The text of --help.
+  !> Return the text of --help.
   pure function help_text() result(text)
     character(len=:), allocatable :: text
     type(option_type) :: option
     character(len=15) :: name
     integer :: k
 
-    text = 'usage: epcont [options] DECK...'//newline//newline//'Solves the contact of plane bodies and '// &
-           'rings from card decks. Results go to DECK.lst and DECK.*.csv.'//newline//newline
+    text = 'usage: epcont [options] DECK...'//newline//newline// &
+           'Solves frictionless elastoplastic contact of plane and axisymmetric bodies.'//newline// &
+           'Input: NASTRAN bulk data. Results: DECK.lst and DECK.*.csv.'//newline//newline
     do k = 1, size(options)
       option = options(k)
       name = option%usage()
@@ -72,7 +74,7 @@ contains
     end do
   end function help_text
 
-  !> The text of --man.
+  !> Return the text of --man.
   function man_page() result(text)
     character(len=:), allocatable :: text
     integer :: i, k
@@ -100,7 +102,7 @@ contains
 
   contains
 
-    !> What is explained, in its own line, and the explanation.
+    !> Add an entry: its name on a line, then the explanation.
     subroutine add_entry(name, explanation, more)
       character(len=*), intent(in) :: name, explanation, more
 
@@ -109,7 +111,7 @@ contains
     end subroutine add_entry
   end function man_page
 
-  !> Names bold, and the value too where it stands for itself.
+  !> Print names in bold, and the value too if it is a literal.
   pure function heading(option) result(text)
     type(option_type), intent(in) :: option
     character(len=:), allocatable :: text
@@ -121,7 +123,7 @@ contains
       text = '.BI "'//text(4:value - 1)//'" '//text(value:)
   end function heading
 
-  !> Text, in lines of a source that can be read.
+  !> Split text into source lines.
   pure function paragraph(text)
     character(len=*), intent(in) :: text
     character(len=:), allocatable :: paragraph
@@ -138,7 +140,7 @@ contains
     end do
   end function paragraph
 
-  !> Text as roff prints it: its hyphens are those that are typed, and nothing is a request.
+  !> Escape text for roff: hyphens as typed, and no requests.
   pure function roff(text) result(escaped)
     character(len=*), intent(in) :: text
     character(len=:), allocatable :: escaped

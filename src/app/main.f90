@@ -1,4 +1,5 @@
-!> epcont: contact of plane bodies and rings, from card decks. The only place that sets the exit status.
+!> epcont: frictionless elastoplastic contact of plane and axisymmetric bodies. Only this program sets the
+!> exit status.
 program epcont_main
   use, intrinsic :: iso_c_binding, only: c_bool, c_int
   use epcont_app_arguments, only: arguments_type, command_line, read_arguments
@@ -26,7 +27,7 @@ program epcont_main
 
 contains
 
-  !> What the command line asks for; of several decks the largest status counts.
+  !> Do what the command line asks for. With several decks, the exit status is the largest.
   subroutine run()
     type(arguments_type) :: arguments
     type(error_type), allocatable :: error
@@ -36,8 +37,8 @@ contains
     status = status_valid
     call read_arguments(command_line(), arguments, error)
     if (.not. allocated(error) .and. .not. has_memory(memory_of_libraries)) &
-      call raise(error, status_usage, 'less memory is free or allowed (ulimit -v) than any deck needs: '// &
-                 text_of(int(memory_of_libraries/1000000))//' MB beside the program')
+      call raise(error, status_usage, 'every deck needs '//text_of(int(memory_of_libraries/1000000))// &
+                 ' MB of memory, but less is free or allowed: raise ulimit -v')
     if (allocated(error)) then
       call refuse(error%message)
     else if (arguments%asks('--help')) then
@@ -59,7 +60,7 @@ contains
     end if
   end subroutine run
 
-  !> Say what is wrong with the command line.
+  !> Report a fault of the command line.
   subroutine refuse(message)
     character(len=*), intent(in) :: message
 

@@ -1,5 +1,4 @@
-!> What the program has of the system: its streams, its beginning and its end. Fortran's WRITE does not say
-!> whether its text arrived; the system does.
+!> Streams, start and end of the process. Fortran's WRITE does not report write errors; the system calls do.
 module epcont_app_process
   use, intrinsic :: iso_c_binding, only: c_bool, c_char, c_f_pointer, c_funloc, c_funptr, c_int, c_loc, &
       c_long, c_null_char, c_ptr, c_short, c_size_t
@@ -16,16 +15,16 @@ module epcont_app_process
 
   integer(c_int), parameter :: standard_output = 1, standard_error = 2
 
-  !> What Linux says of a window.
+  !> Window size, as Linux returns it.
   type, bind(c) :: window_type
     integer(c_short) :: rows, columns, width, height
   end type window_type
 
-  !> What OpenBLAS maps for each thread before the main program begins, and what the program wants beside it
-  !! [bytes].
+  !> Memory that OpenBLAS maps for each thread before the main program begins, and memory of the program
+  !! beside it [bytes].
   integer(i8), parameter :: memory_of_blas = 134217728_i8, memory_beside = 32000000_i8
   integer(c_int), parameter :: processors_online = 84   !! `sysconf` of Linux
-  !> `getrlimit` of Linux, and twice what the deepest run takes of the stack [bytes].
+  !> `getrlimit` of Linux, and twice the stack of the deepest run [bytes].
   integer(c_int), parameter :: stack_size = 3
   integer(c_long), parameter :: least_stack = 262144_c_long
 
@@ -51,7 +50,7 @@ module epcont_app_process
       type(c_funptr), value :: handler
       type(c_ptr), value :: argument
     end function c_on_exit
-    !> End in good order.
+    !> End the program regularly.
     subroutine c_exit(status) bind(c, name='exit')
       import
       integer(c_int), value :: status   !! of the program
@@ -72,16 +71,16 @@ module epcont_app_process
     integer(c_int) function c_getrlimit(resource, limit) bind(c, name='getrlimit')
       import
       integer(c_int), value :: resource
-      integer(c_long), intent(out) :: limit(2)   !! now, and at most; negative: none
+      integer(c_long), intent(out) :: limit(2)   !! current and largest limit; negative: unlimited
     end function c_getrlimit
   end interface
 
 contains
 
-  !> Print text on standard output, at once, and a newline where it does not end with one.
+  !> Print text on standard output at once, with a newline at its end.
   subroutine print_text(text, status)
     character(len=*), intent(in) :: text   !! one line or many
-    integer, intent(inout) :: status   !! where that cannot be done, at least that of files afterwards
+    integer, intent(inout) :: status   !! if writing fails, at least the status of file errors
     integer :: last
 
     last = len(text)
@@ -91,7 +90,7 @@ contains
     status = max(status, status_usage)
   end subroutine print_text
 
-  !> Print on standard error, at once and as it is. Nothing comes of it where that cannot be written.
+  !> Print text on standard error, at once and unchanged. Write errors are ignored.
   subroutine print_error(text)
     character(len=*), intent(in) :: text   !! with its newlines
     logical :: ignored
@@ -114,7 +113,7 @@ contains
     is_written = done == len(text)
   end function is_written
 
-  !> Columns of the terminal that standard error is, as many as any has where it does not say; 0: it is none.
+  !> Columns of the terminal on standard error, 80 if unknown; 0 if it is not a terminal.
   integer function terminal_columns() result(columns)
     integer(c_long), parameter :: window_size = 21523_c_long   !! TIOCGWINSZ of Linux
     integer, parameter :: usual = 80
@@ -126,10 +125,10 @@ contains
     if (columns <= 0) columns = usual
   end function terminal_columns
 
-  !> One thread unless the environment says more, and threads that wait give up their core. Where OpenBLAS
-  !! cannot have its memory, room for each thread but for no more than there are processors, it waits without
-  !! end, and where the stack is too small a run ends by a signal: that is refused. (The runtime of Fortran
-  !! has not begun: READ and WRITE are not to be had.)
+  !> Set defaults of the environment (one thread; waiting threads release their core) and check memory and
+  !! stack. Without memory for each thread (at most one for each processor), OpenBLAS waits forever; with a
+  !! small stack, a signal ends the run. The Fortran runtime has not started, so READ and WRITE are not
+  !! available.
   subroutine prepare_start() bind(c, name='epcont_prepare_start')
     integer(c_int) :: ignored
     integer(c_long) :: stack(2)
@@ -140,15 +139,15 @@ contains
     threads = max(1_c_long, min(int(stated_threads(), c_long), c_sysconf(processors_online)))
     wanted = threads*memory_of_blas + memory_beside
     if (.not. has_memory(wanted)) call stop_now(status_usage, &
-      'less memory is free or allowed (ulimit -v) than OpenBLAS takes for OMP_NUM_THREADS: '// &
-      figures(wanted/1000000)//' MB beside the program')
+      'OpenBLAS needs '//figures(wanted/1000000)//' MB of memory, but less is free or allowed: '// &
+      'raise ulimit -v or lower OMP_NUM_THREADS')
     if (c_getrlimit(stack_size, stack) /= 0) return
     if (stack(1) >= 0 .and. stack(1) < least_stack) call stop_now(status_usage, &
-      'a stack of '//figures(stack(1)/1024_i8)//' kB is allowed (ulimit -s): '// &
-      figures(least_stack/1024_i8)//' kB are wanted')
+      'the stack is limited to '//figures(stack(1)/1024_i8)//' kB: raise ulimit -s to at least '// &
+      figures(least_stack/1024_i8)//' kB')
   end subroutine prepare_start
 
-  !> A number of up to nine digits, without WRITE.
+  !> Write a number of at most nine digits, without WRITE.
   pure function figures(number) result(text)
     integer(i8), intent(in) :: number
     character(len=:), allocatable :: text
@@ -163,11 +162,11 @@ contains
     end do
   end function figures
 
-  !> From here on the program ends by `c_exit`, or else with the exit status of its fault: the Fortran
-  !! runtime and OpenBLAS have statuses of their own, which here would mean that there is an answer. A closed
-  !! pipe, or a file above the size allowed, is a fault of that file.
+  !> Make sure that the exit status is epcont's own: that of `c_exit`, or that of the fault. The Fortran
+  !! runtime and OpenBLAS use other statuses, which could mean a valid answer here. A closed pipe, or a file
+  !! above the size limit, is a write error.
   subroutine watch_exit(ended)
-    !> lives as long as the program; true when `c_exit` is called
+    !> lives as long as the program; true if `c_exit` was called
     logical(c_bool), target, intent(in) :: ended
     integer(c_int), parameter :: broken_pipe = 13, file_size = 25
     integer(c_int) :: ignored
@@ -177,8 +176,7 @@ contains
     ignored = c_on_exit(c_funloc(judge_exit), c_loc(ended))
   end subroutine watch_exit
 
-  !> What `exit` calls. Status 1 is that of memory that could not be had, with the Fortran runtime and with
-  !! OpenBLAS.
+  !> Handler of `exit`. The Fortran runtime and OpenBLAS use status 1 if an allocation fails.
   subroutine judge_exit(status, ended) bind(c)
     integer(c_int), value :: status
     type(c_ptr), value :: ended
@@ -187,11 +185,11 @@ contains
     call c_f_pointer(ended, in_order)
     if (in_order) return
     if (status == 1) call stop_now(status_usage, &
-      'there is not enough memory, or less is allowed (ulimit -v, -s, OMP_STACKSIZE)')
+      'not enough memory is free or allowed: raise ulimit -v, ulimit -s or OMP_STACKSIZE')
     call stop_now(status_internal, 'internal error: please report it with the deck')
   end subroutine judge_exit
 
-  !> End at once, and say why.
+  !> End the program at once with a message.
   subroutine stop_now(status, message)
     integer, intent(in) :: status            !! of the program
     character(len=*), intent(in) :: message   !! one line

@@ -1,5 +1,5 @@
-!> How far a run is, on standard error: on a terminal one line, drawn anew after each solve and erased at the
-!> end; else, where it is asked for, a line a solve. And what --timing prints: where its time went.
+!> Progress of a run on standard error. On a terminal it is one line, replaced after each solve and erased at
+!> the end; otherwise, if requested, one line for each solve. Also the table of --timing.
 module epcont_app_progress_display
   use epcont_app_process, only: print_error, terminal_columns
   use epcont_base_kinds, only: i8, wp
@@ -11,14 +11,14 @@ module epcont_app_progress_display
   private
   public :: progress_type, progress_line, duration, timing_text
 
-  !> Run time below which no progress is shown [s], and operations of a solve below which none is before it.
+  !> Shortest run time with progress [s], and fewest operations of a solve with progress before it.
   real(wp), parameter :: short_run = 1.0_wp, short_solve = 2.0e10_wp
 
   type, extends(observer) :: progress_type
     character(len=:), allocatable, private :: stem   !! of the deck
     logical, private :: on_terminal = .false.
-    real(wp), private :: silent_to = 0.0_wp          !! nothing is shown of runs that are shorter [s]
-    integer, private :: drawn = 0                    !! characters that stand on the terminal
+    real(wp), private :: silent_to = 0.0_wp          !! run time before progress is shown [s]
+    integer, private :: drawn = 0                    !! number of characters on the terminal
     real(wp), private :: operations = 0.0_wp         !! of a solve
   contains
     procedure :: begin
@@ -29,12 +29,12 @@ module epcont_app_progress_display
 
 contains
 
-  !> A deck begins.
+  !> Begin the progress of a deck.
   subroutine begin(self, stem, asked, quiet)
     class(progress_type), intent(out) :: self
     character(len=*), intent(in) :: stem   !! of the deck
-    logical, intent(in) :: asked   !! for every solve of every run, wherever standard error goes
-    logical, intent(in) :: quiet   !! nothing but what is asked for
+    logical, intent(in) :: asked   !! show every solve of every run, on any standard error
+    logical, intent(in) :: quiet   !! show only requested output
 
     self%stem = stem
     self%on_terminal = terminal_columns() > 0
@@ -42,7 +42,7 @@ contains
     call self%start()
   end subroutine begin
 
-  !> The plan is made; solves begin.
+  !> Announce the solves after the plan.
   subroutine expect(self, operations)
     class(progress_type), intent(inout) :: self
     real(wp), intent(in) :: operations   !! of a solve
@@ -51,15 +51,15 @@ contains
     call show(self, iteration_record())
   end subroutine expect
 
-  !> A solve has been done.
+  !> Show the progress after a solve.
   subroutine solved(self, now)
     class(progress_type), intent(inout) :: self
-    type(iteration_record), intent(in) :: now   !! what it is like
+    type(iteration_record), intent(in) :: now   !! data of the solve
 
     call show(self, now)
   end subroutine solved
 
-  !> Show how far it is, where that is wanted.
+  !> Show the progress, if requested.
   subroutine show(self, now)
     class(progress_type), intent(inout) :: self
     type(iteration_record), intent(in) :: now
@@ -68,7 +68,7 @@ contains
 
     if (self%elapsed() < self%silent_to .and. .not. &
         (now%iteration == 0 .and. self%operations >= short_solve .and. self%silent_to <= short_run)) return
-    ! A line that fills the last column may go on in the next row, where it could not be erased.
+    ! A line that fills the last column may continue in the next row, where it cannot be erased.
     width = merge(terminal_columns() - 1, huge(1), self%on_terminal)
     line = progress_line(self%stem, self%elapsed(), self%operations, now, width)
     if (self%on_terminal) then
@@ -79,7 +79,7 @@ contains
     end if
   end subroutine show
 
-  !> Take the line off the terminal, before anything else is written there.
+  !> Erase the line on the terminal before other output.
   subroutine erase(self)
     class(progress_type), intent(inout) :: self
 
@@ -87,8 +87,8 @@ contains
     self%drawn = 0
   end subroutine erase
 
-  !> Elapsed time, then the work of a solve, or what the last solve has found, in the words of the listing. Of
-  !! a line that would be longer than `width` the last parts are left out, whole.
+  !> Make the progress line: elapsed time, then the operations of a solve, or the results of the last solve,
+  !! in the words of the listing. If the line is longer than `width`, its last parts are omitted.
   pure function progress_line(stem, elapsed, operations, now, width) result(text)
     character(len=*), intent(in) :: stem             !! name of the deck
     real(wp), intent(in) :: elapsed                  !! [s]
@@ -102,17 +102,17 @@ contains
     more = ', solving: '//short_real(operations)//' operations'
     if (now%iteration > 0) then
       more = ', iteration '//text_of(now%iteration)//', load factor '//short_real(now%load_factor)// &
-             ', change '//rounding_number(now%change)//', yielded '//text_of(now%yielded)//', touching '// &
+             ', change '//rounding_number(now%change)//', yielded '//text_of(now%yielded)//', in contact '// &
              text_of(now%touching)
     end if
     room = max(0, width - len(text))
     if (len(text) > width) text = text(:width)
-    ! A comma just behind the last column ends a part that has room.
+    ! a comma right after the last column ends a complete part
     if (len(more) > room) more = more(:index(more(:room + 1), ',', back=.true.) - 1)
     text = text//more
   end function progress_line
 
-  !> Seconds, minutes or hours in two or three digits.
+  !> Write a duration as seconds, minutes or hours, in two or three digits.
   pure function duration(seconds) result(text)
     real(wp), intent(in) :: seconds   !! a time [s]
     character(len=:), allocatable :: text
@@ -128,8 +128,8 @@ contains
     end if
   end function duration
 
-  !> A row a stage; each begins with the name of the deck, so that those of many decks in one file can be told
-  !! apart.
+  !> Make the table of --timing, one row for each stage. Each row begins with the name of the deck, so that
+  !! several decks can share a file.
   pure function timing_text(stem, watch, peak) result(text)
     character(len=*), intent(in) :: stem    !! name of the deck
     class(stopwatch), intent(in) :: watch   !! times of the stages

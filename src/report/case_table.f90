@@ -1,4 +1,4 @@
-!> The load cases of a deck side by side: what came of each, in a row.
+!> Table of the load cases of a deck: the outcome of each in one row.
 module epcont_report_case_table
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: short_real, text_of
@@ -11,36 +11,36 @@ module epcont_report_case_table
   private
   public :: accuracy_text, case_row, put_cases, put_worst_case, row_of_case
 
-  !> What came of a case. Numbers are those of its summary; negative where they are not known.
+  !> Outcome of a load case. Numbers are those of its summary; negative if unknown.
   type :: case_row
     integer :: subcase = 0                     !! its number
-    logical :: has_answer = .false.            !! else nothing below is known, but for its status
-    character(len=20) :: status = ''           !! in a word
-    character(len=16) :: limit = ''            !! what the largest pressure is
+    logical :: has_answer = .false.            !! false: only the status is known
+    character(len=20) :: status = ''           !! in one word
+    character(len=16) :: limit = ''            !! bounded, singular ... (largest pressure)
     integer :: touching = 0, plastic = 0       !! pairs, elements
-    real(wp) :: pressure = -1.0_wp, pressure_error = -1.0_wp   !! the largest [stress]
-    real(wp) :: half_width = -1.0_wp           !! of the zone that has it [length]
-    real(wp) :: approach = unknown             !! of the first free motion [length]
-    real(wp) :: residual = unknown             !! of the certificate's equilibrium, relative
-    real(wp) :: energy_norm = unknown          !! error of the mesh, relative
+    real(wp) :: pressure = -1.0_wp, pressure_error = -1.0_wp   !! largest [stress]
+    real(wp) :: half_width = -1.0_wp           !! of the zone with this pressure [length]
+    real(wp) :: approach = unknown             !! of the first rigid-body mode [length]
+    real(wp) :: residual = unknown             !! equilibrium residual of the certificate, relative
+    real(wp) :: energy_norm = unknown          !! mesh error, relative
   end type case_row
 
   type(column), parameter, public :: case_columns(*) = [ &
     column(whole, 'subcase', '', 'its number', 'SUBCASE', 10), &
-    column(word, 'status', '', 'what came of it, in a word', width=20), &
+    column(word, 'status', '', 'its outcome', width=20), &
     column(whole, 'pairs_in_contact', '', 'pairs in contact', 'in contact', 11), &
     column(whole, 'plastic_elements', '', 'yielded elements', 'yielded', 9), &
-    column(known, 'max_pressure', stress, 'empty: no boundary, or no answer', 'p_max'), &
-    column(estimate, 'mesh_error_max_pressure', stress, 'empty: not known', 'p_max error', 13), &
+    column(known, 'max_pressure', stress, 'empty if there is no boundary or no answer', 'p_max'), &
+    column(estimate, 'mesh_error_max_pressure', stress, 'empty if unknown', 'p_max error', 13), &
     column(word, 'max_pressure_is', '', 'bounded, singular, mesh too coarse, no contact', 'p_max is', 17), &
-    column(known, 'half_width', length, 'of the zone with that pressure; empty: not known', 'half-width'), &
+    column(known, 'half_width', length, 'of the zone with that pressure; empty if unknown', 'half-width'), &
     column(number, 'approach', length, 'of the first SUPORT DOF'), &
     column(rounding, 'equilibrium_residual', '', 'of the certificate, relative', 'residual', 11), &
     column(part, 'mesh_error_energy_norm', '', 'relative', 'energy error', 14)]
 
 contains
 
-  !> What came of the load case at hand.
+  !> Collect the outcome of the current load case.
   pure type(case_row) function row_of_case(run) result(row)
     type(run_results), intent(in) :: run   !! what is known of the run
 
@@ -63,7 +63,7 @@ contains
 
   !> Write the table.
   subroutine put_cases(row, table)
-    type(case_row), intent(in) :: row(:)       !! of all cases
+    type(case_row), intent(in) :: row(:)       !! of all load cases
     type(table_type), intent(inout) :: table   !! the listing, or a file
     integer :: k
 
@@ -96,11 +96,11 @@ contains
     character(len=:), allocatable :: text
 
     if (row%pressure <= 0.0_wp) then
-      text = 'not known: no pair has a pressure'
+      text = 'unknown: no pair has a pressure'
     else if (row%limit == unbounded) then
       text = 'not possible: the largest pressure is singular'
     else if (row%pressure_error < 0.0_wp) then
-      text = 'not known: too few pairs are in contact'
+      text = 'unknown: too few pairs are in contact'
     else
       text = when(relative_error(row) > wanted, 'not reached', 'reached')// &
              ': the estimated mesh error is '//estimate_number(relative_error(row))
@@ -110,7 +110,7 @@ contains
   !> Name the load case with the largest relative error.
   subroutine put_worst_case(row, wanted, listing)
     type(case_row), intent(in) :: row(:)       !! of all load cases
-    real(wp), intent(in) :: wanted             !! PARAM ACCURACY, relative; 0 if there is none
+    real(wp), intent(in) :: wanted             !! PARAM ACCURACY, relative; 0 if not set
     type(table_type), intent(inout) :: listing
     character(len=:), allocatable :: text
     integer :: worst

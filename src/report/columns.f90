@@ -33,7 +33,7 @@ module epcont_report_columns
   !> Characters of the longest word, which is a key of the summary.
   integer, parameter :: longest_cell = 40
 
-  !> Units.
+  !> Units of columns.
   character(len=*), parameter, public :: length = 'length', force = 'force', stress = 'force/length2'
 
   !> Larger values are written as `> 10` and `> 1E6`: rounding changes their digits.
@@ -64,7 +64,7 @@ module epcont_report_columns
 
 contains
 
-  !> Describe the columns of a file for the manual page: `x, y (GRID B as drawn; length), force (...)`.
+  !> Describe the columns of a file for the manual page: `x, y (undeformed GRID B; length), force (...)`.
   pure function columns_text(columns) result(text)
     type(column), intent(in) :: columns(:)   !! in the order of the file
     character(len=:), allocatable :: meaning, text
@@ -88,9 +88,9 @@ contains
   !> Write the heading and the heads of the columns.
   subroutine begin(self, title, columns, scale)
     class(table_type), intent(inout) :: self
-    character(len=*), intent(in) :: title        !! of the section of the listing; empty: none
+    character(len=*), intent(in) :: title        !! of the section of the listing; empty if it has none
     type(column), intent(in) :: columns(:)       !! in their order
-    real(wp), intent(in), optional :: scale(:)   !! of each number: the largest of its column; not given: 0
+    real(wp), intent(in), optional :: scale(:)   !! of each number: the largest of its column; default 0
     integer :: i, sort(size(columns))
 
     sort = max(word, min(columns%kind, 1))
@@ -107,8 +107,9 @@ contains
   subroutine row(self, wholes, numbers, words)
     class(table_type), intent(inout) :: self
     integer, intent(in) :: wholes(:)           !! ids and counts, in the order of the columns
-    real(wp), intent(in) :: numbers(:)         !! in that order
-    character(len=*), intent(in), optional :: words(:)   !! in that order; not given: no column has any
+    real(wp), intent(in) :: numbers(:)         !! in the order of the columns
+    character(len=*), intent(in), optional :: words(:)   !! in the order of the columns; absent if no column
+                                                         !! has words
     character(len=longest_cell) :: cell(size(self%column))
     integer :: i
 
@@ -178,7 +179,7 @@ contains
   pure function listed_number(kind, value, scale) result(text)
     integer, intent(in) :: kind   !! one of the kinds above
     real(wp), intent(in) :: value   !! the number
-    real(wp), intent(in) :: scale   !! largest magnitude of its column; of an estimate: what it is an error of
+    real(wp), intent(in) :: scale   !! largest magnitude of its column; for an estimate: the estimated value
     character(len=:), allocatable :: text
 
     text = '-'
@@ -201,7 +202,7 @@ contains
       text = estimate_number(value)
       if (value > largest_factor) text = '> '//estimate_number(largest_factor)
     case (part)
-      text = right(percent(value, 1.0_wp), 15)   ! the sign stands behind the column
+      text = right(percent(value, 1.0_wp), 15)   ! the per cent sign is right of the column
     end select
   end function listed_number
 
@@ -220,7 +221,7 @@ contains
   !> Write a number for a column of the listing: six digits in 13 characters.
   pure function column_number(value, scale) result(text)
     real(wp), intent(in) :: value
-    real(wp), intent(in) :: scale  !! of the column: its largest magnitude
+    real(wp), intent(in) :: scale  !! largest magnitude of its column
     character(len=13) :: text
 
     if (abs(value) <= rounded_off*scale .or. value == 0.0_wp) then
@@ -232,8 +233,8 @@ contains
     end if
   end function column_number
 
-  !> Write a figure that is rounding in a valid answer as upper bound, `< 1E-12` or more, because rounding
-  !! differs between builds. Larger figures have two digits.
+  !> Write a number that is rounding in a valid answer as upper bound, `< 1E-12` or more, because rounding
+  !! differs between builds. Larger numbers have two digits.
   pure function rounding_number(value) result(text)
     real(wp), intent(in) :: value   !! the number
     character(len=:), allocatable :: text

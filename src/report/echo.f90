@@ -1,4 +1,4 @@
-!> The cards of a deck in the listing, where case control asks for them by ECHO.
+!> List the cards of a deck if case control has ECHO.
 module epcont_report_echo
   use epcont_base_sorting, only: sorted_order
   use epcont_base_text, only: text_of
@@ -11,16 +11,16 @@ module epcont_report_echo
   private
   public :: list_cards
 
-  !> Columns of a line of the deck in one of the listing; what is longer goes on in the next.
+  !> Width of the deck's text in the listing; longer lines are continued.
   integer, parameter :: width = 120
 
 contains
 
-  !> The lines of the deck that are not blank, as they stand, and its cards by their names, without comments.
+  !> List the lines of the deck that are not blank, unchanged, or its cards sorted by name, without comments.
   subroutine list_cards(file, deck)
     class(text_file), intent(inout) :: file   !! the listing
     type(deck_type), intent(in) :: deck       !! with its text
-    integer, allocatable :: place(:)   ! of each kind of cards, by name
+    integer, allocatable :: place(:)   ! of each card name
     integer :: k, line
 
     if (deck%echo_unsorted) then
@@ -38,7 +38,7 @@ contains
 
   contains
 
-    !> Cards of one kind by their numbers, with the lines that continue them.
+    !> List cards of one name by their ids, with their continuation lines.
     subroutine list_kind(kind)
       integer, intent(in) :: kind
       integer, allocatable :: order(:)
@@ -56,7 +56,7 @@ contains
       end do
     end subroutine list_kind
 
-    !> A line with its number in its file, unless it is blank.
+    !> List a line with its number in its file, unless it is blank.
     subroutine list_line(line, said)
       integer, intent(in) :: line
       character(len=*), intent(in) :: said

@@ -1,7 +1,7 @@
-!> Texts by lines: in memory, or as files that appear whole or not at all: written beside their place, then
-!> renamed. And the right to write the files of one name.
+!> Texts by lines, in memory or as files. A file appears whole or not at all: it is written under a temporary
+!> name, then renamed. A lock gives one run the right to write the files of one name.
 !>
-!> They are written by the streams of C, which say whether all has reached the disk; Fortran's `close` does
+!> Files are written by C streams, which report whether all data has reached the disk; Fortran's `close` does
 !> not.
 module epcont_report_file
   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_f_pointer, c_int, c_null_char, c_null_ptr, &
@@ -12,11 +12,11 @@ module epcont_report_file
   private
   public :: text_file, new_text_file, make_directory, remove_file, file_lock, lock_files, unlock_files
 
-  !> Between `new_text_file` and `finish` the program is not to be stopped, lest half a file stay behind.
+  !> Between `new_text_file` and `finish`, stop signals wait, so that no partial file remains.
   type :: text_file
-    character(len=:), allocatable :: text   !! of one in memory, and room for more
-    integer, private :: used = 0            !! of that
-    character(len=40) :: mark = ''          !! stands behind each heading; empty where the answer is valid
+    character(len=:), allocatable :: text   !! of a text in memory, with free space
+    integer, private :: used = 0            !! characters in use
+    character(len=40) :: mark = ''          !! follows each heading; empty if the answer is valid
     type(c_ptr), private :: stream = c_null_ptr
     character(len=:), allocatable, private :: path
   contains
@@ -31,14 +31,14 @@ module epcont_report_file
 
   integer(c_int), parameter :: no_file = -1
 
-  !> The right to write the files of one name, till it is given back or the process ends, however it ends.
+  !> The right to write the files of one name, until it is released or the process ends in any way.
   type :: file_lock
     private
     integer(c_int) :: descriptor = no_file
     character(len=:), allocatable :: path
   end type file_lock
 
-  !> SIGHUP, SIGINT and SIGTERM: who sends these wants the program to end in good order.
+  !> SIGHUP, SIGINT and SIGTERM: requests to end in good order.
   integer(c_int), parameter :: stop_signals(3) = [1_c_int, 2_c_int, 15_c_int]
 
   interface
@@ -104,7 +104,7 @@ module epcont_report_file
 
 contains
 
-  !> Make a directory, where there is none; that it cannot be written to shows when a file is opened.
+  !> Make a directory, if it does not exist. Errors appear when a file is opened.
   subroutine make_directory(path)
     character(len=*), intent(in) :: path   !! of the directory
     integer(c_int), parameter :: all_may = int(o'777', c_int)
@@ -113,7 +113,7 @@ contains
     ignored = c_mkdir(path//c_null_char, all_may)
   end subroutine make_directory
 
-  !> Remove a file, where there is one.
+  !> Remove a file, if it exists.
   subroutine remove_file(path)
     character(len=*), intent(in) :: path   !! of the file
     integer(c_int) :: ignored
@@ -121,15 +121,16 @@ contains
     ignored = c_unlink(path//c_null_char)
   end subroutine remove_file
 
-  !> Take the right to write the files that begin with `stem`. What tells others is a lock of the system on a
-  !! file beside them: one that a killed process left behind is free. Where there can be no such file that
-  !! shows when results are written, and where the file system knows no locks there is none.
+  !> Lock the files that begin with `stem`. The lock is a system lock on a file beside them, which ends with a
+  !! killed process. If this file cannot be made, the error appears when results are written. File systems
+  !! without locks have no protection.
   subroutine lock_files(stem, lock, error)
     character(len=*), intent(in) :: stem                  !! path of the files, without their suffixes
-    type(file_lock), intent(out) :: lock                  !! the right, where it could be taken
-    type(error_type), allocatable, intent(out) :: error   !! another run has it
+    type(file_lock), intent(out) :: lock                  !! valid if the lock was taken
+    type(error_type), allocatable, intent(out) :: error   !! another run has the lock
     integer(c_int), parameter :: exclusive_at_once = 6, would_wait = 11   ! LOCK_EX + LOCK_NB, EWOULDBLOCK
-    integer(c_int), parameter :: duplicate = 0, first = 3   ! F_DUPFD; the first that is no standard stream
+    integer(c_int), parameter :: duplicate = 0, first = 3   ! F_DUPFD; the first descriptor after the standard
+                                                            ! streams
     integer(c_int), pointer :: errno
     type(c_ptr) :: stream
     integer(c_int) :: ignored
@@ -139,7 +140,7 @@ contains
     do
       stream = c_fopen(lock%path//c_null_char, 'a'//c_null_char)
       if (.not. c_associated(stream)) return
-      ! not in the place of a standard stream that is closed, or what is printed would go there
+      ! if a standard stream is closed, its descriptor must stay unused, or output would go to this file
       lock%descriptor = c_fcntl(c_fileno(stream), duplicate, first)
       ignored = c_fclose(stream)
       if (lock%descriptor == no_file) return
@@ -153,11 +154,11 @@ contains
       end if
       inquire (file=lock%path, exist=exists)
       if (exists) return
-      call close_lock(lock)   ! who had it has removed it since we opened it
+      call close_lock(lock)   ! the previous owner has removed the file after we opened it
     end do
   end subroutine lock_files
 
-  !> Close its file.
+  !> Close the lock file.
   subroutine close_lock(lock)
     type(file_lock), intent(inout) :: lock
     integer(c_int) :: ignored
@@ -166,9 +167,9 @@ contains
     lock%descriptor = no_file
   end subroutine close_lock
 
-  !> Give it back.
+  !> Release the lock.
   subroutine unlock_files(lock)
-    type(file_lock), intent(inout) :: lock   !! the right, which ends
+    type(file_lock), intent(inout) :: lock   !! ends here
 
     if (lock%descriptor == no_file) return
     call remove_file(lock%path)
@@ -187,10 +188,10 @@ contains
     if (c_associated(file%stream)) return
     call hold_signals(.false.)
     call raise(error, status_usage, path// &
-               ': cannot be written: a directory that is there, writable, would be right')
+               ': cannot be written: the directory does not exist or is not writable')
   end subroutine new_text_file
 
-  !> Add a line, without blanks at its end. What goes wrong shows in `finish`.
+  !> Append a line, without trailing blanks. `finish` reports write errors.
   subroutine line(self, text)
     class(text_file), intent(inout) :: self
     character(len=*), intent(in) :: text   !! of the line
@@ -199,7 +200,7 @@ contains
     call put(self, newline)
   end subroutine line
 
-  !> Add a line, two blanks from the margin.
+  !> Append a line, indented by two blanks.
   subroutine say(self, text)
     class(text_file), intent(inout) :: self
     character(len=*), intent(in) :: text   !! of the line
@@ -207,7 +208,7 @@ contains
     call self%line('  '//text)
   end subroutine say
 
-  !> Add characters.
+  !> Append characters.
   subroutine put(self, text)
     class(text_file), intent(inout) :: self
     character(len=*), intent(in) :: text
@@ -218,7 +219,7 @@ contains
       ignored = c_fwrite(text, 1_c_size_t, len(text, kind=c_size_t), self%stream)
       return
     end if
-    if (self%used + len(text) > len(self%text)) then   ! room doubles
+    if (self%used + len(text) > len(self%text)) then   ! double the space
       allocate (character(len=2*(self%used + len(text))) :: longer)
       longer(:self%used) = self%text(:self%used)
       call move_alloc(longer, self%text)
@@ -227,7 +228,7 @@ contains
     self%used = self%used + len(text)
   end subroutine put
 
-  !> Add what another holds in memory.
+  !> Append the text that another object holds in memory.
   subroutine add(self, other, without_head)
     class(text_file), intent(inout) :: self
     class(text_file), intent(in) :: other
@@ -239,14 +240,14 @@ contains
     call put(self, other%text(first:other%used))
   end subroutine add
 
-  !> Is there nothing in memory?
+  !> Is no text in memory?
   pure logical function is_empty(self)
     class(text_file), intent(in) :: self
 
     is_empty = self%used == 0
   end function is_empty
 
-  !> The lines in memory.
+  !> Return the lines in memory.
   pure function lines(self) result(text)
     class(text_file), intent(in) :: self
     character(len=:), allocatable :: text
@@ -254,7 +255,7 @@ contains
     text = self%text(:self%used)
   end function lines
 
-  !> Add a blank line and a heading, marked where the answer is not valid.
+  !> Append a blank line and a heading, marked if the answer is not valid.
   subroutine heading(self, text)
     class(text_file), intent(inout) :: self
     character(len=*), intent(in) :: text   !! of the heading
@@ -263,7 +264,7 @@ contains
     call self%line(text//self%mark)
   end subroutine heading
 
-  !> Close the file and give it its name.
+  !> Close the file and rename it.
   subroutine finish(self, error)
     class(text_file), intent(inout) :: self
     type(error_type), allocatable, intent(out) :: error   !! the file cannot be written
@@ -280,7 +281,7 @@ contains
     call hold_signals(.false.)
   end subroutine finish
 
-  !> Signals to stop wait, or no longer: what has come meanwhile then stops the program.
+  !> Delay stop signals, or deliver them: then a delayed signal stops the program.
   subroutine hold_signals(hold)
     logical, intent(in) :: hold
     integer(c_int) :: ignored

@@ -1,4 +1,4 @@
-!> All files of a run: the listing (ASCII, at most 132 columns, with nothing that varies from run to run) and
+!> All files of a run: the listing (ASCII, at most 132 columns, without data that varies from run to run) and
 !> the tables. Several load cases are added one by one, and written after the last.
 module epcont_report_results
   use epcont_base_error, only: error_type
@@ -18,29 +18,29 @@ module epcont_report_results
   private
   public :: results_type, remove_results
 
-  !> A file of results: what stands behind the name of the deck, and what it holds.
+  !> A file of results: its suffix after the name of the deck, and its contents.
   type :: result_file
     character(len=14) :: suffix
     character(len=76) :: text
   end type result_file
 
   type(result_file), parameter, public :: result_files(*) = [ &
-    result_file('.lst', 'the listing, for people and for diffing: the same bytes on every run'), &
+    result_file('.lst', 'the listing; the same bytes on every run'), &
     result_file('.summary.csv', &
-                'outcome, approaches, certificate and accuracy, in 17 digits like all tables'), &
+                'outcome, approaches, certificate and accuracy; 17 digits as in all tables'), &
     result_file('.contact.csv', 'the pairs'), &
-    result_file('.zones.csv', 'runs of touching pairs'), &
-    result_file('.bodies.csv', 'what contact exerts on each body'), &
+    result_file('.zones.csv', 'the contact zones: runs of neighbouring pairs in contact'), &
+    result_file('.bodies.csv', 'the contact resultant on each body'), &
     result_file('.history.csv', 'the iterations'), &
     result_file('.pivots.csv', 'the pivots of each iteration by RULE CONRY, with --tables all'), &
-    result_file('.nodes.csv', 'the nodes, where the deck or --tables all asks for it'), &
-    result_file('.elements.csv', 'the elements, where the deck or --tables all asks for it'), &
-    result_file('.cases.csv', 'the load cases, where the deck has more than one'), &
+    result_file('.nodes.csv', 'the nodes, if the deck or --tables all asks for them'), &
+    result_file('.elements.csv', 'the elements, if the deck or --tables all asks for them'), &
+    result_file('.cases.csv', 'the load cases, if there are several'), &
     result_file('.vtu', 'the bodies, for ParaView, with --vtk: displacements, stresses, states'), &
     result_file('.contact.vtu', 'the boundary in contact, for ParaView, with --vtk: pressures, gaps'), &
-    result_file('.pvd', 'of several load cases: DECK.caseN.vtu and .caseN.contact.vtu, for ParaView')]
+    result_file('.pvd', 'for ParaView: index of DECK.caseN.vtu and .caseN.contact.vtu, for load cases')]
 
-  !> The first of these are the listing, the summary, and tables with rows of each load case.
+  !> The first files are the listing, the summary, and tables with rows of each load case.
   integer, parameter :: listing = 1, summary = 2, of_each_case = 9
 
   !> Results of one load case. If there are several, its part of each file is held in memory.
@@ -49,14 +49,14 @@ module epcont_report_results
     type(table_type) :: part(of_each_case)
   end type case_results
 
-  !> What a run writes, and what of several load cases is written already, in memory.
+  !> Output of a run; results of several load cases are kept in memory.
   type :: results_type
     character(len=:), allocatable :: stem             !! path of the files, without their suffixes
-    !> Asked for on the command line: tables of nodes and elements though the deck does not, the listing and
-    !! the summary alone, and files for ParaView
+    !> Command line: always write tables of nodes and elements; only the listing and the summary; files for
+    !! ParaView
     logical :: all_tables = .false., brief = .false., vtk = .false.
     type(case_results), allocatable, private :: case(:)
-    character(len=:), allocatable :: plan    !! of all scenes that cases make, in lines
+    character(len=:), allocatable :: plan    !! of all models of the load cases, in lines
   contains
     procedure :: begin
     procedure :: add_plan
@@ -67,25 +67,25 @@ module epcont_report_results
   type(column), parameter :: summary_columns(*) = [ &
     column(word, 'key'), column(word, 'value'), column(word, 'unit')]
 
-  !> Load cases that a plan is of are named, up to so many.
+  !> Largest number of load cases that a plan names.
   integer, parameter :: most_named = 12
 
 contains
 
-  !> Nothing is taken yet.
+  !> Begin the results of a run.
   subroutine begin(self, run)
     class(results_type), intent(inout) :: self
-    type(run_results), intent(in) :: run   !! whose load cases will come
+    type(run_results), intent(in) :: run   !! its load cases will follow
 
     if (.not. allocated(self%case)) allocate (self%case(size(run%deck%subcase)))
     self%plan = ''
   end subroutine begin
 
-  !> Take the plan of some load cases.
+  !> Add the plan of some load cases.
   subroutine add_plan(self, run, cases)
     class(results_type), intent(inout) :: self
     type(run_results), intent(in) :: run   !! with the plan
-    integer, intent(in) :: cases(:)        !! which
+    integer, intent(in) :: cases(:)        !! numbers of the load cases
 
     if (.not. run%has_cases()) then
       self%plan = plan_text(run%planned_model)
@@ -97,16 +97,16 @@ contains
     end if
   end subroutine add_plan
 
-  !> Take the results of a load case. Those of an only one are written.
+  !> Add the results of a load case. If there is only one, they are written.
   subroutine add_case(self, run, error)
     class(results_type), intent(inout) :: self
-    type(run_results), intent(in) :: run                  !! with the results of that case
+    type(run_results), intent(in) :: run                  !! with the results of this load case
     type(error_type), allocatable, intent(out) :: error   !! a file cannot be written
     type(figure_type), allocatable :: figures(:)
     integer :: k
 
     if (run%case == 1) call remove_results(self%stem)
-    ! Also if the run is stopped, the next run finds the files to remove.
+    ! If the run is stopped, the next run still finds the files to remove.
     if (run%case == 1 .and. self%vtk .and. run%has_cases()) &
       call write_collection(self%stem, run%deck%subcase%id, error)
     figures = summarise(run)
@@ -119,7 +119,7 @@ contains
       call write_vtk(run, self%stem//run%case_suffix(), error)
   end subroutine add_case
 
-  !> Has the load case such a file, and is it asked for?
+  !> Has the load case this file, and is it requested?
   pure logical function is_wanted(self, run, suffix)
     class(results_type), intent(in) :: self
     type(run_results), intent(in) :: run
@@ -141,12 +141,12 @@ contains
     end select
   end function is_wanted
 
-  !> Put the part of a load case in a file. An only load case writes it.
+  !> Write the part of a load case to a file. If there is only one load case, the file is complete.
   subroutine put_part(self, run, figures, k, part, error)
     class(results_type), intent(in) :: self
     type(run_results), intent(in) :: run
     type(figure_type), intent(in) :: figures(:)           !! of the summary
-    integer, intent(in) :: k                              !! which file
+    integer, intent(in) :: k                              !! number of the file
     type(table_type), intent(inout) :: part
     type(error_type), allocatable, intent(out) :: error
 
@@ -205,7 +205,7 @@ contains
       call write_collection(self%stem, pack(self%case%row%subcase, self%case%row%has_answer), error)
   end subroutine finish
 
-  !> Figures in full.
+  !> Write the summary in full digits.
   subroutine put_summary(figures, table)
     type(figure_type), intent(in) :: figures(:)
     type(table_type), intent(inout) :: table
@@ -218,7 +218,7 @@ contains
     end do
   end subroutine put_summary
 
-  !> Remove what an earlier run has left, also where this one is stopped, or has nothing to say.
+  !> Remove the results of an earlier run, also if this run is stopped or has no results.
   subroutine remove_results(stem)
     character(len=*), intent(in) :: stem   !! path of the files, without their suffixes
     integer, allocatable :: drawn(:)       ! load cases

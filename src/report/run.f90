@@ -1,4 +1,4 @@
-!> What is known of one deck's run: all that the listing, the tables and the messages are written from.
+!> State of the run of one deck: the input of the listing, the tables and the messages.
 module epcont_report_run
   use epcont_base_diagnostic, only: diagnostics
   use epcont_base_text, only: text_of
@@ -10,11 +10,11 @@ module epcont_report_run
   private
   public :: run_results
 
-  !> One deck's way, from its cards to its answer.
+  !> One deck, from its cards to its answer.
   type, extends(solution_type) :: run_results
-    type(deck_type), pointer :: deck => null()    !! shared by its load cases,
-    type(load_cases), pointer :: cases => null()  !! as these are
-    integer :: case = 1                           !! the one that is at hand
+    type(deck_type), pointer :: deck => null()    !! shared by its load cases
+    type(load_cases), pointer :: cases => null()  !! shared too
+    integer :: case = 1                           !! number of the current load case
     type(diagnostics) :: faults
     character(len=:), allocatable :: deck_notes   !! its warnings and notes, in lines
     type(outcome_type) :: outcome
@@ -34,8 +34,8 @@ contains
     has_cases = size(self%deck%subcase) > 1
   end function has_cases
 
-  !> What stands behind the name of the deck in those of files of one load case: `.case3`; empty where it is
-  !! the only one.
+  !> Suffix of the files of one load case, after the name of the deck: `.case3`; empty if there is only one
+  !! load case.
   pure function case_suffix(self) result(suffix)
     class(run_results), intent(in) :: self
     character(len=:), allocatable :: suffix
@@ -44,7 +44,7 @@ contains
     if (self%has_cases()) suffix = '.case'//text_of(self%deck%subcase(self%case)%id)
   end function case_suffix
 
-  !> The table of nodes is asked for.
+  !> Is the table of nodes requested?
   pure logical function wants_nodes(self, all_tables)
     class(run_results), intent(in) :: self
     logical, intent(in) :: all_tables   !! on the command line
@@ -53,7 +53,7 @@ contains
                   self%deck%subcase(self%case)%spcforces
   end function wants_nodes
 
-  !> The table of elements is asked for.
+  !> Is the table of elements requested?
   pure logical function wants_elements(self, all_tables)
     class(run_results), intent(in) :: self
     logical, intent(in) :: all_tables   !! on the command line

@@ -1,5 +1,5 @@
-!> The figures of a run. Each is said once: its key and unit in the file of the summary, its name and digits
-!> in the listing. The file has all of them in this order, the listing those that have a name, each in its
+!> The values of a run. Each is defined once: its key and unit in the file of the summary, its name and digits
+!> in the listing. The file has all of them in this order; the listing has those with a name, each in its
 !> section.
 module epcont_report_summary
   use epcont_base_kinds, only: wp
@@ -21,20 +21,20 @@ module epcont_report_summary
 
   character(len=*), parameter :: none = '', radian = 'radian'
 
-  integer, parameter :: room_at_first = 64   !! figures
+  integer, parameter :: room_at_first = 64   !! number of values
 
   type :: figure_type
     character(len=40) :: key = ''      !! in the file
     character(len=26) :: value = ''
     character(len=13) :: unit = ''
-    character(len=44) :: name = ''     !! in the listing; empty: it is not there
+    character(len=44) :: name = ''     !! in the listing; empty if it is not listed
     character(len=64) :: listed = ''   !! its value there
-    character(len=80) :: note = ''     !! what follows that
+    character(len=80) :: note = ''     !! text after the value
   end type figure_type
 
-  !> Figures, in the order in which they are put.
+  !> Values, in order.
   type :: figure_list
-    type(figure_type), allocatable :: figure(:)   !! and room for more
+    type(figure_type), allocatable :: figure(:)   !! with free space
     integer :: count = 0
   contains
     procedure, private :: put, list_as, put_word, put_error, append
@@ -42,7 +42,7 @@ module epcont_report_summary
 
 contains
 
-  !> All that is known of a run.
+  !> Collect all values of a run.
   function summarise(run) result(figures)
     type(run_results), intent(in) :: run   !! what is known of the run
     type(figure_type), allocatable :: figures(:)
@@ -62,7 +62,7 @@ contains
     figures = list%figure(:list%count)
   end function summarise
 
-  !> Contact, yielding and stresses.
+  !> Add contact, yielding and stresses.
   subroutine put_answer(run, figures)
     type(run_results), intent(in) :: run
     type(figure_list), intent(inout) :: figures
@@ -103,7 +103,7 @@ contains
     if (allocated(run%model%loads%free_strain)) call put_temperatures(run, figures)
   end subroutine put_answer
 
-  !> How far from those without strain they are, in elements that expand.
+  !> Add the lowest and highest temperatures, relative to TREF, of elements with thermal expansion.
   subroutine put_temperatures(run, figures)
     type(run_results), intent(in) :: run
     type(figure_list), intent(inout) :: figures
@@ -127,7 +127,7 @@ contains
     call figures%put('highest_temperature', 'temperature', number, highest, 'highest temperature, above TREF')
   end subroutine put_temperatures
 
-  !> How far the leaders of RBE2 have turned, and with which moments supports hold them.
+  !> Add the rotations of RBE2 master nodes, and the moments of their supports.
   subroutine put_platens(run, figures)
     type(run_results), intent(in) :: run
     type(figure_list), intent(inout) :: figures
@@ -144,7 +144,7 @@ contains
     end do
   end subroutine put_platens
 
-  !> Of the element that has it.
+  !> Add the largest equivalent stress, and its element.
   subroutine put_largest_stress(run, figures, element)
     type(run_results), intent(in) :: run
     type(figure_list), intent(inout) :: figures
@@ -161,7 +161,7 @@ contains
     call figures%put('max_equivalent_stress_y', length, number, place(2))
   end subroutine put_largest_stress
 
-  !> What the certificate has found; forces and gaps in the listing as parts of the largest.
+  !> Add the values of the certificate; in the listing, forces and gaps are relative to the largest.
   subroutine put_certificate(run, figures)
     type(run_results), intent(in) :: run
     type(figure_list), intent(inout) :: figures
@@ -190,8 +190,8 @@ contains
     end associate
   end subroutine put_certificate
 
-  !> The largest depth, the one that is worst by what is allowed, and that; 0 where it is so little that
-  !! rounding chooses the place.
+  !> Add the largest depth, and the worst by its tolerance with this tolerance; 0 if the depth is so small
+  !! that rounding chooses the point.
   subroutine put_places(figures, name, largest, worst)
     type(figure_list), intent(inout) :: figures
     character(len=*), intent(in) :: name
@@ -203,11 +203,11 @@ contains
                      merge(worst%allowed, 0.0_wp, worst%ratio >= little))
   end subroutine put_places
 
-  !> How exactly the equations were solved.
+  !> Add iteration error, condition number and rounding.
   subroutine put_iteration(run, figures)
     type(run_results), intent(in) :: run
     type(figure_list), intent(inout) :: figures
-    integer :: last   ! solve for the loads that the answer is for
+    integer :: last   ! the solve for the loads of the answer
 
     last = findloc(run%answer%history%load_factor, run%answer%load_factor, dim=1, back=.true.)
     call figures%put('condition', none, size_of, run%answer%condition, &
@@ -222,7 +222,8 @@ contains
       call figures%put('stress_below_curve', none, part, run%answer%shortfall)
   end subroutine put_iteration
 
-  !> What the mesh makes of the figures; `max_pressure_is` unbounded, or not resolved.
+  !> Add the mesh errors; `max_pressure_is` says whether the largest pressure is singular, or the mesh too
+  !! coarse.
   subroutine put_mesh_errors(run, figures)
     type(run_results), intent(in) :: run
     type(figure_list), intent(inout) :: figures
@@ -252,7 +253,7 @@ contains
         run%accuracy%total_force, sum(run%answer%contact%force), '')
   end subroutine put_mesh_errors
 
-  !> What rounding and errors of the stiffness make of the contact forces.
+  !> Add the effects of rounding and stiffness errors on contact forces.
   subroutine put_sensitivity(run, figures)
     type(run_results), intent(in) :: run
     type(figure_list), intent(inout) :: figures
@@ -264,7 +265,7 @@ contains
     call figures%put_word('weak_pairs', text_of(count(run%accuracy%weak)), '')
   end subroutine put_sensitivity
 
-  !> Of free motion k.
+  !> Unit of the displacement of rigid-body mode k.
   function motion_unit(run, k) result(unit)
     type(run_results), intent(in) :: run
     integer, intent(in) :: k
@@ -274,7 +275,7 @@ contains
     if (run%motions%component(k) == angle) unit = radian
   end function motion_unit
 
-  !> Of free motion k in the keys of figures: `12_2`.
+  !> Key of rigid-body mode k: `12_2`.
   function motion_key(run, k) result(key)
     type(run_results), intent(in) :: run
     integer, intent(in) :: k
@@ -283,7 +284,7 @@ contains
     key = text_of(run%model%mesh%node_id(run%motions%node(k)))//'_'//direction_of(run%motions, k)
   end function motion_key
 
-  !> Add a number; it has that many digits in the listing.
+  !> Add a number; its kind defines its digits in the listing.
   subroutine put(self, key, unit, kind, value, name, note)
     class(figure_list), intent(inout) :: self
     character(len=*), intent(in) :: key, unit
@@ -299,7 +300,7 @@ contains
     call self%append(figure)
   end subroutine put
 
-  !> Write the number that was added last in this way in the listing.
+  !> Replace the text of the last number in the listing.
   subroutine list_as(self, listed)
     class(figure_list), intent(inout) :: self
     character(len=*), intent(in) :: listed
@@ -311,12 +312,12 @@ contains
   subroutine put_word(self, key, word, name)
     class(figure_list), intent(inout) :: self
     character(len=*), intent(in) :: key, word
-    character(len=*), intent(in) :: name   !! in the listing; empty: it is not there
+    character(len=*), intent(in) :: name   !! in the listing; empty if it is not listed
 
     call self%append(figure_type(key, word, '', name, word))
   end subroutine put_word
 
-  !> Room doubles, since many bodies have many figures.
+  !> Append a value. Space doubles, since many bodies have many values.
   subroutine append(self, figure)
     class(figure_list), intent(inout) :: self
     type(figure_type), intent(in) :: figure
@@ -331,12 +332,12 @@ contains
     self%figure(self%count) = figure
   end subroutine append
 
-  !> Add an error of the mesh; the listing has it where it is known, or why it is not.
+  !> Add a mesh error; the listing shows it if it is known, otherwise the reason.
   subroutine put_error(self, key, unit, name, error, value, limit)
     class(figure_list), intent(inout) :: self
-    character(len=*), intent(in) :: key, unit, name   !! key and name are those of the figure
+    character(len=*), intent(in) :: key, unit, name   !! key and name are those of the value
     real(wp), intent(in) :: error, value
-    character(len=*), intent(in) :: limit             !! of the figure: `bounded`, `unbounded` ...
+    character(len=*), intent(in) :: limit             !! of the value: `bounded`, `singular` ...
     character(len=:), allocatable :: reason
 
     reason = reason_of(limit)

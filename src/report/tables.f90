@@ -15,30 +15,30 @@ module epcont_report_tables
   public :: columns_in, put_table
 
   type(column), parameter :: contact_columns(*) = [ &
-    column(whole, 'pair', '', 'id of the CGAP, or its own where lines are in contact', width=10), &
+    column(whole, 'pair', '', 'id of the CGAP; pairs of a BCONP have their own ids', width=10), &
     column(whole, 'ga', '', 'GRID A and GRID B', 'GA', 9), &
     column(whole, 'gb', '', '', 'GB', 9), &
-    column(number, 'x', length, 'GRID B as drawn'), &
+    column(number, 'x', length, 'undeformed GRID B'), &
     column(number, 'y'), &
-    column(number, 'nx', '', 'normal, along which B is pressed', width=0), &
+    column(number, 'nx', '', 'normal; contact pushes B along it', width=0), &
     column(number, 'ny', width=0), &
-    column(number, 'initial_gap', length, 'as drawn; negative: an overlap', width=0), &
+    column(number, 'initial_gap', length, 'undeformed; negative: initial overlap', width=0), &
     column(number, 'force', force, 'of contact'), &
-    column(known, 'pressure', stress, 'empty where no boundary belongs to the pair'), &
+    column(known, 'pressure', stress, 'empty if no boundary belongs to the pair'), &
     column(number, 'gap', length, 'under load'), &
     column(state, 'status', '', 'touching or open', 'state', 10), &
     column(word, width=1)]
 
   type(column), parameter :: zone_columns(*) = [ &
-    column(whole, 'zone', '', 'a run of neighbouring pairs that touch', width=8), &
+    column(whole, 'zone', '', 'number of the run of neighbouring pairs in contact', width=8), &
     column(whole, 'first_pair', '', 'pairs at its ends', 'first pair', 11), &
     column(whole, 'last_pair', '', '', 'last pair', 11), &
     column(number, 'force', force, 'sum over its pairs'), &
-    column(known, 'max_pressure', stress, 'empty where no boundary belongs to its pairs', 'max pressure'), &
-    column(number, 'half_width_last_pair', length, 'half of the way between its last pairs', &
+    column(known, 'max_pressure', stress, 'empty if no boundary belongs to its pairs', 'max pressure'), &
+    column(number, 'half_width_last_pair', length, 'half of the distance between its last pairs', &
            'to last closed', 16), &
-    column(known, 'half_width', length, 'to where the pressure vanishes; empty: not known', 'half-width'), &
-    column(word, 'max_pressure_is', '', 'bounded, singular or mesh too coarse; empty: not known', width=0)]
+    column(known, 'half_width', length, 'half-length to zero pressure; empty if unknown', 'half-width'), &
+    column(word, 'max_pressure_is', '', 'bounded, singular or mesh too coarse; empty if unknown', width=0)]
 
   type(column), parameter :: line_columns(*) = [ &
     column(word, head='BCONP', width=10), column(word, head='slave', width=9), &
@@ -50,15 +50,15 @@ module epcont_report_tables
   type(column), parameter :: body_columns(*) = [ &
     column(whole, 'body', '', 'its number', width=10), &
     column(whole, 'first_node', '', 'its first GRID', 'first GRID', 12), &
-    column(number, 'force_x', force, 'of contact on the body; empty: rings have no x', 'force x'), &
+    column(number, 'force_x', force, 'contact resultant; x is empty for axisymmetric bodies', 'force x'), &
     column(estimate, head='error', width=12), &
     column(number, 'force_y', '', '', 'force y'), &
-    column(estimate, 'mesh_error_x', force, 'what the mesh may add to that; empty: not known', width=0), &
+    column(estimate, 'mesh_error_x', force, 'estimated mesh error of the force; empty if unknown', width=0), &
     column(estimate, 'mesh_error_y', '', '', 'error', 12)]
 
   type(column), parameter :: node_columns(*) = [ &
     column(whole, 'node', '', 'id of the GRID', 'GRID', 10), &
-    column(number, 'x', length, 'as drawn'), &
+    column(number, 'x', length, 'undeformed'), &
     column(number, 'y'), &
     column(number, 'ux', length, 'displacement'), &
     column(number, 'uy'), &
@@ -67,7 +67,7 @@ module epcont_report_tables
 
   type(column), parameter :: element_columns(*) = [ &
     column(whole, 'element', '', 'its id', width=10), &
-    column(number, 'x', length, 'mean of its nodes, as drawn', width=0), &
+    column(number, 'x', length, 'mean of its undeformed nodes', width=0), &
     column(number, 'y', width=0), &
     column(number, 'sx', stress, 'means over the element'), &
     column(number, 'sy'), &
@@ -76,11 +76,11 @@ module epcont_report_tables
     column(number, 'equivalent_stress', stress, 'von Mises, mean over the element', 'equivalent'), &
     column(number, 'max_equivalent_stress', stress, 'the largest of its integration points', 'largest'), &
     column(word, head='at GRID', width=9), &
-    column(number, 'max_x', length, 'that integration point, as drawn', width=0), &
+    column(number, 'max_x', length, 'undeformed position of that integration point', width=0), &
     column(number, 'max_y', width=0), &
     column(number, 'equivalent_strain', '', 'mean over the element', 'strain'), &
     column(number, 'secant_modulus', stress, 'of the curve at that strain', 'secant'), &
-    column(state, 'state', '', 'elastic or plastic, at any of its integration points', width=9)]
+    column(state, 'state', '', 'plastic if it has yielded at any of its integration points', width=9)]
 
   type(column), parameter :: history_columns(*) = [ &
     column(whole, 'iteration', '', 'counted through all load steps', width=0), &
@@ -96,8 +96,8 @@ module epcont_report_tables
   type(column), parameter :: pivot_columns(*) = [ &
     column(whole, 'iteration', '', 'counted through all load steps'), &
     column(whole, 'pivot', '', 'counted in the iteration; the first 50 are kept'), &
-    column(word, 'entered', '', 'the pair whose force or gap entered the basis, or the load'), &
-    column(word, 'left', '', 'the pair whose force or gap left it'), &
+    column(word, 'entered', '', 'pair whose force or gap entered the basis, or the load'), &
+    column(word, 'left', '', 'pair whose force or gap left the basis'), &
     column(number, 'load_factor', '', 'part of the loads after the pivot'), &
     column(number, 'ratio', '', 'growth of the variable that entered, in scaled units')]
 

@@ -1,8 +1,8 @@
-!> The bodies, and the boundary in contact, for ParaView: files of VTK's XML format for unstructured grids
+!> Files for ParaView: the bodies and the boundary in contact, as unstructured grids in VTK's XML format
 !> (`.vtu`), which meshio and pyvista read too.
 !>
-!> Numbers are in full, as base64 within the XML: the number of bytes (8 of its own), then the values. Points
-!> and vectors have three components, the third 0.
+!> Numbers are stored in full as base64: the number of bytes (itself 8 bytes), then the values. Points and
+!> vectors have three components; the third is 0.
 module epcont_report_vtk
   use, intrinsic :: iso_fortran_env, only: int8
   use epcont_base_base64, only: base64
@@ -19,29 +19,29 @@ module epcont_report_vtk
   private
   public :: collected, write_collection, write_vtk
 
-  !> Kinds of cells (vtkCellType.h).
+  !> Cell types (vtkCellType.h).
   integer, parameter :: vtk_vertex = 1, vtk_line = 3
 
-  !> How the points are joined. VTK has the nodes of an element in the order that the model has.
+  !> Cells of the grid. VTK and the model have the same order of nodes in an element.
   type :: vtk_cells
     integer, allocatable :: kind(:)     !! [cells]
-    integer, allocatable :: last(:)     !! of the points of each cell [cells]
-    integer, allocatable :: point(:)    !! of one cell after the other, counted from 1
+    integer, allocatable :: last(:)     !! last point of each cell [cells]
+    integer, allocatable :: point(:)    !! points of one cell after the other, numbered from 1
   end type vtk_cells
 
-  !> A file with a grid, and arrays of its points or cells.
+  !> A file with a grid, and arrays for its points or cells.
   type, extends(text_file) :: vtk_file
   contains
     procedure, private :: begin, end_grid, put_bytes, put_integers, put_reals, put_fields
     generic, private :: put => put_integers, put_reals, put_fields
   end type vtk_file
 
-  !> Begins the line of a load case in DECK.pvd.
+  !> Start of a line of a load case in DECK.pvd.
   character(len=*), parameter :: data_set = '<DataSet timestep="'
 
 contains
 
-  !> DECK.vtu, and DECK.contact.vtu where there are pairs.
+  !> Write DECK.vtu, and DECK.contact.vtu if there are pairs.
   subroutine write_vtk(run, stem, error)
     type(run_results), intent(in) :: run                  !! what is known of the run
     character(len=*), intent(in) :: stem                  !! path of the files, without their suffixes
@@ -51,7 +51,7 @@ contains
     if (run%model%contact%pairs > 0 .and. .not. allocated(error)) call write_contact(run, stem, error)
   end subroutine write_vtk
 
-  !> Bodies: nodes that belong to elements are the points, in the order of the deck; elements are the cells.
+  !> Write the bodies: points are the nodes of elements, in the order of the deck; cells are the elements.
   subroutine write_bodies(run, stem, error)
     type(run_results), intent(in) :: run
     character(len=*), intent(in) :: stem
@@ -94,8 +94,8 @@ contains
     call file%end_grid(error)
   end subroutine write_bodies
 
-  !> Contact: pairs are the points, each at its node of the boundary, in the order of the deck; cells are
-  !! the lines between neighbours, and the points of pairs that have none.
+  !> Write the contact: points are pairs, at their boundary nodes, in the order of the deck; cells are lines
+  !! between neighbours, and single pairs without neighbours.
   subroutine write_contact(run, stem, error)
     type(run_results), intent(in) :: run
     character(len=*), intent(in) :: stem
@@ -103,7 +103,7 @@ contains
     type(vtk_file) :: file
     type(contact_line) :: line
     type(vtk_cells) :: cells
-    integer, dimension(run%model%contact%pairs) :: bconp, zone   ! 0: of a CGAP; none
+    integer, dimension(run%model%contact%pairs) :: bconp, zone   ! 0 for a CGAP; 0 outside of zones
     real(wp) :: force(directions, run%model%contact%pairs)
     integer :: k
 
@@ -147,7 +147,7 @@ contains
     character(len=*), intent(in) :: path    !! of the file
     integer, intent(in) :: status           !! exit status of the run
     real(wp), intent(in) :: x(:, :)         !! of the points [length] [2, points]
-    type(vtk_cells), intent(in) :: cells    !! how the points are joined
+    type(vtk_cells), intent(in) :: cells    !! the cells
     type(error_type), allocatable, intent(out) :: error
 
     call new_text_file(path, self%text_file, error)
@@ -167,7 +167,7 @@ contains
     call self%line('</Cells>')
   end subroutine begin
 
-  !> Close the file and give it its name.
+  !> Close the file and rename it.
   subroutine end_grid(self, error)
     class(vtk_file), intent(inout) :: self
     type(error_type), allocatable, intent(out) :: error
@@ -176,7 +176,7 @@ contains
     call self%finish(error)
   end subroutine end_grid
 
-  !> One integer a point or cell.
+  !> Write one integer for each point or cell.
   subroutine put_integers(self, name, values)
     class(vtk_file), intent(inout) :: self
     character(len=*), intent(in) :: name   !! of the array
@@ -185,7 +185,7 @@ contains
     call self%put_bytes('Int32', name, '', transfer(values, [0_int8]))
   end subroutine put_integers
 
-  !> One real a point or cell.
+  !> Write one real for each point or cell.
   subroutine put_reals(self, name, values)
     class(vtk_file), intent(inout) :: self
     character(len=*), intent(in) :: name   !! of the array
@@ -194,7 +194,7 @@ contains
     call self%put_bytes('Float64', name, '', transfer(values, [0_int8]))
   end subroutine put_reals
 
-  !> One vector of the plane a point or cell, or one symmetric tensor, in VTK's order of components.
+  !> Write one plane vector or one symmetric tensor for each point or cell, in VTK's order of components.
   subroutine put_fields(self, name, values)
     class(vtk_file), intent(inout) :: self
     character(len=*), intent(in) :: name   !! of the array
@@ -211,7 +211,7 @@ contains
                         transfer(space, [0_int8]))
   end subroutine put_fields
 
-  !> One array, with further attributes, each behind a blank.
+  !> Write one array with more attributes, each after a blank.
   subroutine put_bytes(self, type, name, shape, bytes)
     class(vtk_file), intent(inout) :: self
     character(len=*), intent(in) :: type, name, shape
@@ -222,7 +222,7 @@ contains
     call self%line('</DataArray>')
   end subroutine put_bytes
 
-  !> Lines between neighbouring pairs, then pairs that have no neighbour.
+  !> Find lines between neighbouring pairs, then single pairs without neighbours.
   pure function cells_along(line) result(cells)
     type(contact_line), intent(in) :: line
     type(vtk_cells) :: cells
@@ -237,9 +237,9 @@ contains
         other = line%neighbour(i, k)
         if (other == 0) cycle
         if (any(line%neighbour(:, other) == k)) then
-          if (other < k) cycle   ! there is this line already
+          if (other < k) cycle   ! this line exists already
         else if (count(line%node == line%node(other)) > 1) then
-          cycle                  ! at a corner: the node's pair on the other face
+          cycle                  ! at a corner: the node's pair on the other edge
         end if
         segments = segments + 1
         segment(:, segments) = [k, other]
@@ -252,10 +252,10 @@ contains
     cells%point = [segment(:, :segments), alone]
   end function cells_along
 
-  !> DECK.pvd: the files of load cases, which ParaView steps through.
+  !> Write DECK.pvd: an index of the files of load cases for ParaView.
   subroutine write_collection(stem, id, error)
     character(len=*), intent(in) :: stem                  !! path of the files, without their suffixes
-    integer, intent(in) :: id(:)                          !! of the cases
+    integer, intent(in) :: id(:)                          !! ids of the load cases
     type(error_type), allocatable, intent(out) :: error   !! the file cannot be written
     type(text_file) :: file
     integer :: k
@@ -274,7 +274,7 @@ contains
     call file%finish(error)
   end subroutine write_collection
 
-  !> Text as it may stand between the quotes of XML.
+  !> Escape text for an XML attribute.
   pure function escaped(text) result(xml)
     character(len=*), intent(in) :: text
     character(len=:), allocatable :: xml
@@ -295,7 +295,7 @@ contains
     end do
   end function escaped
 
-  !> The load cases that an earlier run has left in DECK.pvd; none where there is no such file.
+  !> Find the load cases of an earlier run in DECK.pvd; empty if there is no such file.
   function collected(stem) result(id)
     character(len=*), intent(in) :: stem   !! path of the files, without their suffixes
     integer, allocatable :: id(:)

@@ -15,7 +15,7 @@ REJECTED = ROOT / "input" / "faults" / "no_suport.dat"
 STAGES = ["reading", "model", "plan", "numbering", "stiffness", "factor", "flexibility", "contact", "displacements", "yielding",
           "stresses", "certificate", "accuracy", "writing"]
 TIME = r"\d+(\.\d)? (s|min|h)"
-SOLVE = rf"{TIME}, iteration \d+, load factor \d\.\d+, change \S+( \S+)?, yielded \d+, touching \d+"
+SOLVE = rf"{TIME}, iteration \d+, load factor \d\.\d+, change \S+( \S+)?, yielded \d+, in contact \d+"
 
 
 class Case(unittest.TestCase):
@@ -89,7 +89,7 @@ class Progress(Case):
             self.assertRegex(line, rf"^hertz44: {SOLVE}$")
             row = row.split(",")
             self.assertIn(f", iteration {k}, load factor 1.000, change {float(row[1]):.1E}"[:-3], line)
-            self.assertTrue(line.endswith(f", yielded {row[4]}, touching {row[3]}"), line)
+            self.assertTrue(line.endswith(f", yielded {row[4]}, in contact {row[3]}"), line)
 
     def test_elastic_run(self):
         """The operations of the solve, then what it has found."""
@@ -120,7 +120,7 @@ class Progress(Case):
                 self.assertLess(len(part), columns)
                 if columns > 30 and part.strip() and "solving" not in part:
                     self.assertRegex(part.rstrip() + ", ", rf"^hertz44: {TIME}, (iteration \d+, )?(load factor \d\.\d\d\d, )?"
-                                     r"(change [\d.E+-]+, )?(yielded \d+, )?(touching \d+, )?$")
+                                     r"(change [\d.E+-]+, )?(yielded \d+, )?(in contact \d+, )?$")
         self.assertTrue(all(len(part) <= 9 for part in self.on_terminal(YIELDING, "--progress", columns=10)[2].split("\r")))
 
     def test_nothing_is_mixed(self):

@@ -90,7 +90,7 @@ class Places(Case):
     def test_a_deck_named_like_a_result_is_not_overwritten(self):
         deck = self.directory / "deck.lst"
         deck.write_bytes(SMALL.read_bytes())
-        self.check(self.run_it(deck, "-o", self.directory), 3, "a deck is named DECK.dat")
+        self.check(self.run_it(deck, "-o", self.directory), 3, "name the deck DECK.dat")
         self.assertEqual(SMALL.read_bytes(), deck.read_bytes())
 
     def test_results_of_an_earlier_run_go(self):
@@ -358,7 +358,7 @@ class Memory(Case):
     def test_no_limit(self):
         for word in ("-1", "0", "0.0", ".", "1" * 400, "nan", "inf", "1e400", "", "2 3", ",", "1e", "GB"):
             with self.subTest(word):
-                self.check(self.run_it(SMALL, "-o", self.directory, "--memory", word), 3, "a positive number of GB would be right")
+                self.check(self.run_it(SMALL, "-o", self.directory, "--memory", word), 3, "give a positive number of GB")
 
     def limits(self, deck, kind):
         """Every limit gives an answer or a refusal, never a crash or a wait without end; an answer comes at last."""
@@ -397,9 +397,9 @@ class Memory(Case):
     def test_messages_have_figures(self):
         if sanitized():
             self.skipTest("the address sanitizer maps more than any limit")
-        for kind, most, message in ((resource.RLIMIT_AS, 150000000, "less memory is free or allowed (ulimit -v) than OpenBLAS takes for "
-                                     "OMP_NUM_THREADS: 166 MB beside the program"),
-                                    (resource.RLIMIT_STACK, 65536, "a stack of 64 kB is allowed (ulimit -s): 256 kB are wanted")):
+        for kind, most, message in ((resource.RLIMIT_AS, 150000000, "OpenBLAS needs 166 MB of memory, but less is free or allowed: "
+                                     "raise ulimit -v or lower OMP_NUM_THREADS"),
+                                    (resource.RLIMIT_STACK, 65536, "the stack is limited to 64 kB: raise ulimit -s to at least 256 kB")):
             with self.subTest(message):
                 run = self.run_it(SMALL, "-o", self.directory, preexec_fn=lambda: resource.setrlimit(kind, (most, most)))
                 self.check(run, 3, f"epcont: {message}")
