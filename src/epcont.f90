@@ -1,4 +1,4 @@
-!> The library: a scene made from arrays in, a certified answer out (input/library/README.md).
+!> The library: input is a model made from arrays, output a certified answer (input/library/README.md).
 module epcont
   use, intrinsic :: ieee_exceptions, only: ieee_all, ieee_get_status, ieee_set_halting_mode, &
       ieee_set_status, ieee_status_type
@@ -24,27 +24,27 @@ module epcont
   implicit none
   private
   public :: wp, program_version
-  ! A scene.
+  ! A model.
   public :: scene_type, new_scene, add_elements, set_sections, set_pairs
   public :: side_pressure, body_load, named_line, line_couple
   public :: dof_tie, turning_platen, linear_equation, spring_type
   public :: plane_strain, plane_stress, axisymmetric, uniaxial_curve, bilinear_curve
-  ! What a deck says by PARAM.
+  ! Parameters, as on PARAM of a deck.
   public :: controls_type, method_auto, method_secant, method_modsec, method_inistr, method_newton, &
     rule_auto, rule_conry, rule_joined, solver_auto, solver_band, solver_frontal
-  ! Its answer, what came of it, and what there is to say of it.
+  ! Its answer, outcome, and messages.
   public :: solve_scene, solution_type, outcome_type, findings
   public :: status_valid, status_no_answer, status_deck, status_usage, status_numerical, status_internal
   public :: severity_error, severity_warning, severity_note
 
 contains
 
-  !> Check a scene and solve it.
+  !> Check a model and solve it.
   subroutine solve_scene(scene, solution, outcome, memory)
-    type(scene_type), intent(in) :: scene           !! which one
-    type(solution_type), intent(out) :: solution    !! answer, certificate, accuracy, where there is one
-    type(outcome_type), intent(out) :: outcome      !! whether there is, whether it is valid, and all findings
-    real(wp), intent(in), optional :: memory        !! that may be taken, at most [GB]
+    type(scene_type), intent(in) :: scene           !! the model
+    type(solution_type), intent(out) :: solution    !! answer, certificate, accuracy, as far as found
+    type(outcome_type), intent(out) :: outcome      !! exit status, and all messages
+    real(wp), intent(in), optional :: memory        !! limit [GB]; default: none
     type(error_type), allocatable :: error
     type(findings) :: found
     type(observer) :: watch
@@ -54,7 +54,7 @@ contains
 
     limit = huge(limit)
     if (present(memory)) limit = memory
-    call ieee_get_status(traps)   ! the caller's: numbers that are none are found, not met
+    call ieee_get_status(traps)   ! of the caller; NaN is detected without traps
     call ieee_set_halting_mode(ieee_all, .false.)
     before = threads_now()
     call use_threads(one_thread)
@@ -69,7 +69,7 @@ contains
         outcome%status = error%status
         outcome%sentence = in_array_words(error%message)
       else
-        ! those of lines have numbers of nodes
+        ! pairs of lines have node numbers before
         solution%model%contact%pair_id = [(k, k=1, solution%model%contact%pairs)]
         outcome = judge(solution)
         outcome%sentence = in_array_words(outcome%sentence)
@@ -83,8 +83,8 @@ contains
 
   contains
 
-    !> What was found of a scene, before what was found of its answer, by the names that arrays have; of a
-    !! scene that is refused its first error.
+    !> Report messages about the model before those about its answer, with the names of the arrays; for a
+    !! rejected model, only its first error.
     subroutine tell()
       do k = 1, outcome%found%count
         call found%add(outcome%found%list(k))

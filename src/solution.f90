@@ -1,4 +1,4 @@
-!> The story of one model: from the plan to a certified answer, in as many attempts as it takes.
+!> Solution of one model: from the plan to a certified answer, in as many attempts as necessary.
 module epcont_solution
   use epcont_accuracy_accuracy, only: accuracy_type, assess, kept_estimates
   use epcont_attempts, only: attempt_list, attempts, because_near, because_no_contact, &
@@ -39,15 +39,15 @@ module epcont_solution
   private
   public :: solution_type
 
-  !> Steps of refinement where forces, gaps or the energy are out of balance, or rounding has taken too much
-  !! of a pivot; each gains as many digits as the factors have.
+  !> Largest number of steps of refinement, used if forces, gaps or the energy have a residual, or if rounding
+  !! has taken too much of a pivot. Each step gains as many digits as the factors have.
   integer, parameter :: most_refinements = 3
-  !> So many times the load steps, where those asked for did not lead to an answer.
+  !> Factor of the number of load steps, if the planned number gives no answer.
   integer, parameter :: times_the_steps = 5
 
-  !> What load cases hand on, where another follows (`follow_loads`).
+  !> Data that the next load case reuses (`follow_loads`).
   type :: kept_factors
-    logical :: another = .false.         !! case follows
+    logical :: another = .false.         !! another load case follows
     type(linear_problem), allocatable :: linear, virgin
     type(contact_line) :: line
     type(kept_estimates) :: estimates
@@ -55,19 +55,20 @@ module epcont_solution
     procedure :: forget
   end type kept_factors
 
-  !> A model with its answer, and what that is worth. Where a body's stiffness could not be factored
-  !! (`answer%failed_body`), or without contact equilibrium (`answer%contact%state`), there are no
-  !! displacements.
+  !> A model with its answer, certificate and error estimates. There are no displacements if a body's
+  !! stiffness could not be factored (`answer%failed_body`), or without contact equilibrium
+  !! (`answer%contact%state`).
   type, extends(planned_model) :: solution_type
     type(answer_type) :: answer
     type(certificate_type) :: certificate
     type(accuracy_type) :: accuracy
     type(verdict_type) :: verdict
     type(kept_factors) :: kept           !! from load case to load case
-    !> The model before nodes that came near in this load case got pairs; not allocated if there were none
+    !> The model before nodes that came near in this load case got pairs; not allocated if there were no such
+    !! nodes
     type(planned_model), allocatable :: as_given
-    type(attempt_list) :: attempts       !! that were made
-    logical, private :: unique = .true.  !! contact forces, as far as the contact rule has to know
+    type(attempt_list) :: attempts       !! after the first solve
+    logical, private :: unique = .true.  !! contact forces are unique, as far as the contact solver must know
   contains
     procedure :: solve
     procedure :: return_to_given
@@ -86,7 +87,7 @@ module epcont_solution
 
 contains
 
-  !> Solve a model whose plan is made, in further attempts while there is a reason for one.
+  !> Solve a planned model, in more attempts as long as there is a reason for one.
   subroutine solve(self, limit, watch, error)
     class(solution_type), intent(inout) :: self
     real(wp), intent(in) :: limit                         !! of memory [GB]
@@ -159,8 +160,8 @@ contains
     end select
   end subroutine make_attempt
 
-  !> Is there neither an answer nor a limit load, by a method that was chosen here? What the first solve does
-  !> not find, steps do not.
+  !> Reason for more load steps: there is neither an answer nor a limit load, with a method that epcont has
+  !> chosen. Without a result of the first solve, more steps do not help.
   pure integer function why_more_steps(self) result(why)
     class(solution_type), intent(in) :: self
 
@@ -171,8 +172,8 @@ contains
     end associate
   end function why_more_steps
 
-  !> Has the contact rule found no contact, or what it cannot explain? What neither rule finds, that one says
-  !! which can.
+  !> Reason for the other contact solver: this one has found no active set, or a result that it cannot
+  !! explain. If neither finds one, the solver that can explain the failure gives the result.
   integer function why_other_rule(self) result(why)
     class(solution_type), intent(in) :: self
 
@@ -204,7 +205,7 @@ contains
                 .not. (self%certificate%balanced .and. self%answer%lost() <= lost_digits))
   end function why_refine
 
-  !> Do nodes penetrate that have no pair? They get pairs.
+  !> Find nodes that penetrate without a pair, and make pairs for them.
   subroutine why_more_pairs(self, why)
     class(solution_type), intent(inout) :: self
     integer, intent(out) :: why
@@ -221,7 +222,7 @@ contains
     if (near) why = because_near
   end subroutine why_more_pairs
 
-  !> Solve the model as it is planned.
+  !> Solve the model as planned.
   subroutine solve_as_planned(self, limit, watch, error)
     class(solution_type), intent(inout) :: self
     real(wp), intent(in) :: limit
@@ -235,7 +236,7 @@ contains
     call self%follow(self%model%controls%load_steps, watch)
   end subroutine solve_as_planned
 
-  !> Follow the loads in some load steps, and evaluate the state that was found.
+  !> Follow the loads in this number of load steps, and evaluate the state found.
   subroutine follow(self, load_steps, watch)
     class(solution_type), intent(inout) :: self
     integer, intent(in) :: load_steps    !! of this load case, if something can yield
@@ -259,11 +260,11 @@ contains
     if (self%unique) call self%evaluate(watch)
   end subroutine follow
 
-  !> Refine the answer. Gaps far below a travel are rounding, and contact found from them is out of balance:
-  !! what the certificate finds worse is not taken.
+  !> Refine the answer. Gaps far below a prescribed displacement are rounding, and contact forces from them
+  !! have a residual. Values that the certificate finds worse are not used.
   subroutine refine(self, steps, watch)
     class(solution_type), intent(inout) :: self
-    integer, intent(out) :: steps        !! taken
+    integer, intent(out) :: steps        !! number of steps taken
     class(observer), intent(inout) :: watch
     type(answer_type) :: found           ! before refinement
     type(certificate_type) :: found_certificate
@@ -285,8 +286,8 @@ contains
     self%certificate = found_certificate
   end subroutine refine
 
-  !> Return to the model without the pairs of nodes that came near in this load case: other load cases are
-  !! solved as if they were alone.
+  !> Return to the model without the pairs of nodes that came near in this load case, so that other load cases
+  !! are solved independently.
   subroutine return_to_given(self)
     class(solution_type), intent(inout) :: self
 
@@ -296,7 +297,7 @@ contains
     call self%kept%forget()
   end subroutine return_to_given
 
-  !> Factors are made again for the next solve, or are no longer wanted.
+  !> Discard the factors: they are made again for the next solve, or are not needed.
   subroutine forget(self)
     class(kept_factors), intent(inout) :: self
     type(kept_estimates) :: none
@@ -308,7 +309,7 @@ contains
     self%line = no_line
   end subroutine forget
 
-  !> Stresses, pressures and zones of the state that was found, and their certificate.
+  !> Find stresses, pressures and zones of the state found, and its certificate.
   subroutine evaluate(self, watch)
     class(solution_type), intent(inout) :: self
     class(observer), intent(inout) :: watch
@@ -339,8 +340,7 @@ contains
     call watch%lap(stage_certificate)
   end subroutine evaluate
 
-  !> Estimate the errors of the answer, by its tangent stiffness: that tells what errors do, by whatever
-  !! method and step the answer was found.
+  !> Estimate the errors of the answer with its tangent stiffness, for every method and step.
   subroutine assess_answer(self, watch)
     class(solution_type), intent(inout) :: self
     class(observer), intent(inout) :: watch
@@ -357,7 +357,7 @@ contains
         end if
       end if
       call assess(self%planned_model, kept%linear, kept%line, kept%estimates, answer, self%accuracy)
-      ! An open pair does not press.
+      ! an open pair has no pressure
       where (.not. answer%contact%touching .and. answer%pressure > 0.0_wp) answer%pressure = -1.0_wp
     end associate
     call watch%lap(stage_accuracy)

@@ -1,4 +1,5 @@
-!> Whether a run has found an answer, and if not, why: as data. `messages/sentences.f90` says it in words.
+!> Outcome of a run as data: the answer is valid, or the reason why not. `messages/sentences.f90` puts it into
+!> words.
 module epcont_verdict
   use epcont_base_error, only: status_no_answer, status_numerical, status_usage, status_valid
   use epcont_base_tolerances, only: lost_digits
@@ -9,16 +10,16 @@ module epcont_verdict
   private
   public :: find_verdict, verdict_type
 
-  !> Reasons. From `reason_unsound` on there are displacements and forces.
+  !> Reasons. From `reason_unsound` on, there are displacements and forces.
   integer, parameter, public :: &
-    reason_memory = 1, &           !! not enough of it to factor a body
+    reason_memory = 1, &           !! not enough memory to factor a body
     reason_singular = 2, &         !! a stiffness cannot be factored
-    reason_no_equilibrium = 3, &   !! a body moves off
-    reason_overlap = 4, &          !! pairs overlap and nothing can give way
-    reason_rounding = 5, &         !! no set of contacts passes the test
+    reason_no_equilibrium = 3, &   !! a body is unconstrained
+    reason_overlap = 4, &          !! pairs overlap, and no body can deform
+    reason_rounding = 5, &         !! no active set passes the test
     reason_unsound = 6, &          !! bodies pass through each other
-    reason_not_converged = 7, &    !! the iteration was given up
-    reason_doubtful = 8, &         !! the certificate refuses it
+    reason_not_converged = 7, &    !! the iteration has stopped
+    reason_doubtful = 8, &         !! a value of the certificate is beyond its limit
     reason_ill_conditioned = 9, &  !! rounding takes too many digits
     reason_none = 10               !! valid
   integer, parameter :: status_of(10) = [ &
@@ -38,10 +39,10 @@ module epcont_verdict
 
 contains
 
-  !> The verdict on a run.
+  !> Find the verdict on a run.
   pure type(verdict_type) function find_verdict(answer, certificate, contact_is_off) result(verdict)
     type(answer_type), intent(in) :: answer
-    type(certificate_type), intent(in) :: certificate   !! of the answer, where there is one
+    type(certificate_type), intent(in) :: certificate   !! of the answer, if there is one
     logical, intent(in) :: contact_is_off               !! bodies may pass through each other
     logical :: is_exact
 
@@ -67,14 +68,14 @@ contains
     end if
   end function find_verdict
 
-  !> The exit status.
+  !> Exit status of the verdict.
   pure integer function status(self)
     class(verdict_type), intent(in) :: self
 
     status = status_of(self%reason)
   end function status
 
-  !> `valid`, `no equilibrium` and so on.
+  !> Word for the verdict: `valid`, `no equilibrium` and so on.
   pure function word(self)
     class(verdict_type), intent(in) :: self
     character(len=:), allocatable :: word

@@ -1,8 +1,8 @@
-!> What is the same in all elements of one kind. `element_kinds.f90` has a row for each, and a file of its own
-!> says what is in it.
+!> Data that all elements of one type share. `element_kinds.f90` has a row for each type, and each type has a
+!> file.
 !>
-!> Corners come first, counter-clockwise; then the middles of the sides, the first behind the first corner.
-!> Sides are straight, or parabolas through their middle nodes.
+!> Corners come first, counter-clockwise; then the mid-side nodes, starting after the first corner. Edges are
+!> straight, or parabolas through their mid-side nodes.
 module epcont_element_element_kind
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: cancelled, rounded_off
@@ -11,48 +11,49 @@ module epcont_element_element_kind
   private
   public :: element_kind, new_kind
 
-  !> Nodes, integration points and places of comparison of an element, at most.
+  !> Largest numbers of nodes, integration points and comparison points of an element.
   integer, parameter, public :: most_nodes = 8, most_points = 9, most_places = 9
-  !> In search of a fold: ten along either coordinate leave open where the area comes nearer to none than
-  !! about 4**-10, a millionth, of its largest.
+  !> Search for folds: after ten bisections of each coordinate, the sign of the area is open only if it is
+  !! below about 4**-10, a millionth, of its largest value.
   integer, parameter :: most_halvings = 20
 
   !> Bernstein coefficients of a cubic from its values at 0, 1/3, 2/3 and 1.
   real(wp), parameter :: from_values(4, 0:3) = &
     reshape([6, -5, 2, 0, 0, 18, -9, 0, 0, -9, 18, 0, 0, 2, -5, 6]/6.0_wp, [4, 4])
 
-  !> What `estimated_as` may be.
+  !> Values of `estimated_as`.
   integer, parameter, public :: by_linear_triangles = 1, by_quadrilaterals = 2, by_quadratics = 3
 
   type :: element_kind
-    character(len=6) :: plane_card = '', ring_card = ''   !! their names in a deck; blank: there are none
+    character(len=6) :: plane_card = '', ring_card = ''   !! names of their cards; blank if it has no card
     integer :: nodes = 0
-    integer :: corners = 0                  !! and sides
-    integer :: degree = 1                   !! of the polynomials along a side
-    !> The change of volume is averaged over the element (B-bar), but in plane stress.
+    integer :: corners = 0                  !! number of corners, and of edges
+    integer :: degree = 1                   !! of the polynomials along an edge
+    !> The change of volume is averaged over the element (B-bar), except in plane stress.
     logical :: mean_dilatation = .false.
-    logical :: locks = .false.              !! where the material keeps its volume
-    integer :: vtk = 0                      !! VTK's number of the cell
+    logical :: locks = .false.              !! it locks in nearly incompressible materials
+    integer :: vtk = 0                      !! VTK cell type
     procedure(shape_functions), pointer, nopass :: shape => null()
-    integer :: points = 0                               !! of integration
-    real(wp) :: point(directions, most_points) = 0.0_wp !! their local places
+    integer :: points = 0                               !! number of integration points
+    real(wp) :: point(directions, most_points) = 0.0_wp !! their local coordinates
     real(wp) :: weight(most_points) = 0.0_wp            !! their parts of the local area
     real(wp) :: values(most_nodes, most_points) = 0.0_wp               !! shape functions at the points
-    !> And their derivatives by the local coordinates
+    !> Their derivatives by the local coordinates
     real(wp) :: slopes(directions, most_nodes, most_points) = 0.0_wp
-    !> What each two nodes have in the area, see `turn`: Bernstein coefficients [4, 4, nodes, nodes]
+    !> Contribution of each two nodes to the area, see `turn`: Bernstein coefficients [4, 4, nodes, nodes]
     real(wp) :: spanned(4, 4, 2:most_nodes - 1, 3:most_nodes) = 0.0_wp
-    ! For the estimate of the error (accuracy/):
-    integer :: estimated_as = by_linear_triangles       !! which weights it has
-    !> Smooth strains are fitted to samples: strain(points) sample_of, where the shape functions are
-    !! sample_values. Of degree 1 it is the mean, in the middle.
+    ! For the error estimate (accuracy/):
+    integer :: estimated_as = by_linear_triangles       !! column of its weights
+    !> Recovered strains are fitted to samples: strain(points) sample_of, at the points where the shape
+    !! functions are sample_values. For degree 1 the sample is the mean, at the centre.
     integer :: samples = 1
     real(wp) :: sample_values(most_nodes, most_points) = 0.0_wp
     real(wp) :: sample_of(most_points, most_points) = 0.0_wp
-    !> Strains are compared at places. There the smooth one is smooth(nodes) n, the element's own
-    !! strain(points) p, and the place has the parts v of the points' volumes.
+    !> Strains are compared at points. There the recovered strain is smooth(nodes) n, the element's own strain
+    !! is strain(points) p, and the volume is a sum of the points' volumes times v.
     integer :: places = 0
-    !> Its own strain at a place is that of the only point, or of the one with the same number.
+    !> Own strain at a comparison point: that of the only integration point, or of the one with the same
+    !! number.
     logical :: sees_points = .true.
     real(wp) :: n(most_nodes, most_places) = 0.0_wp
     real(wp) :: p(most_points, most_places) = 0.0_wp
@@ -64,7 +65,7 @@ module epcont_element_element_kind
   end type element_kind
 
   abstract interface
-    !> Shape functions at a local place, and their derivatives by the local coordinates; 0 beyond the last
+    !> Shape functions at a local point, and their derivatives by the local coordinates; 0 beyond the last
     !! node.
     pure subroutine shape_functions(place, n, slope)
       import
@@ -75,13 +76,13 @@ module epcont_element_element_kind
 
 contains
 
-  !> A kind by its nodes, shape functions and integration points; its strains are sampled and compared at
-  !! these.
+  !> Create a type from its nodes, shape functions and integration points, at which strains are sampled and
+  !! compared.
   pure function new_kind(corner, nodes, shape, point, weight) result(kind)
-    real(wp), intent(in) :: corner(:, :)       !! local places [directions, corners]
-    integer, intent(in) :: nodes               !! how many
+    real(wp), intent(in) :: corner(:, :)       !! local coordinates [directions, corners]
+    integer, intent(in) :: nodes               !! number of nodes
     procedure(shape_functions) :: shape        !! of the nodes
-    real(wp), intent(in) :: point(:, :)        !! local places [directions, points]
+    real(wp), intent(in) :: point(:, :)        !! local coordinates [directions, points]
     real(wp), intent(in) :: weight(:)          !! [points]
     type(element_kind) :: kind
     real(wp) :: unit(size(weight), size(weight))
@@ -105,12 +106,12 @@ contains
     call find_spanned(kind, corner(:, min([1, 2, 3, 4], kind%corners)))
   end function new_kind
 
-  !> The determinant of the Jacobian is a sum over each two nodes: what the vectors to them span, times a
-  !! polynomial, which is at most cubic in either coordinate of a square. A triangle is a square with a side
-  !! in its third corner.
+  !> Expand the determinant of the Jacobian as a sum over each two nodes: the cross product of their vectors,
+  !! times a polynomial of degree at most three in each coordinate of a square. A triangle is a square with a
+  !! degenerate edge at its third corner.
   pure subroutine find_spanned(kind, corner)
     type(element_kind), intent(inout) :: kind
-    real(wp), intent(in) :: corner(directions, 4)   !! local places of the square's
+    real(wp), intent(in) :: corner(directions, 4)   !! local coordinates of the square's corners
     real(wp) :: n(most_nodes), part(4, 4), slope(directions, most_nodes)
     integer :: a, b, i, j
 
@@ -128,9 +129,9 @@ contains
     end do
   end subroutine find_spanned
 
-  !> How an element turns: 1 counter-clockwise, -1 clockwise; 0: it folds over, or is flat, somewhere. That is
-  !! where the determinant of its Jacobian, as the area which it would have if that were so everywhere, is
-  !! not above what rounding leaves of the square of its extent, and of its coordinates.
+  !> Find the orientation of an element: 1 counter-clockwise, -1 clockwise, 0 if it folds over or is flat
+  !! somewhere. It is 0 if the determinant of its Jacobian, times the local area, is not above rounding of the
+  !! square of its extent and of its coordinates.
   pure integer function turn(self, x)
     class(element_kind), intent(in) :: self
     real(wp), intent(in) :: x(directions, most_nodes)   !! of its nodes [length]
@@ -152,13 +153,13 @@ contains
     if (.not. is_above(turn*area, extent*max(rounded_off*extent, cancelled*farthest), most_halvings)) turn = 0
   end function turn
 
-  !> Is a polynomial above a bound on the unit square? Its values lie between its Bernstein coefficients, and
-  !! those at the corners are values (Johnen, Remacle and Geuzaine 2013). Where they do not tell, those of
-  !! both halves do (de Casteljau), along one coordinate after the other; what is open after all halvings
-  !! counts as not above.
+  !> Is a polynomial above a bound on the unit square? Its values are between its Bernstein coefficients, and
+  !! those at the corners are values (Johnen, Remacle and Geuzaine 2013). If these do not decide, both halves
+  !! are checked (de Casteljau), along one coordinate after the other. If all bisections do not decide, the
+  !! answer is no.
   pure recursive logical function is_above(net, bound, halvings) result(above)
-    real(wp), intent(in) :: net(4, 4), bound   !! its coefficients; in their unit
-    integer, intent(in) :: halvings            !! at most
+    real(wp), intent(in) :: net(4, 4), bound   !! coefficients, and bound in their unit
+    integer, intent(in) :: halvings            !! largest number of bisections
     real(wp), dimension(4, 4) :: lower, upper
     integer :: k
 
@@ -173,12 +174,12 @@ contains
     if (above) above = is_above(transpose(upper), bound, halvings - 1)
   end function is_above
 
-  !> Compare strains at these places.
+  !> Set the points at which strains are compared.
   pure subroutine compare_at(self, place, p, v)
     class(element_kind), intent(inout) :: self
-    real(wp), intent(in) :: place(:, :)        !! local [directions, places]
+    real(wp), intent(in) :: place(:, :)        !! local coordinates [directions, places]
     real(wp), intent(in) :: p(:, :), v(:, :)   !! as in the type [points, places]
-    real(wp) :: slope(directions, most_nodes)   !! not wanted
+    real(wp) :: slope(directions, most_nodes)   !! unused
     integer :: k
 
     self%places = size(place, 2)
@@ -190,12 +191,12 @@ contains
     self%v(:self%points, :self%places) = v
   end subroutine compare_at
 
-  !> Sample strains at these places.
+  !> Set the points at which strains are sampled.
   pure subroutine sample_at(self, place, sample_of)
     class(element_kind), intent(inout) :: self
-    real(wp), intent(in) :: place(:, :)        !! local [directions, samples]
+    real(wp), intent(in) :: place(:, :)        !! local coordinates [directions, samples]
     real(wp), intent(in) :: sample_of(:, :)    !! as in the type [points, samples]
-    real(wp) :: slope(directions, most_nodes)   !! not wanted
+    real(wp) :: slope(directions, most_nodes)   !! unused
     integer :: k
 
     self%samples = size(place, 2)

@@ -1,4 +1,4 @@
-!> THE table of elements: a new kind is a file here, and a row.
+!> THE table of elements: a new type is one file in this folder and one row.
 module epcont_element_element_kinds
   use epcont_element_element_kind, only: element_kind
   use epcont_element_quad4, only: quad4
@@ -11,7 +11,7 @@ module epcont_element_element_kinds
 
 contains
 
-  !> All kinds of elements.
+  !> List all element types.
   pure function element_kinds() result(kind)
     type(element_kind), allocatable :: kind(:)
 

@@ -1,8 +1,8 @@
-!> Strains of an element at its integration points, and the volume that belongs to each.
+!> Strains of an element at its integration points, and the volumes of these points.
 !>
-!> A strain is xx, yy, zz, xy (engineering). In a ring x is the radius and zz the hoop: u_x/x. Some kinds have
-!> their volume change averaged over the element (B-bar), so that they do not lock where the material cannot
-!> change its volume; in plane stress, where the sheet gives way, there is no need.
+!> A strain is xx, yy, zz, xy (engineering). In an axisymmetric element x is the radius and zz the hoop strain
+!> u_x/x. Some types average the change of volume over the element (B-bar), so that they do not lock in nearly
+!> incompressible materials. Plane stress does not need this, since the thickness can change.
 module epcont_element_integration_point
   use epcont_base_kinds, only: wp
   use epcont_element_element_kind, only: element_kind, most_nodes
@@ -14,26 +14,26 @@ module epcont_element_integration_point
   real(wp), parameter :: full_turn = 2.0_wp*acos(-1.0_wp)
 
   type :: integration_point
-    !> strain = b u, u = (ux, uy) of each node in turn; set for its nodes [1/length]
+    !> strain = b u with u = (ux, uy) of each node in turn; set for the nodes of the element [1/length]
     real(wp) :: b(components, directions*most_nodes)
     real(wp) :: volume              !! [length**3]
   end type integration_point
 
 contains
 
-  !> All integration points of an element.
+  !> Evaluate all integration points of an element.
   pure subroutine evaluate_points(kind, x, kinematics, thickness, point)
     type(element_kind), intent(in) :: kind   !! of the element
     real(wp), intent(in) :: x(:, :)          !! of its nodes [length] [directions, nodes]
     integer, intent(in) :: kinematics        !! plane_strain, plane_stress or axisymmetric
-    real(wp), intent(in) :: thickness        !! of plane ones [length]
+    real(wp), intent(in) :: thickness        !! of plane elements [length]
     type(integration_point), intent(out) :: point(:)   !! [kind%points]
     real(wp) :: jacobian(directions, directions), determinant, radius, from_first(directions, most_nodes)
     integer :: i, n, p
 
     n = kind%nodes
     do i = 1, n
-      from_first(:, i) = x(:, i) - x(:, 1)   ! far from the origin sums of x would lose the digits of the size
+      from_first(:, i) = x(:, i) - x(:, 1)   ! far from the origin, sums of x would lose digits
     end do
     do p = 1, kind%points
       associate (slope => kind%slopes(:, :n, p), values => kind%values(:n, p), b => point(p)%b)
@@ -63,7 +63,7 @@ contains
     if (kind%mean_dilatation .and. kinematics /= plane_stress) call average_dilatation(point, directions*n)
   end subroutine evaluate_points
 
-  !> B-bar: the volume change at each point is the mean over the element.
+  !> Replace the change of volume at each point by its mean over the element (B-bar).
   pure subroutine average_dilatation(point, freedoms)
     type(integration_point), intent(inout) :: point(:)
     integer, intent(in) :: freedoms

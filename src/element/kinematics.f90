@@ -1,12 +1,12 @@
-!> What elements do across the plane, and how many components vectors and strains have in it.
+!> Behaviour of elements normal to the plane, and numbers of components of vectors and strains.
 module epcont_element_kinematics
   implicit none
   private
 
-  !> Nothing; give way; or they are rings, x their radius.
+  !> Plane strain; plane stress; axisymmetric, with x as the radius.
   integer, parameter, public :: plane_strain = 1, plane_stress = 2, axisymmetric = 3
-  !> Directions of the plane, x and y (of rings: radius and axis).
+  !> Directions of the plane: x and y (axisymmetric: radius and axis).
   integer, parameter, public :: directions = 2
-  !> Of strains and stresses: xx, yy, zz, xy (of strains engineering: twice the tensor's).
+  !> Components of strains and stresses: xx, yy, zz, xy (shear strain is engineering: twice the tensor's).
   integer, parameter, public :: components = 4
 end module epcont_element_kinematics

@@ -9,12 +9,12 @@ module epcont_element_quad4
 
   real(wp), parameter :: corner(directions, 4) = &
     reshape([real(wp) :: -1, -1, 1, -1, 1, 1, -1, 1], [directions, 4])
-  !> Integration points and weights of Gauss, two by two.
+  !> Gauss points and weights, two by two.
   real(wp), parameter :: point(directions, 4) = corner/sqrt(3.0_wp), weight(4) = 1.0_wp
 
 contains
 
-  !> The kind, for the table.
+  !> Create the type for the table.
   pure function quad4() result(kind)
     type(element_kind) :: kind
 
@@ -25,7 +25,7 @@ contains
     kind%estimated_as = by_quadrilaterals
   end function quad4
 
-  !> Shape functions and their derivatives at a local place.
+  !> Find shape functions and their derivatives at a local point.
   pure subroutine shape(place, n, slope)
     real(wp), intent(in) :: place(directions)
     real(wp), intent(out) :: n(most_nodes), slope(directions, most_nodes)

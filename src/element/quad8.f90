@@ -1,5 +1,5 @@
 !> Eight-node quadrilateral, serendipity: corners in turn at (-1, -1), (1, -1), (1, 1), (-1, 1), then the
-!> middles of the sides behind each.
+!> mid-side nodes after each.
 module epcont_element_quad8
   use epcont_base_kinds, only: wp
   use epcont_element_element_kind, only: by_quadratics, element_kind, most_nodes, new_kind
@@ -11,16 +11,15 @@ module epcont_element_quad8
   real(wp), parameter :: &
     node(directions, 8) = &
       reshape([real(wp) :: -1, -1, 1, -1, 1, 1, -1, 1, 0, -1, 1, 0, 0, 1, -1, 0], [directions, 8]), &
-    !> Places and weights of Gauss along a line. Three by three points integrate the stiffness; two by two
-    !! would leave a motion without energy, but there the strains are best (Barlow 1976), and there they are
-    !! sampled.
+    !> Gauss points and weights on a line. Three by three points integrate the stiffness. Two by two would
+    !! leave a zero-energy mode, but strains are best there (Barlow 1976) and are sampled there.
     three(3) = [-sqrt(0.6_wp), 0.0_wp, sqrt(0.6_wp)], &
     part(3) = [5, 8, 5]/9.0_wp, &
     two(2) = [-1, 1]/sqrt(3.0_wp)
 
 contains
 
-  !> The kind, for the table.
+  !> Create the type for the table.
   pure function quad8() result(kind)
     type(element_kind) :: kind
     real(wp) :: sample_of(9, 4)
@@ -39,7 +38,8 @@ contains
     call kind%sample_at(grid(two), sample_of)
   end function quad8
 
-  !> All places whose coordinates are among these, the first running first [directions, size**2].
+  !> List all points whose coordinates are among these, the first coordinate running first [directions,
+  !! size**2].
   pure function grid(along) result(place)
     real(wp), intent(in) :: along(:)
     real(wp) :: place(directions, size(along)**2)
@@ -48,7 +48,7 @@ contains
     place(2, :) = reshape(spread(along, 1, size(along)), [size(along)**2])
   end function grid
 
-  !> What the three places of Gauss count in a parabola through them, elsewhere along the line.
+  !> Weights of the three Gauss points in a parabola through them, at another point of the line.
   pure function between(at) result(n)
     real(wp), intent(in) :: at
     real(wp) :: n(3)
@@ -56,11 +56,11 @@ contains
     n = [0.5_wp*at*(at - three(3)), 0.6_wp - at**2, 0.5_wp*at*(at + three(3))]/0.6_wp
   end function between
 
-  !> Shape functions and their derivatives at a local place.
+  !> Find shape functions and their derivatives at a local point.
   pure subroutine shape(place, n, slope)
     real(wp), intent(in) :: place(directions)
     real(wp), intent(out) :: n(most_nodes), slope(directions, most_nodes)
-    real(wp) :: across   !! the local coordinate in which a node between corners lies in the middle
+    real(wp) :: across   !! local coordinate that is 0 at a mid-side node
     integer :: i
 
     n = 0.0_wp

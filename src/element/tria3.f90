@@ -9,13 +9,13 @@ module epcont_element_tria3
 
   !> Integration point and weight: exact for constant strain.
   real(wp), parameter :: point(directions, 1) = 1.0_wp/3.0_wp, weight(1) = 0.5_wp
-  !> Strains are compared in the middles of the sides: exact for quadratics.
+  !> Strains are compared at the centres of the edges: exact for quadratic polynomials.
   real(wp), parameter :: middle(directions, 3) = &
     reshape([1, 1, 0, 1, 1, 0]/2.0_wp, [directions, 3])
 
 contains
 
-  !> The kind, for the table.
+  !> Create the type for the table.
   pure function tria3() result(kind)
     type(element_kind) :: kind
 
@@ -27,7 +27,7 @@ contains
     call kind%compare_at(middle, spread([1.0_wp], 2, 3), spread([1.0_wp/3.0_wp], 2, 3))
   end function tria3
 
-  !> Shape functions and their derivatives at a local place.
+  !> Find shape functions and their derivatives at a local point.
   pure subroutine shape(place, n, slope)
     real(wp), intent(in) :: place(directions)
     real(wp), intent(out) :: n(most_nodes), slope(directions, most_nodes)

@@ -1,5 +1,5 @@
-!> Six-node triangle, quadratic: corners in turn at (0, 0), (1, 0), (0, 1), then the middles of the sides
-!> behind each.
+!> Six-node triangle, quadratic: corners in turn at (0, 0), (1, 0), (0, 1), then the mid-side nodes after
+!> each.
 module epcont_element_tria6
   use epcont_base_kinds, only: wp
   use epcont_element_element_kind, only: by_quadratics, element_kind, most_nodes, new_kind
@@ -9,12 +9,13 @@ module epcont_element_tria6
   public :: tria6
 
   real(wp), parameter :: &
-    !> Integration points and weights: exact for quadratics, that is for the stiffness of a straight-sided
-    !! element.
+    !> Integration points and weights: exact for quadratic polynomials, that is, for the stiffness of a
+    !! straight-sided element.
     point(directions, 3) = reshape([1, 1, 4, 1, 1, 4]/6.0_wp, [directions, 3]), &
     weight(3) = 1.0_wp/6.0_wp, &
-    !> Where strains are compared, and with which parts of the volume. The integration points would flatter,
-    !! the error there is least; these are exact for polynomials of the fourth degree (Dunavant 1985).
+    !> Points at which strains are compared, and their parts of the volume. At the integration points the
+    !! error is least and would be underestimated; these points are exact for polynomials of degree four
+    !! (Dunavant 1985).
     near = 0.091576213509771_wp, far = 0.445948490915965_wp, &
     place(directions, 6) = &
       reshape([near, near, 1 - 2*near, near, near, 1 - 2*near, &
@@ -23,7 +24,7 @@ module epcont_element_tria6
 
 contains
 
-  !> The kind, for the table.
+  !> Create the type for the table.
   pure function tria6() result(kind)
     type(element_kind) :: kind
     real(wp) :: from_points(3, 6)
@@ -41,7 +42,7 @@ contains
     call kind%compare_at(place, from_points, spread(part, 1, 3))
   end function tria6
 
-  !> Shape functions and their derivatives at a local place.
+  !> Find shape functions and their derivatives at a local point.
   pure subroutine shape(place, n, slope)
     real(wp), intent(in) :: place(directions)
     real(wp), intent(out) :: n(most_nodes), slope(directions, most_nodes)

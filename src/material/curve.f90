@@ -1,9 +1,10 @@
 !> Equivalent stress over deviatoric equivalent strain, of a material with a piecewise linear uniaxial curve.
 !>
-!> With e = sqrt(2/3 e_ij e_ij) and the mean stress elastic, a uniaxial state of total strain eps and stress
-!> sigma has e = eps - (1 - 2 nu) sigma/(3E): its points, so shifted, give sigma_i = curve(e) for every kind
-!> of deformation (MUP EXACT). MUP PAPER takes Poisson's ratio (2-4) in the equivalent strain eps_i instead,
-!> which makes e = eps_i (1 - (1 - 2 nu) sigma_s/(3 sigma_i)): a quadratic for eps_i on each segment.
+!> With e = sqrt(2/3 e_ij e_ij) and elastic mean stress, a uniaxial state of total strain eps and stress sigma
+!> has e = eps - (1 - 2 nu) sigma/(3E). The points of the uniaxial curve, shifted in this way, give sigma_i =
+!> curve(e) for every deformation (MUP EXACT). MUP PAPER uses Poisson's ratio (2-4) in the equivalent strain
+!> eps_i instead. Then e = eps_i (1 - (1 - 2 nu) sigma_s/(3 sigma_i)), a quadratic equation for eps_i on each
+!> segment.
 module epcont_material_curve
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: least_difference
@@ -16,32 +17,32 @@ module epcont_material_curve
   type :: deviatoric_curve
     type(elasticity) :: elastic
     logical :: paper_ratio = .false.        !! MUP PAPER
-    logical :: ends = .false.               !! beyond the last point there is no table
-    ! From the yield point on; the last slope goes on without end. Not allocated: no yielding.
+    logical :: ends = .false.               !! the table ends at the last point
+    ! Starts at the yield point, extrapolated with the last slope. Not allocated if the material is elastic.
     real(wp), allocatable :: deviatoric(:)  !! e at the points [points]
     real(wp), allocatable :: total(:)       !! eps at the points [points]
     real(wp), allocatable :: stress(:)      !! [stress] [points]
-    real(wp), allocatable :: slope(:)       !! d sigma/d e behind each point [stress] [points]
-    real(wp), allocatable :: total_slope(:) !! d sigma/d eps behind each point [stress] [points]
+    real(wp), allocatable :: slope(:)       !! d sigma/d e after each point [stress] [points]
+    real(wp), allocatable :: total_slope(:) !! d sigma/d eps after each point [stress] [points]
   contains
     procedure :: at_strain
   end type deviatoric_curve
 
-  !> The curve at a strain.
+  !> Values of the curve at a strain.
   type :: curve_value
     real(wp) :: modulus = 1.0_wp   !! E_D = 3 G of a secant body: equivalent stress over e [stress]
     real(wp) :: total = 0.0_wp     !! equivalent strain eps_i (2-2)
-    real(wp) :: slope = 1.0_wp     !! d sigma_i/d e [stress]; not for MUP PAPER
-    logical :: yielded = .false.   !! beyond the yield point
+    real(wp) :: slope = 1.0_wp     !! d sigma_i/d e [stress]; undefined for MUP PAPER
+    logical :: yielded = .false.   !! yielded
     logical :: beyond = .false.    !! beyond the last point of a table
   end type curve_value
 
 contains
 
-  !> The curve over e, from that over total strain.
+  !> Convert a curve over total strain to a curve over e.
   pure function new_curve(uniaxial, elastic, paper_ratio) result(curve)
-    type(uniaxial_curve), intent(in) :: uniaxial   !! from (0, 0) on
-    type(elasticity), intent(in) :: elastic        !! what it begins with
+    type(uniaxial_curve), intent(in) :: uniaxial   !! starts at (0, 0)
+    type(elasticity), intent(in) :: elastic        !! initial elasticity
     logical, intent(in) :: paper_ratio             !! MUP PAPER
     type(deviatoric_curve) :: curve
     real(wp), allocatable :: rise(:), width(:)
@@ -65,10 +66,10 @@ contains
       curve%deviatoric = curve%total*(1.0_wp - elastic%young*elastic%shift*curve%stress(1)/curve%stress)
   end function new_curve
 
-  !> The curve at a deviatoric equivalent strain.
+  !> Evaluate the curve at a deviatoric equivalent strain.
   pure function at_strain(self, e) result(point)
     class(deviatoric_curve), intent(in) :: self
-    real(wp), intent(in) :: e   !! that strain
+    real(wp), intent(in) :: e   !! deviatoric equivalent strain
     type(curve_value) :: point
     real(wp) :: secant
     integer :: k
@@ -97,8 +98,8 @@ contains
 
   contains
 
-    !> eps_i, and E' = sigma_i/eps_i, with (2-4): on sigma = a + b eps, e = eps (1 - c/sigma) is b eps**2 +
-    !! (a - c - b e) eps = e a.
+    !> Find eps_i, and E' = sigma_i/eps_i, with (2-4). On sigma = a + b eps, the equation e = eps (1 -
+    !! c/sigma) is b eps**2 + (a - c - b e) eps = e a.
     pure subroutine find_paper_secant(strain, secant)
       real(wp), intent(out) :: strain, secant
       real(wp) :: a, b, c, half
@@ -107,7 +108,7 @@ contains
       a = self%stress(k) - b*self%total(k)
       c = self%elastic%young*self%elastic%shift*self%stress(1)
       half = 0.5_wp*(a - c - b*e)
-      ! The positive root, written so that nothing cancels for b = 0.
+      ! Positive root, without cancellation for b = 0.
       if (half > 0.0_wp) then
         strain = e*a/(half + sqrt(half**2 + b*e*a))
       else

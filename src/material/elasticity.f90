@@ -6,7 +6,7 @@ module epcont_material_elasticity
   private
   public :: elasticity, new_elasticity, cross_modulus, isotropic_matrix, equivalent_stress
 
-  !> The constants of a material.
+  !> Elastic constants of a material.
   type :: elasticity
     real(wp) :: young = 1.0_wp   !! E [stress]
     real(wp) :: bulk = 1.0_wp    !! K [stress]
@@ -16,7 +16,7 @@ module epcont_material_elasticity
 
 contains
 
-  !> The constants from E [stress] and Poisson's ratio.
+  !> Compute the constants from E [stress] and Poisson's ratio.
   pure type(elasticity) function new_elasticity(young, poisson)
     real(wp), intent(in) :: young, poisson   !! E [stress], nu
 
@@ -24,8 +24,8 @@ contains
       shear=young/(2.0_wp*(1.0_wp + poisson)), shift=(1.0_wp - 2.0_wp*poisson)/(3.0_wp*young))
   end function new_elasticity
 
-  !> What a normal strain adds to the normal stress across: K - 2/3 G, less in a sheet, where the stress zz
-  !! vanishes [stress].
+  !> Factor of a normal strain in the normal stresses of other axes: K - 2/3 G, less in plane stress, where zz
+  !! is zero [stress].
   pure real(wp) function cross_modulus(bulk, shear, sheet) result(cross)
     real(wp), intent(in) :: bulk, shear   !! K, G [stress]
     logical, intent(in) :: sheet   !! plane stress
@@ -34,8 +34,8 @@ contains
     if (sheet) cross = 2.0_wp*shear*cross/(cross + 2.0_wp*shear)
   end function cross_modulus
 
-  !> D of stress = D strain, components xx, yy, zz, xy (engineering shear strain) [stress]. With G = E_D/3 it
-  !! is the secant matrix (2-8). In a sheet the stress zz vanishes, and the strain zz is what that takes.
+  !> Find D of stress = D strain, components xx, yy, zz, xy (engineering shear strain) [stress]. With G =
+  !! E_D/3 it is the secant matrix (2-8). In plane stress, the stress zz is zero and its strain eliminated.
   pure function isotropic_matrix(bulk, shear, sheet) result(d)
     real(wp), intent(in) :: bulk, shear   !! K, G [stress]
     logical, intent(in) :: sheet   !! plane stress

@@ -26,7 +26,7 @@ contains
 
   !> Make the elastic law.
   pure function elastic_law(materials) result(law)
-    type(model_materials), intent(in) :: materials   !! of the scene
+    type(model_materials), intent(in) :: materials   !! of the model
     type(linear_law) :: law
     integer :: last, p, s
 
@@ -51,7 +51,7 @@ contains
   !> Set the matrix of a point that yields.
   pure subroutine set_matrix(self, point, matrix)
     class(linear_law), intent(inout) :: self
-    integer, intent(in) :: point                             !! which
+    integer, intent(in) :: point                             !! number of the point
     real(wp), intent(in) :: matrix(components, components)   !! [stress]
 
     associate (now => self%matrix(:, :, self%matrix_of(point)))
@@ -60,7 +60,7 @@ contains
     end associate
   end subroutine set_matrix
 
-  !> Stress of each point [components, points].
+  !> Find the stress of each point [components, points].
   function stress(self, strain)
     class(linear_law), intent(in) :: self
     real(wp), intent(in) :: strain(:, :)   !! [components, points]
@@ -69,7 +69,7 @@ contains
     stress = self%increment(strain) + self%initial_stress
   end function stress
 
-  !> Change of the stress of each point due to a strain [components, points].
+  !> Find the change of the stress of each point by a strain [components, points].
   function increment(self, strain)
     class(linear_law), intent(in) :: self
     real(wp), intent(in) :: strain(:, :)   !! [components, points]

@@ -1,14 +1,13 @@
 !> Von Mises yield with isotropic hardening along the uniaxial curve of the material. The mean stress is
-!> elastic, and the stress deviator is parallel to the strain deviator less the plastic strain that is
-!> committed:
+!> elastic. The stress deviator is parallel to the strain deviator minus the committed plastic strain:
 !>
 !>     stress = K theta + (2 E_D/3) (deviatoric strain - plastic strain),   E_D = sigma_i/e    (2-5), (2-6)
 !>
-!> From the virgin state this is deformation ("total") theory. From a committed state it is one backward
-!> Euler increment of flow theory, returned along the radius to the curve.
+!> From the virgin state this is deformation ("total") theory. From a committed state it is one backward Euler
+!> increment of flow theory, with radial return to the curve.
 !>
-!> Strains and stresses are xx, yy, zz, xy (engineering shear strain). In plane stress the strain zz is found,
-!> whatever is given.
+!> Strains and stresses are xx, yy, zz, xy (engineering shear strain). In plane stress the strain zz is
+!> computed; its input is ignored.
 module epcont_material_material_law
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: components
@@ -18,24 +17,25 @@ module epcont_material_material_law
   private
   public :: material_law, plastic_history, point_state
 
-  !> Steps for the strain across a plane-stress sheet; bisection alone would end after some 60.
+  !> Largest number of steps for the strain zz in plane stress; bisection alone needs about 60.
   integer, parameter :: most_steps = 100
 
-  !> What a point remembers of the increments that are over.
+  !> Plastic history of a point, after complete increments.
   type :: plastic_history
     real(wp) :: strain(components) = 0.0_wp   !! plastic strain, a deviator
     real(wp) :: accumulated = 0.0_wp          !! equivalent plastic strain
   end type plastic_history
 
-  !> The material at an integration point.
+  !> State of the material at an integration point.
   type, extends(curve_value) :: point_state
     real(wp) :: stress(components) = 0.0_wp   !! [stress]
     real(wp) :: across = 0.0_wp               !! strain zz
-    real(wp) :: deviatoric = 0.0_wp           !! equivalent strain e of deviator less committed plastic strain
-    logical :: plastic = .false.              !! it yields, or has yielded in an increment before
+    real(wp) :: deviatoric = 0.0_wp           !! equivalent strain e of strain deviator minus committed
+                                              !! plastic strain
+    logical :: plastic = .false.              !! it yields, or has yielded in an earlier increment
   end type point_state
 
-  !> The law of a section.
+  !> Material law of a section.
   type, extends(elasticity) :: material_law
     logical :: sheet = .false.         !! plane stress
     logical :: yields = .false.
@@ -51,13 +51,13 @@ module epcont_material_material_law
 
 contains
 
-  !> The state at a strain.
+  !> Find the state at a strain.
   pure subroutine update(self, strain, committed, trial)
     class(material_law), intent(in) :: self
     real(wp), intent(in) :: strain(components)
     type(plastic_history), intent(in) :: committed   !! at the end of the last increment of the loads
     type(point_state), intent(out) :: trial
-    real(wp) :: beyond(components)   ! the plastic strain
+    real(wp) :: beyond(components)   ! committed plastic strain
 
     beyond = strain - committed%strain
     if (self%sheet) beyond(3) = strain_across(self, beyond, committed%accumulated)
@@ -70,7 +70,7 @@ contains
                   self%shift*trial%modulus*trial%deviatoric
   end subroutine update
 
-  !> The state at a strain less the plastic strain, with zz as it is given.
+  !> Find the state at a strain minus the plastic strain, with its zz as given.
   pure subroutine find_state(self, strain, accumulated, state)
     class(material_law), intent(in) :: self
     real(wp), intent(in) :: strain(components), accumulated
@@ -79,7 +79,7 @@ contains
 
     deviator = deviator_of(strain)
     state%deviatoric = equivalent_of(deviator)
-    ! The curve is over e of loads that grow from zero, which is that of the elastic strain and the plastic.
+    ! The curve is over e of loads that grow from zero: elastic plus plastic strain.
     state%curve_value = self%curve%at_strain(state%deviatoric + accumulated)
     if (accumulated > 0.0_wp) then
       on_curve = state%modulus*(state%deviatoric + accumulated)
@@ -92,9 +92,8 @@ contains
     state%stress(:3) = state%stress(:3) + 3.0_wp*self%bulk*(sum(strain(:3))/3.0_wp)
   end subroutine find_state
 
-  !> The strain across a sheet in plane stress, less the plastic strain, where the stress across vanishes.
-  !! That stress rises with the strain, and has its zero between that of the elastic sheet and that of
-  !! constant volume.
+  !> Find the strain zz in plane stress, minus the plastic strain, at which the stress zz is zero. This stress
+  !! increases with the strain; its zero is between that of the elastic body and that of constant volume.
   pure real(wp) function strain_across(self, strain, accumulated) result(across)
     class(material_law), intent(in) :: self
     real(wp), intent(in) :: strain(components), accumulated
@@ -125,24 +124,24 @@ contains
     end do
   end function strain_across
 
-  !> What a point remembers once an increment is over.
+  !> Find the history of a point after an increment.
   pure type(plastic_history) function history_after(self, strain, committed, state) result(history)
     class(material_law), intent(in) :: self
     real(wp), intent(in) :: strain(components)       !! at the end of the increment
     type(plastic_history), intent(in) :: committed   !! before it
-    type(point_state), intent(in) :: state           !! that `update` has found
+    type(point_state), intent(in) :: state           !! from `update`
     real(wp) :: elastic
 
     history = committed
     if (.not. state%yielded) return
-    elastic = state%modulus/(3.0_wp*self%shear)   ! part of the deviator that is elastic
+    elastic = state%modulus/(3.0_wp*self%shear)   ! elastic part of the deviator
     associate (deviator => deviator_of([strain(:2), state%across, strain(4)] - committed%strain))
       history%strain = committed%strain + (1.0_wp - elastic)*deviator*[1.0_wp, 1.0_wp, 1.0_wp, 2.0_wp]
     end associate
     history%accumulated = committed%accumulated + (1.0_wp - elastic)*state%deviatoric
   end function history_after
 
-  !> Deviator of a strain, with the tensor's shear strain.
+  !> Find the deviator of a strain, with the tensor's shear strain.
   pure function deviator_of(strain) result(deviator)
     real(wp), intent(in) :: strain(components)
     real(wp) :: deviator(components)
@@ -151,7 +150,7 @@ contains
     deviator(4) = 0.5_wp*strain(4)
   end function deviator_of
 
-  !> Equivalent strain e of a deviator.
+  !> Find the equivalent strain e of a deviator.
   pure real(wp) function equivalent_of(deviator) result(e)
     real(wp), intent(in) :: deviator(components)
 
@@ -159,7 +158,7 @@ contains
              2.0_wp/3.0_wp)
   end function equivalent_of
 
-  !> What the tangent has less than the secant along the deviator: (4/9) (h - E_D)/e**2 [stress].
+  !> Difference of tangent and secant along the deviator: (4/9) (h - E_D)/e**2 [stress].
   pure real(wp) function radial_stiffness(state)
     type(point_state), intent(in) :: state
 
@@ -167,21 +166,21 @@ contains
     if (state%yielded) radial_stiffness = 4.0_wp/9.0_wp*(state%slope - state%modulus)/state%deviatoric**2
   end function radial_stiffness
 
-  !> D of stress = D (strain - plastic strain) (2-8) [stress].
+  !> Find D of stress = D (strain - plastic strain) (2-8) [stress].
   pure function secant_matrix(self, state) result(d)
     class(material_law), intent(in) :: self
-    type(point_state), intent(in) :: state   !! that `update` has found
+    type(point_state), intent(in) :: state   !! from `update`
     real(wp) :: d(components, components)
 
     d = isotropic_matrix(self%bulk, state%modulus/3.0_wp, self%sheet)
   end function secant_matrix
 
-  !> D of d stress = D d strain about a state, consistent with `update` [stress].
+  !> Find D of d stress = D d strain about a state, consistent with `update` [stress].
   pure function tangent_matrix(self, strain, committed, state) result(d)
     class(material_law), intent(in) :: self
     real(wp), intent(in) :: strain(components)
     type(plastic_history), intent(in) :: committed
-    type(point_state), intent(in) :: state       !! that `update` has found there
+    type(point_state), intent(in) :: state       !! from `update`
     real(wp) :: d(components, components)
     real(wp) :: across(components), deviator(components), radial
     integer :: j
@@ -193,7 +192,7 @@ contains
       d(:, j) = d(:, j) + radial*deviator*deviator(j)
     end do
     if (.not. self%sheet) return
-    ! The stress zz is zero: its strain is eliminated.
+    ! Eliminate the strain zz, since the stress zz is zero.
     across = d(:, 3)
     do j = 1, components
       d(:, j) = d(:, j) - across*across(j)/across(3)
@@ -202,11 +201,11 @@ contains
     d(:, 3) = 0.0_wp
   end function tangent_matrix
 
-  !> How far a stress is from that of the material: von Mises stress of the difference, over that of the curve
-  !! there, or the yield stress below yield. (The mean parts are elastic.)
+  !> Find the stress error: von Mises stress of the difference from the material's stress, over the stress on
+  !! the curve, or over the yield stress below yield. (The mean parts are elastic.)
   pure real(wp) function distance(self, state, stress)
-    class(material_law), intent(in) :: self      !! one that yields
-    type(point_state), intent(in) :: state       !! that `update` has found
+    class(material_law), intent(in) :: self      !! of a material that can yield
+    type(point_state), intent(in) :: state       !! from `update`
     real(wp), intent(in) :: stress(components)   !! [stress]
 
     distance = equivalent_stress((stress - state%stress)/max(state%modulus*state%deviatoric, &

@@ -1,5 +1,4 @@
-!> The materials of a scene: the law of each section, what each integration point has committed, and the
-!> states of the points.
+!> Materials of a model: the law of each section, and history and state of each integration point.
 module epcont_material_model_materials
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: components, plane_stress
@@ -16,8 +15,8 @@ module epcont_material_model_materials
     type(material_law), allocatable :: section(:)  !! [sections]
     integer, allocatable :: of_point(:)            !! section of each integration point [points]
     logical, allocatable :: can_yield(:)           !! the point can [points]
-    logical :: yields = .false.                    !! does any section?
-    !> At the end of the increment before; not allocated: nothing is committed, as in total theory [points]
+    logical :: yields = .false.                    !! a section can yield
+    !> History after the previous increment; not allocated in total theory [points]
     type(plastic_history), allocatable :: committed(:)
   contains
     procedure :: commit
@@ -29,7 +28,7 @@ module epcont_material_model_materials
 
 contains
 
-  !> The law of each section, as the deck has it.
+  !> Make the law of each section from the model's data.
   pure subroutine find_materials(model, materials)
     type(model_type), intent(in) :: model             !! model
     type(model_materials), intent(out) :: materials   !! of its sections and points
@@ -52,11 +51,11 @@ contains
     materials%can_yield = yields(materials%of_point)
   end subroutine find_materials
 
-  !> An increment of the loads is over: the next one starts from its strains.
+  !> Commit an increment of the loads: the next one starts from its strains.
   subroutine commit(self, strain, state)
     class(model_materials), intent(inout) :: self
     real(wp), intent(in) :: strain(:, :)           !! at its end [components, points]
-    type(point_state), intent(in) :: state(:)      !! found there [points]
+    type(point_state), intent(in) :: state(:)      !! its states [points]
     integer :: p
 
     if (.not. allocated(self%committed)) allocate (self%committed(size(strain, 2)))
@@ -69,7 +68,7 @@ contains
     !$omp end parallel do
   end subroutine commit
 
-  !> What a point has committed.
+  !> History of a point.
   pure type(plastic_history) function history(self, point)
     class(model_materials), intent(in) :: self
     integer, intent(in) :: point
@@ -77,7 +76,7 @@ contains
     if (allocated(self%committed)) history = self%committed(point)
   end function history
 
-  !> The state of a point at a strain.
+  !> Find the state of a point at a strain.
   pure type(point_state) function state_at(self, point, strain) result(state)
     class(model_materials), intent(in) :: self
     integer, intent(in) :: point
@@ -86,7 +85,7 @@ contains
     call self%section(self%of_point(point))%update(strain, self%history(point), state)
   end function state_at
 
-  !> The states of all points at their strains [points].
+  !> Find the states of all points at their strains [points].
   function states(self, strain) result(state)
     class(model_materials), intent(in) :: self
     real(wp), intent(in) :: strain(:, :)   !! [components, points]
@@ -101,14 +100,14 @@ contains
     !$omp end parallel do
   end function states
 
-  !> How far stresses are from those of the materials, by `distance`, at most, and how many elements yield.
+  !> Find the largest stress error, by `distance`, and count the yielded elements.
   subroutine measure(self, model, state, stress, farthest, yielded)
     class(model_materials), intent(in) :: self
     type(model_type), intent(in) :: model        !! model
     type(point_state), intent(in) :: state(:)    !! [points]
     real(wp), intent(in) :: stress(:, :)         !! xx, yy, zz, xy [stress] [components, points]
-    real(wp), intent(out) :: farthest            !! 0 where nothing can yield
-    integer, intent(out) :: yielded              !! elements
+    real(wp), intent(out) :: farthest            !! 0 if nothing can yield
+    integer, intent(out) :: yielded              !! number of elements
     integer :: e, p
 
     farthest = 0.0_wp

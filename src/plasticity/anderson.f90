@@ -1,7 +1,7 @@
-!> Anderson's acceleration of a fixed-point iteration x -> g(x): from the last steps the mixture of g whose g
-!> - x is least, in the norm of the elastic energy of strains. A mixture after which g - x has grown has
-!> misled: twice as many steps as after the last such one are then taken as they are, so that where mixing
-!> does harm it is the plain iteration.
+!> Anderson acceleration of a fixed-point iteration x -> g(x): the combination of the last steps' g with the
+!> least g - x, in the norm of the elastic strain energy. If g - x grows after a combination, plain steps
+!> follow: twice as many as after the previous failure. So if acceleration does harm, the iteration becomes
+!> the plain one.
 module epcont_plasticity_anderson
   use epcont_base_kinds, only: wp
   use epcont_linear_solved_state, only: solved_state
@@ -10,14 +10,14 @@ module epcont_plasticity_anderson
   private
   public :: anderson_mixer
 
-  !> Steps remembered.
+  !> Number of steps stored.
   integer, parameter :: memory = 5
-  !> A step that is the others' mixture but for this part of it tells nothing new.
+  !> A step that differs by at most this part from a combination of the others adds nothing.
   real(wp), parameter :: dependent = 1.0e-10_wp
 
-  !> What a step has found, or how that has changed.
+  !> Result of a step, or its change.
   type :: step_type
-    real(wp), allocatable :: rest(:, :)           !! strains of g - x [components, points]
+    real(wp), allocatable :: rest(:, :)           !! residual strains of g - x [components, points]
     real(wp), allocatable :: strain(:, :)         !! of g [components, points]
     real(wp), allocatable :: displacement(:, :)   !! of g [directions, nodes]
   end type step_type
@@ -26,18 +26,18 @@ module epcont_plasticity_anderson
     private
     real(wp), allocatable :: weight(:)   !! of each point in the norm [points]
     type(step_type) :: last
-    integer :: steps = 0                 !! remembered
-    type(step_type) :: change(memory)    !! in these, the latest first
-    logical :: mixed = .false.           !! the last step was a mixture
-    integer :: plain = 0                 !! steps to be taken as they are before the next mixture
-    integer :: penalty = 0               !! the same after the last mixture that misled
+    integer :: steps = 0                 !! number of stored steps
+    type(step_type) :: change(memory)    !! their changes, the latest first
+    logical :: mixed = .false.           !! the last step was a combination
+    integer :: plain = 0                 !! number of plain steps before the next combination
+    integer :: penalty = 0               !! the same number after the last failure
   contains
     procedure :: mix
   end type anderson_mixer
 
 contains
 
-  !> The next x, when the last one was `about` and g(about) is `found`.
+  !> Find the next x from the last one, `about`, and its result g(about), `found`.
   subroutine mix(self, model, volume, found, about)
     class(anderson_mixer), intent(inout) :: self
     type(model_type), intent(in) :: model        !! model
@@ -68,7 +68,7 @@ contains
 
   contains
 
-    !> Add the step from the last x to this one.
+    !> Store the step from the last x to this one.
     subroutine remember()
       if (self%mixed .and. product_of(now%rest, now%rest) > product_of(self%last%rest, self%last%rest)) then
         self%steps = 0
@@ -84,7 +84,7 @@ contains
                                  now%displacement - self%last%displacement)
     end subroutine remember
 
-    !> Shares of the steps that make the last g - x least: least squares by Gram and Schmidt.
+    !> Find the factors of the steps with the least g - x: least squares by Gram-Schmidt orthogonalization.
     pure function best_shares() result(share)
       real(wp) :: share(memory)
       type(step_type) :: unit(memory)

@@ -1,4 +1,4 @@
-!> The iteration to equilibrium at one load; it knows nothing of the method that it drives.
+!> Iteration to equilibrium at one load, for any method.
 module epcont_plasticity_equilibrium_iteration
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: solved_to
@@ -21,37 +21,38 @@ module epcont_plasticity_equilibrium_iteration
   private
   public :: equilibrium_iteration
 
-  !> Displacements so many times those of the first solve, with a perfectly plastic curve: nothing carries the
-  !! load.
+  !> If displacements are this multiple of those of the first solve, with a perfectly plastic curve, nothing
+  !! carries the load.
   real(wp), parameter :: far_away = 1.0e4_wp
-  !> Without mixing, so many solves tell the rate; where they are more, or more is to come than so many times
-  !! the last change, it is a slow one. Few, slow or mixed steps say too little of what is to come, and
-  !! prescribed displacements hide it in the largest: the estimate is tested.
+  !> The error estimate is tested by a tangent step after few solves, after many, if the remaining error is a
+  !! large multiple of the last change (slow convergence), with acceleration, and with prescribed
+  !! displacements, which hide the error in the largest displacement.
   integer, parameter :: few_solves = 4, many_solves = 8
   real(wp), parameter :: slow = 3.0_wp
-  !> A tangent step that shows more than so many times what was estimated is no measure of it.
+  !> A tangent step that shows more than this multiple of the estimate is not a test of it.
   real(wp), parameter :: most_doubt = 1.0e2_wp
-  !> A tangent with this part of the secant matrix in it, or more, tests nothing.
+  !> A tangent with at least this part of the secant matrix is not used for the test.
   real(wp), parameter :: too_stiff = 1.0e-3_wp
-  !> Changes that fall no more are rounding up to this part of the largest displacement; beyond, all is lost.
+  !> Changes that stop decreasing are rounding up to this part of the largest displacement; larger ones are a
+  !! failure.
   real(wp), parameter :: stagnant = 1.0e-3_wp
 
   type :: equilibrium_iteration
-    type(iteration_plan) :: plan                    !! how it is iterated; it may differ from the model's
-    type(linear_problem), allocatable :: linear     !! as the last solve left it
-    !> With factors of the unloaded state, where another load case will want these and the bodies yield
+    type(iteration_plan) :: plan                    !! method and tolerances; may differ from the model's
+    type(linear_problem), allocatable :: linear     !! as after the last solve
+    !> With factors of the unloaded state, if another load case needs them and the model yields
     type(linear_problem), allocatable :: virgin
     logical :: keeps = .false.                      !! another load case may follow
     real(wp) :: load_factor = 0.0_wp                !! of the loads
-    type(solved_state), allocatable :: state         !! found at this load
+    type(solved_state), allocatable :: state         !! state at this load
     logical :: converged = .false.
     logical :: runs_away = .false.                  !! no equilibrium: displacements grow without end
     integer :: failed_body = 0                      !! body that could not be factored
     type(iteration_record), allocatable :: history(:)   !! every solve
-    type(pivot_record), allocatable :: pivot(:)         !! those that are kept of each, one after the other
-    type(solved_state), private :: about             !! that the law is about
-    type(iteration_record), private :: now          !! of the last solve
-    logical, allocatable, private :: touching(:)    !! the last set: the next contact starts from it [pairs]
+    type(pivot_record), allocatable :: pivot(:)         !! kept pivots of all solves
+    type(solved_state), private :: about             !! state about which the law is linear
+    type(iteration_record), private :: now          !! the last solve
+    logical, allocatable, private :: touching(:)    !! active set, from which the next search starts [pairs]
     real(wp), allocatable, private :: force(:)      !! the last contact forces [force] [pairs]
     type(error_estimate), private :: estimate
     integer, private :: factored_before = 0         !! bodies, for load cases before
@@ -103,7 +104,8 @@ contains
     allocate (self%history(0), self%pivot(0))
   end subroutine begin
 
-  !> Iterate at one load. The state is the last, or if that is not converged the one nearest to equilibrium.
+  !> Iterate at one load. The result is the last state, or if this has not converged, the state closest to
+  !! equilibrium.
   subroutine iterate(self, scene, load_factor, watch)
     class(equilibrium_iteration), intent(inout) :: self
     type(planned_model), intent(in) :: scene
@@ -119,7 +121,7 @@ contains
     least_residual = huge(1.0_wp)
     if (allocated(self%state)) deallocate (self%state)
     allocate (self%state, found)
-    ! The law may be a last step's tangent.
+    ! The law may be the tangent of the last step.
     if (.not. self%stiff) self%linear%law = elastic_law(self%linear%materials)
     call choose_method(self%plan, method)
     call self%estimate%begin()
@@ -128,8 +130,8 @@ contains
       if (self%failed_body > 0) return
       call self%linear%solve(scene, load_factor, self%touching, found, watch)
       if (found%contact%state /= contact_solved) then
-        ! Not found about a later state, such as one beyond the limit load: what was found before is not
-        ! converged.
+        ! No contact about a later state, such as one beyond the limit load: the previous state is the result,
+        ! not converged.
         if (iteration == 1 .or. found%contact%state /= contact_stalled) call move_alloc(found, self%state)
         return
       end if
@@ -144,7 +146,7 @@ contains
       if (.not. self%plan%from_first_pivot) self%touching = found%contact%touching
       self%force = found%contact%force
       self%yielded = self%now%yielded
-      ! Behind the last load step nothing is linearised any more.
+      ! After the last load step no linearisation is needed.
       if (self%linear%materials%yields .and. .not. (self%converged .and. load_factor >= 1.0_wp)) &
         call method%advance(scene%model, self%linear, load_factor, found, self%about)
       call watch%lap(stage_yielding)
@@ -158,7 +160,7 @@ contains
     end do
   end subroutine iterate
 
-  !> The stiffness about a state that was found before, made once more.
+  !> Make the stiffness about an earlier state again.
   subroutine return_to(self, scene, state, watch)
     class(equilibrium_iteration), intent(inout) :: self
     type(planned_model), intent(in) :: scene
@@ -167,22 +169,22 @@ contains
     class(secant_method), allocatable :: method
 
     self%about = state
-    self%stiff = self%stiff .and. self%plan%method == method_inistr   ! that is the elastic one, at any load
+    self%stiff = self%stiff .and. self%plan%method == method_inistr   ! it is elastic at any load
     call choose_method(self%plan, method)
     call self%set_law(scene, method, watch)
   end subroutine return_to
 
-  !> Bodies that have been factored.
+  !> Count the factored bodies.
   pure integer function factorizations(self)
     class(equilibrium_iteration), intent(in) :: self
 
     factorizations = self%linear%factorizations - self%factored_before
   end function factorizations
 
-  !> Hand on what another load case may go on from.
+  !> Pass on the data for another load case.
   subroutine finish(self, is_equilibrium, linear, virgin)
     class(equilibrium_iteration), intent(inout) :: self
-    logical, intent(in) :: is_equilibrium   !! the last contacts belong to a state of equilibrium
+    logical, intent(in) :: is_equilibrium   !! the last active set belongs to an equilibrium state
     type(linear_problem), allocatable, intent(inout) :: linear, virgin
 
     if (is_equilibrium) call move_alloc(self%touching, self%linear%touching)
@@ -190,7 +192,7 @@ contains
     call move_alloc(self%virgin, virgin)
   end subroutine finish
 
-  !> The method, which knows nothing yet: so it begins at each load.
+  !> Create the method, without data, as at the start of each load.
   subroutine choose_method(plan, method)
     type(iteration_plan), intent(in) :: plan
     class(secant_method), allocatable, intent(out) :: method
@@ -206,14 +208,14 @@ contains
     if (mixes(plan)) allocate (method%mixer)
   end subroutine choose_method
 
-  !> Does the method mix its last states?
+  !> Does the method combine its last states?
   pure logical function mixes(plan)
     type(iteration_plan), intent(in) :: plan
 
     mixes = any(plan%method == [method_modsec, method_inistr])
   end function mixes
 
-  !> The law about the last state, and the stiffness for it, unless a body has none that can be factored.
+  !> Set the law about the last state and make its stiffness, unless a body cannot be factored.
   subroutine set_law(self, scene, method, watch)
     class(equilibrium_iteration), intent(inout) :: self
     type(planned_model), intent(in) :: scene
@@ -231,7 +233,7 @@ contains
         .not. allocated(self%virgin)) self%virgin = self%linear
   end subroutine set_law
 
-  !> Add a solve to the history, what it has changed and left. Was it the last, or a further one by tangent?
+  !> Record a solve, and decide whether it is the last one, or a tangent step is next.
   subroutine judge(self, scene, found, watch)
     class(equilibrium_iteration), intent(inout) :: self
     type(planned_model), intent(in) :: scene
@@ -242,7 +244,7 @@ contains
     associate (now => self%now)
       call self%estimate%estimate(self%about, found, self%force, mixes(self%plan), now)
       if (now%yielded + self%yielded == 0 .or. now%residual <= solved_to .and. now%error < 0.0_wp) then
-        now%error = merge(now%change, 0.0_wp, now%iteration > 1)   ! what changes is rounding, if anything
+        now%error = merge(now%change, 0.0_wp, now%iteration > 1)   ! changes are only rounding
         now%force_error = merge(now%force_change, 0.0_wp, now%iteration > 1)
       end if
     end associate
@@ -251,7 +253,7 @@ contains
     if (self%converged .and. self%wants_test(scene)) call self%step_by_tangent(scene, found, watch)
   end subroutine judge
 
-  !> Put a solve into the history. Its pivots stand by themselves: a list of lists would be copied slowly.
+  !> Add a solve to the history. Pivots have a separate list, since nested lists would be copied slowly.
   subroutine keep(self, found)
     class(equilibrium_iteration), intent(inout) :: self
     type(solved_state), intent(in) :: found
@@ -260,12 +262,12 @@ contains
     if (self%now%kept > 0) self%pivot = [self%pivot, found%contact%history]
   end subroutine keep
 
-  !> How far the state found is from the last, and its stresses from the curve. Equilibrium and contact are
-  !! exact in each solve: that distance is all that is left of the model's equations.
+  !> Measure the change from the last state, and the stress error. Equilibrium and contact are exact in each
+  !! solve, so these are the only residuals.
   subroutine measure(self, scene, found)
     class(equilibrium_iteration), intent(inout) :: self
     type(planned_model), intent(in) :: scene
-    type(solved_state), intent(inout) :: found         !! its points are set
+    type(solved_state), intent(inout) :: found         !! its points are set here
 
     associate (now => self%now, materials => self%linear%materials)
       now%load_factor = self%load_factor
@@ -282,9 +284,9 @@ contains
     end associate
   end subroutine measure
 
-  !> Is the iteration over? It is when displacements neither change nor are estimated to be off by more than
-  !! the tolerance. Where nothing has yielded, the first solve was exact; and where stresses are on their
-  !! curves to rounding while the changes fall no more, rounding allows no smaller ones.
+  !> Is the iteration over? It is if the change of displacements and the estimated error are within tolerance.
+  !! If nothing has yielded, the first solve was exact. If the stress error is rounding and changes stop
+  !! decreasing, rounding allows no smaller ones.
   pure logical function is_over(self)
     class(equilibrium_iteration), intent(in) :: self
 
@@ -298,7 +300,7 @@ contains
     end associate
   end function is_over
 
-  !> Is the estimate of what is to come to be tested, and is there a tangent to test it with?
+  !> Is the error estimate to be tested, and is there a tangent for it?
   pure logical function wants_test(self, scene)
     class(equilibrium_iteration), intent(in) :: self
     type(planned_model), intent(in) :: scene
@@ -312,8 +314,8 @@ contains
     end associate
   end function wants_test
 
-  !> The last step is one by the tangent, whose change is what was left. If that is more than the tolerance,
-  !! all is as it was before, but for the doubt in estimates.
+  !> Make the last step with the tangent: its change is the remaining error. If this exceeds the tolerance,
+  !! restore the previous state, with less trust in the estimates.
   subroutine step_by_tangent(self, scene, found, watch)
     class(equilibrium_iteration), intent(inout) :: self
     type(planned_model), intent(in) :: scene
@@ -334,7 +336,7 @@ contains
     self%now%iteration = self%now%iteration + 1
     self%now%change = huge(1.0_wp)
     allocate (next)
-    self%stiff = .false.   ! by no tangent, before and after
+    self%stiff = .false.   ! no factors of a tangent are reused
     call self%set_law(scene, tangent, watch)
     if (self%failed_body == 0 .and. tangent%blend < too_stiff) then
       call self%linear%solve(scene, self%load_factor, found%contact%touching, next, watch)

@@ -1,9 +1,9 @@
-!> How far an iteration still is from where it goes, from what its last steps were worth.
+!> Error estimate of an iteration, from its last steps.
 !>
-!> An iteration takes x to g(x). To first order a step dx changes g by J dx and the rest g - x by (J - 1) dx,
-!> so that of a rest r there is J/(1 - J) r to come in g. How much that is at most, the steps behind tell:
-!> |dg|/|d(g - x)|. In an iteration without mixing it is the sum of the changes to come, each the last times
-!> the rate at which they fall; its last steps are the slowest.
+!> An iteration maps x to g(x). To first order, a step dx changes g by J dx and the residual g - x by (J - 1)
+!> dx, so for a residual r the remaining change of g is J/(1 - J) r. Its upper bound follows from the previous
+!> steps: |dg|/|d(g - x)|. Without acceleration it is the sum of the remaining changes, each the previous one
+!> times the convergence rate; the last steps are the slowest.
 module epcont_plasticity_error_estimate
   use epcont_base_kinds, only: wp
   use epcont_linear_solved_state, only: solved_state
@@ -13,12 +13,12 @@ module epcont_plasticity_error_estimate
   public :: error_estimate, finite_ratio
 
   type :: error_estimate
-    !> The last displacements, g of x, and g - x [length] [directions, nodes]
+    !> Last displacements: g(x), and residual g - x [length] [directions, nodes]
     real(wp), allocatable, private :: displacement(:, :), rest(:, :)
-    !> By how much displacements, and contact forces, had changed: |dg|/|d(g - x)| of the steps at this load
-    !! [1], [force/length]
+    !> Gain of displacements and contact forces, |dg|/|d(g - x)|, of the steps at this load [1],
+    !! [force/length]
     real(wp), allocatable, private :: gain(:), force_gain(:)
-    real(wp) :: doubt = 1.0_wp   !! times what was estimated is what a tangent step has shown
+    real(wp) :: doubt = 1.0_wp   !! error shown by a tangent step / estimated error
   contains
     procedure :: begin
     procedure :: estimate
@@ -26,7 +26,7 @@ module epcont_plasticity_error_estimate
 
 contains
 
-  !> The first step at a load comes next.
+  !> Start at a new load.
   pure subroutine begin(self)
     class(error_estimate), intent(inout) :: self
 
@@ -35,13 +35,13 @@ contains
     self%doubt = 1.0_wp
   end subroutine begin
 
-  !> The errors of a step that has led from x to g; negative where they are not known.
+  !> Estimate the errors of a step from x to g; negative if unknown.
   subroutine estimate(self, from, to, force, mixes, now)
     class(error_estimate), intent(inout) :: self
     type(solved_state), intent(in) :: from, to      !! x and g
-    real(wp), intent(in) :: force(:)               !! the contact forces before [force] [pairs]
-    logical, intent(in) :: mixes                   !! the iteration mixes its last states
-    type(iteration_record), intent(inout) :: now   !! of this step; gets the errors
+    real(wp), intent(in) :: force(:)               !! previous contact forces [force] [pairs]
+    logical, intent(in) :: mixes                   !! the iteration combines its last states
+    type(iteration_record), intent(inout) :: now   !! of this step; receives the errors
     real(wp), allocatable :: last_rest(:, :)
     real(wp) :: step, largest
     integer :: first
@@ -58,8 +58,8 @@ contains
         self%force_gain = [self%force_gain, finite_ratio(maxval([0.0_wp, abs(now_force - force)]), step)]
         if (largest < maxval(abs(last_rest)) .or. largest == 0.0_wp) then
           first = merge(1, max(1, size(self%gain) - 1), mixes)
-          ! A step may by chance be short where much is to come: as long as stresses are off their curves, no
-          ! less than the last change.
+          ! A step may be short by chance, far from the solution. As long as there are stress errors, the
+          ! estimate is at least the last change.
           now%error = max(finite_ratio(maxval(self%gain(first:))*largest, maxval(abs(u))), &
                           min(now%change, now%residual))
           now%force_error = 0.0_wp
@@ -72,7 +72,7 @@ contains
     self%displacement = to%displacement
   end subroutine estimate
 
-  !> a/b, 0 where both are 0; finite.
+  !> a/b; 0 if both are 0; finite.
   pure real(wp) function finite_ratio(a, b)
     real(wp), intent(in) :: a, b
 

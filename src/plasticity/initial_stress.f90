@@ -1,5 +1,5 @@
-!> METHOD INISTR: the stiffness stays elastic and is factored once; what the elastic stress is off the curve
-!> goes to the right-hand side. Accelerated as MODSEC is.
+!> METHOD INISTR: the stiffness stays elastic and is factored once; the difference of the elastic stress from
+!> the curve goes to the right-hand side. Accelerated like MODSEC.
 module epcont_plasticity_initial_stress
   use epcont_base_kinds, only: wp
   use epcont_linear_linear_problem, only: linear_problem
@@ -16,11 +16,11 @@ module epcont_plasticity_initial_stress
 
 contains
 
-  !> Initial stress: that of the curve less the elastic one.
+  !> Find the initial stress: stress on the curve minus elastic stress.
   pure subroutine linearise(self, p, about, linear)
     class(initial_stress_method), intent(inout) :: self
-    integer, intent(in) :: p                         !! the point
-    type(solved_state), intent(in) :: about           !! its strain, and its points
+    integer, intent(in) :: p                         !! number of the point
+    type(solved_state), intent(in) :: about           !! with strains and points
     type(linear_problem), intent(inout) :: linear    !! its law is set
 
     associate (law => linear%law, state => about%point(p))

@@ -1,4 +1,4 @@
-!> The linear law about a state, by any method, and the stiffness that it gives.
+!> Linear law about a state, for any method, and its stiffness.
 module epcont_plasticity_law_of_state
   use epcont_linear_linear_problem, only: linear_problem
   use epcont_linear_solved_state, only: solved_state
@@ -13,11 +13,11 @@ module epcont_plasticity_law_of_state
 
 contains
 
-  !> The law about a state.
+  !> Find the law about a state.
   subroutine linearise(scene, method, about, linear, watch)
-    type(planned_model), intent(in) :: scene           !! what is loaded
-    class(secant_method), intent(inout) :: method      !! how its law is made a linear one
-    type(solved_state), intent(in) :: about             !! its strains, and its points
+    type(planned_model), intent(in) :: scene           !! model
+    class(secant_method), intent(inout) :: method      !! defines the linear law
+    type(solved_state), intent(in) :: about             !! with strains and points
     type(linear_problem), intent(inout) :: linear      !! its law is set
     class(observer), intent(inout) :: watch            !! takes the time
     integer :: p
@@ -30,13 +30,13 @@ contains
     call watch%lap(stage_yielding)
   end subroutine linearise
 
-  !> The stiffness for that law, made stiffer as long as it cannot be factored.
+  !> Make the stiffness of this law; as long as it cannot be factored, make the law stiffer.
   subroutine factor_law(scene, method, about, linear, failed_body, watch)
-    type(planned_model), intent(in) :: scene           !! what is loaded
-    class(secant_method), intent(inout) :: method      !! how its law was made a linear one
-    type(solved_state), intent(in) :: about             !! its strains, and its points
-    type(linear_problem), intent(inout) :: linear      !! with that law
-    integer, intent(out) :: failed_body                !! has none that can be factored; 0: none
+    type(planned_model), intent(in) :: scene           !! model
+    class(secant_method), intent(inout) :: method      !! defines the linear law
+    type(solved_state), intent(in) :: about             !! with strains and points
+    type(linear_problem), intent(inout) :: linear      !! with this law
+    integer, intent(out) :: failed_body                !! body without factors; 0 if there is no such body
     class(observer), intent(inout) :: watch            !! takes the time
     logical :: possible
 

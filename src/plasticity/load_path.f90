@@ -16,22 +16,23 @@ module epcont_plasticity_load_path
   private
   public :: followed_loads, follow_loads
 
-  !> What came of the loads, and how: a state, the answer or what came nearest to one.
+  !> Result of the loads: the answer, or the state closest to it.
   type, extends(solved_state) :: followed_loads
-    real(wp) :: load_factor = 0.0_wp       !! part of the loads for which the state is
-    logical :: converged = .false.         !! all loads, to the tolerance of the iteration
-    logical :: carried = .false.           !! a part of them, to that tolerance
+    real(wp) :: load_factor = 0.0_wp       !! part of the loads of this state
+    logical :: converged = .false.         !! for all loads, to the tolerance of the iteration
+    logical :: carried = .false.           !! a part of the loads, to this tolerance
     logical :: runs_away = .false.         !! no equilibrium: the displacements grow without end
     integer :: failed_body = 0             !! body that could not be factored
-    logical :: lacks_memory = .false.      !! that was for want of memory
+    logical :: lacks_memory = .false.      !! the reason was too little memory
     integer :: factorizations = 0          !! of bodies
     real(wp) :: condition = 1.0_wp         !! of the stiffness, estimated in the 1-norm
     type(weak_pivot) :: weakest            !! of the stiffness
     type(iteration_record), allocatable :: history(:)   !! every solve
-    type(pivot_record), allocatable :: pivot(:)         !! those that are kept of each, one after the other
-    !> Flow theory: the load steps before the last, for the certificate [any]
+    type(pivot_record), allocatable :: pivot(:)         !! kept pivots of all solves
+    !> Flow theory: load steps before the last, for the certificate [any]
     type(committed_step), allocatable :: committed(:)
-    integer :: unloaded = 0                !! elements whose strain fell, after yielding, as the load grew
+    integer :: unloaded = 0                !! elements whose strain decreased after yielding, while the load
+                                           !! grew
     integer :: first_unloaded = 0          !! one of them
   contains
     procedure, private :: keep_step, keep_committed
@@ -39,16 +40,17 @@ module epcont_plasticity_load_path
 
 contains
 
-  !> Load step by load step to the answer. Of several load cases the first is one without `linear`; the others
-  !! have it from the one before, and the factors of the unloaded state.
+  !> Apply the loads step by step. The first load case starts without `linear`; the others get it from the
+  !! previous one, with the factors of the unloaded state.
   subroutine follow_loads(scene, plan, keeps, linear, virgin, answer, watch)
-    type(planned_model), intent(in) :: scene                   !! what is loaded
-    type(iteration_plan), intent(in) :: plan                   !! how; it may differ from the model's
+    type(planned_model), intent(in) :: scene                   !! model
+    type(iteration_plan), intent(in) :: plan                   !! method and tolerances; may differ from the
+                                                               !! model's
     logical, intent(in) :: keeps                               !! another load case may follow
-    type(linear_problem), allocatable, intent(inout) :: linear   !! as the last solve left it
-    !> With factors of the unloaded state, where these will be wanted and the bodies yield
+    type(linear_problem), allocatable, intent(inout) :: linear   !! as after the last solve
+    !> With factors of the unloaded state, if they will be needed and the model yields
     type(linear_problem), allocatable, intent(inout) :: virgin
-    type(followed_loads), intent(out) :: answer                !! what came of it
+    type(followed_loads), intent(out) :: answer                !! state and history
     class(observer), intent(inout) :: watch                    !! takes the time, called after each solve
     type(equilibrium_iteration) :: iteration
     real(wp) :: strained(scene%model%mesh%points)   ! e of points that yielded in the last load step, else 0
@@ -99,7 +101,7 @@ contains
     call move_alloc(more, self%committed)
   end subroutine keep_committed
 
-  !> Take what a load step has found. Of a load that was not carried nothing is kept, if one was before.
+  !> Store the result of a load step. If it was not carried, nothing is stored, unless it is the first.
   subroutine keep_step(self, scene, iteration, watch)
     class(followed_loads), intent(inout) :: self
     type(planned_model), intent(in) :: scene

@@ -1,8 +1,8 @@
 !> METHOD NEWTON: consistent tangent, contact exact in each step, line search on the energy.
 !>
-!> Total theory makes the model a convex minimisation: each step is a direction in which the energy falls, and
-!> all points along it satisfy supports and contact, since both its ends do. The search looks for the zero of
-!> the slope (f_int - f).d, since differences of the energy itself drown in rounding.
+!> Total theory makes the model a convex minimisation. Each step is a direction of decreasing energy, and all
+!> points along it satisfy supports and contact, since both its ends do. The search finds the zero of the
+!> slope (f_int - f).d, since differences of the energy itself are lost in rounding.
 module epcont_plasticity_newton
   use epcont_base_bracket, only: bracket
   use epcont_base_kinds, only: wp
@@ -18,17 +18,17 @@ module epcont_plasticity_newton
   private
   public :: newton_method
 
-  !> Parts of the secant matrix mixed into a tangent that could not be factored, tried one after the other.
+  !> Parts of the secant matrix added to a tangent that could not be factored, tried in order.
   real(wp), parameter :: blends(4) = [1.0e-6_wp, 1.0e-4_wp, 1.0e-2_wp, 1.0_wp]
-  !> A step serves in full when the slope at its end is at most this part of that at its beginning.
+  !> The full step is taken if the slope at its end is at most this part of that at its start.
   real(wp), parameter :: flat_enough = 0.5_wp
-  !> The search ends when the slope is at most this part of that at the beginning.
+  !> The search ends if the slope is at most this part of that at the start.
   real(wp), parameter :: found_enough = 0.1_wp
-  !> Slopes evaluated in one search.
+  !> Largest number of slopes in one search.
   integer, parameter :: most_slopes = 30
 
   type, extends(secant_method) :: newton_method
-    !> Prescribed displacements and overlaps go in with the first step
+    !> Prescribed displacements and overlaps are part of the first step
     logical, private :: takes_full_step = .true.
   contains
     procedure :: linearise
@@ -38,12 +38,12 @@ module epcont_plasticity_newton
 
 contains
 
-  !> Tangent: stress(strain) + D (d strain), D = D_t + blend (D_secant - D_t): a perfectly plastic curve makes
-  !! D_t semidefinite.
+  !> Set the tangent law: stress(strain) + D (d strain), D = D_t + blend (D_secant - D_t). With a perfectly
+  !! plastic curve D_t is semidefinite.
   pure subroutine linearise(self, p, about, linear)
     class(newton_method), intent(inout) :: self
-    integer, intent(in) :: p                         !! the point
-    type(solved_state), intent(in) :: about           !! its strain, and its points
+    integer, intent(in) :: p                         !! number of the point
+    type(solved_state), intent(in) :: about           !! with strains and points
     type(linear_problem), intent(inout) :: linear    !! its law is set
     real(wp) :: matrix(components, components)
 
@@ -58,16 +58,16 @@ contains
     end associate
   end subroutine linearise
 
-  !> The next of `blends`.
+  !> Choose the next of `blends`.
   pure subroutine stiffen(self, possible)
     class(newton_method), intent(inout) :: self
-    logical, intent(out) :: possible                 !! there is one
+    logical, intent(out) :: possible                 !! there is a next one
 
     possible = self%blend < maxval(blends)
     if (possible) self%blend = minval(blends, mask=blends > self%blend)
   end subroutine stiffen
 
-  !> Go along the step as far as the energy falls.
+  !> Follow the step as far as the energy decreases.
   subroutine advance(self, model, linear, load_factor, found, about)
     class(newton_method), intent(inout) :: self
     type(model_type), intent(in) :: model            !! model
@@ -94,10 +94,10 @@ contains
 
   contains
 
-    !> The zero of the slope of the energy, from 0 to 1.
+    !> Find the zero of the slope of the energy, from 0 to 1.
     subroutine find_length(length, point)
       real(wp), intent(out) :: length
-      type(point_state), allocatable, intent(out) :: point(:)   !! at that length; not allocated for 1
+      type(point_state), allocatable, intent(out) :: point(:)   !! at this length; not allocated for 1
       type(bracket) :: zero
       real(wp) :: begin, slope
       integer :: k
@@ -115,10 +115,10 @@ contains
       end do
     end subroutine find_length
 
-    !> (f_int - f).d with the stresses of some states.
+    !> Slope (f_int - f).d with the stresses of these states.
     real(wp) function slope_of(state, length) result(slope)
       type(point_state), intent(in) :: state(:)
-      real(wp), intent(in) :: length   !! where along the step they are
+      real(wp), intent(in) :: length   !! length along the step
       real(wp) :: work(size(state))
       integer :: p
 
@@ -128,7 +128,7 @@ contains
       end do
       !$omp end parallel do
       slope = -load_factor*sum(model%loads%load*travel)
-      do p = 1, size(work)   ! in their order
+      do p = 1, size(work)   ! in fixed order
         slope = slope + work(p)
       end do
       if (size(model%constraints%spring) > 0) &

@@ -1,7 +1,7 @@
-!> What the loop asks of an iteration method: a linear law about a state, and from what that law finds the
-!> next state. As it stands it is METHOD SECANT, the paper's: all load each time, moduli from the last
-!> strains, until nothing changes; with a mixer MODSEC: moduli from a mixture of the last strains. Others
-!> extend it.
+!> Interface of an iteration method: a linear law about a state, and the next state from the result of this
+!> law. This type itself is METHOD SECANT, the paper's: the whole load in each solve, moduli from the last
+!> strains, until nothing changes. With Anderson acceleration it is MODSEC: moduli from a combination of the
+!> last strains. Other methods extend it.
 module epcont_plasticity_secant
   use epcont_base_kinds, only: wp
   use epcont_linear_linear_problem, only: linear_problem
@@ -13,7 +13,7 @@ module epcont_plasticity_secant
   public :: secant_method
 
   type :: secant_method
-    type(anderson_mixer), allocatable :: mixer   !! not allocated: what was found is taken as it is
+    type(anderson_mixer), allocatable :: mixer   !! not allocated: no acceleration
     real(wp) :: blend = 0.0_wp                   !! part of the secant matrix in a tangent
   contains
     procedure :: linearise
@@ -23,27 +23,26 @@ module epcont_plasticity_secant
 
 contains
 
-  !> The law about a state, at a point that can yield. Secant matrix (2-8).
+  !> Set the law about a state, at a point that can yield: secant matrix (2-8).
   pure subroutine linearise(self, p, about, linear)
     class(secant_method), intent(inout) :: self
-    integer, intent(in) :: p                         !! the point
-    type(solved_state), intent(in) :: about           !! its strain, and its points
+    integer, intent(in) :: p                         !! number of the point
+    type(solved_state), intent(in) :: about           !! with strains and points
     type(linear_problem), intent(inout) :: linear    !! its law is set
 
     call linear%law%set_matrix( &
       p, linear%materials%section(linear%materials%of_point(p))%secant_matrix(about%point(p)))
   end subroutine linearise
 
-  !> Make the next law a stiffer one, where a stiffness made of the last could not be factored. Most methods
-  !! have none.
+  !> Make the next law stiffer, if the stiffness of the last one could not be factored. Most methods cannot.
   pure subroutine stiffen(self, possible)
     class(secant_method), intent(inout) :: self
-    logical, intent(out) :: possible                 !! there is one
+    logical, intent(out) :: possible                 !! the law is stiffer
 
     possible = .false.
   end subroutine stiffen
 
-  !> The state to linearise about next, when the law about `about` has led to `found`.
+  !> Find the next state to linearise about, after the law about `about` has given `found`.
   subroutine advance(self, model, linear, load_factor, found, about)
     class(secant_method), intent(inout) :: self
     type(model_type), intent(in) :: model            !! model

@@ -1,4 +1,4 @@
-!> Elements beyond yield that unload: total theory takes them back along the curve.
+!> Yielded elements that unload: total theory moves them back along the curve.
 module epcont_plasticity_unloading
   use epcont_base_kinds, only: wp
   use epcont_material_material_law, only: point_state
@@ -7,20 +7,21 @@ module epcont_plasticity_unloading
   private
   public :: find_unloaded
 
-  !> A strain that falls by less than this part of it stays.
+  !> A relative decrease of strain below this counts as none.
   real(wp), parameter :: least_fall = 1.0e-6_wp
 
 contains
 
-  !> Elements beyond yield whose strain has fallen since the last load step, as the load grew.
+  !> Find yielded elements whose strain has decreased since the last load step, while the load grew.
   pure subroutine find_unloaded(model, point, tolerance, strained, unloaded, first)
     type(model_type), intent(in) :: model          !! model
     type(point_state), intent(in) :: point(:)      !! at this load [points]
-    real(wp), intent(in) :: tolerance              !! of the iteration: part of a strain that says nothing
-    !> e of points that yielded at the last load, else 0; then at this one [points]
+    real(wp), intent(in) :: tolerance              !! of the iteration, relative: smaller decreases do not
+                                                   !! count
+    !> In: e of points that yielded at the last load, else 0; out: at this load [points]
     real(wp), intent(inout) :: strained(:)
-    integer, intent(inout) :: unloaded             !! elements, at each load once
-    integer, intent(inout) :: first                !! one of them; 0: none
+    integer, intent(inout) :: unloaded             !! number of elements, each counted once for each load
+    integer, intent(inout) :: first                !! one of them; 0 if there are no such elements
     logical :: fell(model%mesh%elements)
     integer :: p
 

@@ -1,25 +1,25 @@
-!> Where the time of a run goes. A lap is all the time since the last one, so that the laps add up to the run.
+!> Time of each stage of a run. A lap is the time since the previous one, so the laps add up to the run.
 module epcont_system_stopwatch
   use epcont_base_kinds, only: i8, wp
   implicit none
   private
   public :: stopwatch
 
-  !> Stages of a run, in their order.
+  !> Stages of a run, in order.
   integer, parameter, public :: &
     stage_reading = 1, &        !! lines, cards, fields
     stage_model = 2, &          !! checked cards, lines in contact
-    stage_plan = 3, &           !! free motions, methods, memory
+    stage_plan = 3, &           !! rigid-body modes, methods, memory
     stage_numbering = 4, &      !! of the equations
-    stage_stiffness = 5, &      !! strain operator, what has changed
+    stage_stiffness = 5, &      !! strain operator, changed materials
     stage_factor = 6, &         !! of the bodies, with their assembly
     stage_flexibility = 7, &
     stage_contact = 8, &        !! forces and gaps of the pairs
     stage_displacements = 9, &  !! under forces, with their strains
-    stage_yielding = 10, &      !! what the iteration does between two solves
-    stage_stresses = 11, &      !! and pressures, of the answer
+    stage_yielding = 10, &      !! work of the iteration between two solves
+    stage_stresses = 11, &      !! of the answer, with pressures
     stage_certificate = 12, &
-    stage_accuracy = 13, &      !! the condition of the stiffness with it
+    stage_accuracy = 13, &      !! with the condition number of the stiffness
     stage_writing = 14, &
     stages = 14
 
@@ -28,9 +28,9 @@ module epcont_system_stopwatch
     'displacements', 'yielding', 'stresses', 'certificate', 'accuracy', 'writing']
 
   type :: stopwatch
-    !> On the wall; on the processor, of all threads, the system's part included [s] [2, stages]
+    !> Wall-clock time; processor time of all threads, with that of the system [s] [2, stages]
     real(wp) :: spent(2, stages) = 0.0_wp
-    real(wp), private :: lap_began(2) = 0.0_wp   !! on both [s]
+    real(wp), private :: lap_began(2) = 0.0_wp   !! of both times [s]
   contains
     procedure :: start
     procedure :: lap
@@ -39,7 +39,7 @@ module epcont_system_stopwatch
 
 contains
 
-  !> Begin the first lap.
+  !> Start the first lap.
   subroutine start(self)
     class(stopwatch), intent(inout) :: self
 
@@ -47,10 +47,10 @@ contains
     self%lap_began = now()
   end subroutine start
 
-  !> The time since the last lap was that of `stage`.
+  !> Assign the time since the previous lap to `stage`.
   subroutine lap(self, stage)
     class(stopwatch), intent(inout) :: self
-    integer, intent(in) :: stage   !! one of those above
+    integer, intent(in) :: stage   !! one of the stages above
     real(wp) :: ended(2)
 
     ended = now()
@@ -58,7 +58,7 @@ contains
     self%lap_began = ended
   end subroutine lap
 
-  !> Up to the last lap [s].
+  !> Time up to the last lap [s].
   pure real(wp) function elapsed(self)
     class(stopwatch), intent(in) :: self
 

@@ -1,5 +1,5 @@
-!> How many threads the user grants, and one for the BLAS, whatever the environment says: with more, sums are
-!> cut differently, and the last digits of the tables are others. (Decks run side by side use more cores.)
+!> Number of threads that the user allows. The BLAS always has one: with more it would split sums differently
+!> and change the last digits of tables. (Several decks in parallel use more cores.)
 module epcont_system_threads
   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_f_procpointer, c_funptr, c_int, &
       c_null_char, c_null_ptr, c_ptr
@@ -8,7 +8,7 @@ module epcont_system_threads
   private
   public :: granted_threads, stated_threads, threads_now, threads_over, use_one_thread_each, use_threads
 
-  !> For the BLAS; as many as there are for OpenMP.
+  !> One thread for the BLAS; that of OpenMP is unchanged.
   integer, parameter, public :: one_thread(2) = [1, 0]
 
   abstract interface
@@ -23,8 +23,8 @@ module epcont_system_threads
   end interface
 
   interface
-    !> Where a procedure of the program or its libraries is; null: nowhere. Which BLAS there is, is not known
-    !! before.
+    !> Address of a procedure of the program or its libraries; null if it does not exist. The BLAS is known
+    !! only at run time.
     function c_dlsym(library, name) bind(c, name='dlsym') result(address)
       import
       type(c_ptr), value :: library
@@ -35,18 +35,18 @@ module epcont_system_threads
 
 contains
 
-  !> As many as OMP_NUM_THREADS says; 1 where it is not set (decks side by side use cores better), where the
-  !! program is built without OpenMP, or where the BLAS is not known to bear calls side by side: an OpenBLAS
-  !! that is built for threads (1) or OpenMP (2) locks its buffers, one that is not (0) shares them. And 1 for
-  !! who works beside others already.
+  !> Number of threads in OMP_NUM_THREADS. It is 1 if this variable is not set (decks in parallel use cores
+  !! better), if the program has no OpenMP, or if the BLAS may not be called in parallel: an OpenBLAS built
+  !! for threads (1) or OpenMP (2) locks its buffers, another one (0) shares them. It is also 1 in a parallel
+  !! region.
   integer function granted_threads()
     granted_threads = 1
     !$ if (omp_in_parallel()) return
     !$ if (blas_number('openblas_get_parallel') /= 0) granted_threads = max(1, stated_threads())
   end function granted_threads
 
-  !> Threads for a loop over so many nodes, elements or points that each take a tenth of a microsecond at
-  !! least: one where others would begin after most of it is done.
+  !> Number of threads for a loop over nodes, elements or points that each take at least a tenth of a
+  !! microsecond; one if most of the work is done before others start.
   integer function threads_over(pieces) result(threads)
     integer, intent(in) :: pieces
     integer, parameter :: many = 20000
@@ -55,7 +55,7 @@ contains
     if (pieces >= many) threads = granted_threads()
   end function threads_over
 
-  !> The number in OMP_NUM_THREADS, of a list the first, without READ; 0 where there is none.
+  !> Read the number in OMP_NUM_THREADS (the first of a list) without READ; 0 if it is not set.
   integer function stated_threads() result(threads)
     character(len=8) :: words
     integer :: i
@@ -69,7 +69,7 @@ contains
     end do
   end function stated_threads
 
-  !> How many threads there are for the BLAS, and by OpenMP for whoever calls; 0: not known.
+  !> Number of threads that the BLAS uses, and that OpenMP gives the caller; 0 if unknown.
   function threads_now() result(threads)
     integer :: threads(2)
 
@@ -77,9 +77,10 @@ contains
     !$ threads(2) = omp_get_max_threads()
   end function threads_now
 
-  !> Tell OpenBLAS; another BLAS has no such procedure. One that uses OpenMP tells that, so it comes last.
+  !> Set the numbers of threads; only OpenBLAS has a procedure for it. Its OpenMP variant also sets OpenMP's
+  !! number, so OpenMP is set last.
   subroutine use_threads(threads)
-    integer, intent(in) :: threads(2)   !! as `threads_now` has them
+    integer, intent(in) :: threads(2)   !! as `threads_now` returns them
     procedure(set_threads), pointer :: set
     type(c_funptr) :: address
 
@@ -91,15 +92,15 @@ contains
     !$ if (threads(2) > 0) call omp_set_num_threads(threads(2))
   end subroutine use_threads
 
-  !> Within a parallel region: whatever each of its threads calls has one. Of a list in OMP_NUM_THREADS the
-  !! second number would count there, and a BLAS that uses OpenMP would take it.
+  !> Use one thread for all calls inside a parallel region. Otherwise the second number of a list in
+  !! OMP_NUM_THREADS would count, and a BLAS with OpenMP would use it.
   subroutine use_one_thread_each()
     !$ call omp_set_num_threads(1)
   end subroutine use_one_thread_each
 
-  !> What OpenBLAS says; 0: it is another BLAS.
+  !> Ask OpenBLAS for a number; 0 for another BLAS.
   integer function blas_number(name)
-    character(len=*), intent(in) :: name   !! of the procedure that says it
+    character(len=*), intent(in) :: name   !! of its procedure
     procedure(get_number), pointer :: get
     type(c_funptr) :: address
 
