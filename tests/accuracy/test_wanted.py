@@ -88,7 +88,7 @@ class Wanted(unittest.TestCase):
         _, listing, _ = self.run_deck("flat_punch/flat_punch", "ACCURACY,0.01")
         self.assertIn("\n    not possible: the largest pressure is singular\n", listing)
         _, listing, _ = self.run_deck("tube/tube16", "ACCURACY,0.01")
-        self.assertIn("\n    not known: no pair has a pressure\n", listing)
+        self.assertIn("\n    unknown: no pair has a pressure\n", listing)
         _, listing, _ = self.run_deck("hertz/hertz330_elastic", "UNITS,KGF-MM")
         self.assertNotIn("wanted error", listing)
 
