@@ -38,7 +38,7 @@ module epcont_report_results
     result_file('.cases.csv', 'the load cases, if there are several'), &
     result_file('.vtu', 'the bodies, for ParaView, with --vtk: displacements, stresses, states'), &
     result_file('.contact.vtu', 'the boundary in contact, for ParaView, with --vtk: pressures, gaps'), &
-    result_file('.pvd', 'for ParaView: index of DECK.caseN.vtu and .caseN.contact.vtu, for load cases')]
+    result_file('.pvd', 'for ParaView: index of DECK.caseN.vtu and .caseN.contact.vtu of load cases')]
 
   !> The first files are the listing, the summary, and tables with rows of each load case.
   integer, parameter :: listing = 1, summary = 2, of_each_case = 9

@@ -210,7 +210,7 @@ def fault_of_answer(run, name, place, tolerance):
 
 
 def just_beyond(run, name):
-    """Is an answer refused for stresses that are off their curve by hardly more than they may be, of which half is rounding?"""
+    """Is an answer refused for a stress error slightly above its limit, of which half is rounding?"""
     summary = summary_of(run, name)
     off, limit, asked = [number(summary.get(key)) for key in ("stress_off_curve", "stress_off_curve_limit", "curve_tolerance")]
     return limit >= 2 * asked and off <= 1.5 * limit and all(number(summary.get(key)) <= CERTIFIED for key in RELATIVE)
