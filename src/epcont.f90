@@ -61,7 +61,7 @@ contains
     call complete_arrays(scene, solution%model, found)
     if (found%errors == 0) call solution%find_motions(found)
     outcome%status = status_deck
-    outcome%word = 'refused'
+    outcome%word = 'rejected'
     if (found%errors == 0) then
       call solution%make_plan(watch)
       call solution%solve(limit, watch, error)

@@ -109,7 +109,7 @@ contains
   pure type(point_type) function point_on(search, side, s) result(point)
     type(search_type), intent(in) :: search   !! the outlines
     integer, intent(in) :: side               !! number of the edge
-    real(wp), intent(in) :: s                 !! along the side, from 0 to 1
+    real(wp), intent(in) :: s                 !! along the edge, from 0 to 1
 
     point = point_type(side, s, .false., search%drawn%at(side, s), motion_at(search, side, s), &
                        search%now%at(side, s))

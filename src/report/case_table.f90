@@ -42,7 +42,7 @@ contains
 
   !> Collect the outcome of the current load case.
   pure type(case_row) function row_of_case(run) result(row)
-    type(run_results), intent(in) :: run   !! what is known of the run
+    type(run_results), intent(in) :: run   !! run and its results
 
     row%subcase = run%deck%subcase(run%case)%id
     row%status = run%outcome%word

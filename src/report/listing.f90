@@ -25,7 +25,7 @@ contains
 
   !> List title, numbers of cards, warnings and notes (with those of an only load case), and the plan.
   subroutine list_scene(run, plan, listing)
-    type(run_results), intent(in) :: run         !! what is known of the run
+    type(run_results), intent(in) :: run         !! run and its results
     character(len=*), intent(in) :: plan         !! in lines
     type(table_type), intent(inout) :: listing   !! is added to
 
@@ -76,7 +76,7 @@ contains
 
   !> List the results of a load case.
   subroutine list_case(run, figures, all_tables, listing)
-    type(run_results), intent(in) :: run              !! what is known of the run, with that case
+    type(run_results), intent(in) :: run              !! run, with the results of this case
     type(figure_type), intent(in) :: figures(:)       !! of its summary
     logical, intent(in) :: all_tables                 !! asked for on the command line
     type(table_type), intent(inout) :: listing        !! is added to

@@ -44,7 +44,7 @@ contains
 
   !> Collect all values of a run.
   function summarise(run) result(figures)
-    type(run_results), intent(in) :: run   !! what is known of the run
+    type(run_results), intent(in) :: run   !! run and its results
     type(figure_type), allocatable :: figures(:)
     type(figure_list) :: list
 

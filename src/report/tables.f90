@@ -123,7 +123,7 @@ contains
 
   !> Write a table.
   subroutine put_table(run, name, table)
-    type(run_results), intent(in) :: run       !! what is known of the run
+    type(run_results), intent(in) :: run       !! run and its results
     character(len=*), intent(in) :: name       !! of the table: that of its file, or lines or pivots
     type(table_type), intent(inout) :: table   !! the listing, or a file
     integer :: k

@@ -43,7 +43,7 @@ contains
 
   !> Write DECK.vtu, and DECK.contact.vtu if there are pairs.
   subroutine write_vtk(run, stem, error)
-    type(run_results), intent(in) :: run                  !! what is known of the run
+    type(run_results), intent(in) :: run                  !! run and its results
     character(len=*), intent(in) :: stem                  !! path of the files, without their suffixes
     type(error_type), allocatable, intent(out) :: error   !! a file cannot be written
 

@@ -137,7 +137,7 @@ contains
   pure logical function is_on_symmetry(model, pair, node, side)
     type(model_type), intent(in) :: model        !! the model
     integer, intent(in) :: pair, node
-    real(wp), intent(in) :: side   !! length of the longest side at the node [length]
+    real(wp), intent(in) :: side   !! length of the longest edge at the node [length]
     logical :: ends, guided, rigid
     integer :: along, i
 
