@@ -10,24 +10,25 @@ module epcont_verdict
   private
   public :: find_verdict, verdict_type
 
-  !> Reasons. From `reason_unsound` on, there are displacements and forces.
+  !> Reasons. From `reason_unsound` on, displacements and forces are available.
   integer, parameter, public :: &
-    reason_memory = 1, &           !! not enough memory to factor a body
+    reason_memory = 1, &           !! memory does not suffice to factor a body
     reason_singular = 2, &         !! a stiffness cannot be factored
     reason_no_equilibrium = 3, &   !! a body is unconstrained
-    reason_overlap = 4, &          !! pairs overlap, and no body can deform
+    reason_overlap = 4, &          !! pairs overlap and no body can deform
     reason_rounding = 5, &         !! no active set passes the test
-    reason_unsound = 6, &          !! bodies pass through each other
-    reason_not_converged = 7, &    !! the iteration has stopped
-    reason_doubtful = 8, &         !! a value of the certificate is beyond its limit
-    reason_ill_conditioned = 9, &  !! rounding takes too many digits
-    reason_none = 10               !! valid
-  integer, parameter :: status_of(10) = [ &
+    reason_unsound = 6, &          !! bodies penetrate each other
+    reason_not_converged = 7, &    !! the plasticity iteration did not converge
+    reason_limit_load = 8, &       !! the loads exceed the limit load
+    reason_doubtful = 9, &         !! the certificate rejects the answer
+    reason_ill_conditioned = 10, & !! rounding takes too many digits
+    reason_none = 11               !! valid
+  integer, parameter :: status_of(11) = [ &
     status_usage, status_numerical, status_no_answer, status_no_answer, status_numerical, &
-    status_numerical, status_no_answer, status_numerical, status_numerical, status_valid]
-  character(len=*), parameter :: word_of(10) = [character(len=18) :: &
+    status_numerical, status_no_answer, status_no_answer, status_numerical, status_numerical, status_valid]
+  character(len=*), parameter :: word_of(11) = [character(len=18) :: &
     'out of memory', 'singular stiffness', 'no equilibrium', 'overlap', 'contact not found', &
-    'not certified', 'not converged', 'not certified', 'ill-conditioned', 'valid']
+    'not certified', 'not converged', 'limit load', 'not certified', 'ill-conditioned', 'valid']
 
   type :: verdict_type
     integer :: reason = reason_none
@@ -61,7 +62,7 @@ contains
       verdict%reason = merge(reason_none, reason_unsound, certificate%scene%sound() .or. contact_is_off)
     else if (.not. answer%converged .and. &
              (certificate%balanced .and. is_exact .or. answer%runs_away)) then
-      verdict%reason = reason_not_converged
+      verdict%reason = merge(reason_limit_load, reason_not_converged, answer%runs_away)
     else
       verdict%reason = merge(reason_ill_conditioned, reason_doubtful, &
                              certificate%valid .or. certificate%balanced .and. .not. is_exact)
@@ -83,7 +84,7 @@ contains
     word = trim(word_of(self%reason))
   end function word
 
-  !> Were displacements and forces found?
+  !> Are displacements and forces available?
   pure logical function has_answer(self)
     class(verdict_type), intent(in) :: self
 

@@ -90,7 +90,7 @@ contains
     character(len=*), intent(in) :: name     !! of the deck
     character(len=:), allocatable :: limit, text
 
-    text = name//case_name(run)//'  '//run%outcome%word
+    text = name//case_name(run)//'  '//run%outcome%word//run%outcome%at_load
     if (.not. run%outcome%has_answer) return
     if (run%model%contact%pairs > 0) then
       text = text//'  p_max'//right(listed_number(known, run%answer%largest_pressure(), 0.0_wp), 13)

@@ -149,22 +149,22 @@ contains
     name = upper(card%text(card%name_first:card%name_last))
     if (scan(card%text(1:1), '+*') > 0 .or. name == '') then
       call faults%add_error(card%place(0), 'a continuation line without a card before it', &
-                            'the name of a card')
+                            'begin with the name of a card')
       return
     end if
     word = name(:scan(name//' ', ' =(;') - 1)
     call refused_card(name, why, remedy)
     if (len(why) > 0) then
-      call faults%add_error(card%place(0), name//' is not here:'//why, remedy)
+      call faults%add_error(card%place(0), name//' is not supported:'//why, remedy)
       return
     end if
     remedy = suggestion(name, names, 'epcont --cards lists the cards that are read')
     if (name == 'CQUAD9' .or. name == 'CQUAD') remedy = 'CTRIA6, CQUAD4 or CQUAD8'
     if (name == 'MATT1' .or. index(name, 'TABLEM') == 1) &
-      remedy = 'moduli on MAT1: they do not depend on temperature'
+      remedy = 'use MAT1: moduli do not depend on temperature'
     if (any(names == word)) remedy = 'fields of 8 columns, or commas'
     if (first == 1 .and. any(keyword == word) .or. word == 'BEGIN') &
-      remedy = 'one line BEGIN BULK behind case control'
+      remedy = 'write one line BEGIN BULK after case control'
     call faults%add_error(card%place(0), 'unknown card '//name, remedy)
   end subroutine refuse_name
 

@@ -109,7 +109,7 @@ contains
         if (own /= '' .and. own /= card%text(now%mark:now%before)) &
           call refuse(card, now%at, 1, width, &
                       'continues '//trim(own)//', not '//card%text(now%mark:now%before)// &
-                      ' of the line before', 'the lines of a card together', faults)
+                      ' of the line before', 'keep the lines of a card together', faults)
       end if
     end if
     now%mark = now%before + merge(longest_fixed - width + 2, now%length + 1, now%comma == 0)
@@ -139,19 +139,19 @@ contains
       if (code == 9) then
         if (now%comma > 0) cycle   ! allowed like a blank: columns do not count
         call refuse(card, now%at, column, column, 'a tab in column '//text_of(column), &
-                    'blanks: a tab has no width in columns; or commas', faults)
+                    'use blanks (a tab has no defined width), or commas', faults)
         return
       else if (code < 32 .or. code > 126) then
         call refuse(card, now%at, column, column, &
                     'a character that is not printable ASCII (code '//text_of(code)//')', &
-                    'only comments and titles may hold such', faults)
+                    'use ASCII except in comments and titles', faults)
         return
       end if
     end do
     longest = merge(longest_free, longest_fixed, now%comma > 0)
     if (now%length > longest) &
       call refuse(card, now%at, longest + 1, now%length, &
-                  'the line goes on beyond column '//text_of(longest), 'nothing here', faults)
+                  'the line goes on beyond column '//text_of(longest), 'leave these columns blank', faults)
   end subroutine inspect
 
   !> Report a line that cannot be cut into fields.
@@ -226,7 +226,7 @@ contains
                (slot > now%first_slot + now%fields .or. scan(card%text(from:max(from, to)), '+*') /= 1)) then
         call refuse(card, now%at, from - now%before, now%length, &
                     'more than '//text_of(now%fields)//' data fields on a line', &
-                    'a continuation line for the rest', faults)
+                    'continue on the next line', faults)
         return
       end if
       slot = slot + 1

@@ -329,7 +329,7 @@ contains
       call read_slot(card, table, row, slot, entry, value, faults)
     else if (entry%required) then
       remedy = entry%allowed()
-      if (table%entry%end_word /= '') remedy = 'a real, or '//table%entry%end_word//' behind the last point'
+      if (table%entry%end_word /= '') remedy = 'a real, or '//table%entry%end_word//' after the last point'
       call refuse(card, table, row, slot, 'is blank', remedy, faults)
     end if
   end subroutine read_part
@@ -357,7 +357,7 @@ contains
       remedy = '0.0, or at least 2.226E-308'
     case (out_of_reach)
       what = 'is too far from 1.0'
-      remedy = 'other units: sizes'
+      remedy = 'use other units: magnitudes'
       if (entry%least > 0.0_wp) remedy = remedy//' from '//short_real(entry%least)
       remedy = remedy//' to '//short_real(farthest)
       if (entry%least > 0.0_wp .and. .not. entry%above_lowest) remedy = remedy//', or 0.0'
@@ -368,7 +368,7 @@ contains
       if (len(text) == 0) what = 'is blank'
     case default
       what = 'is out of range'
-      if (entry%kind == kind_word) what = 'is not a word known here'
+      if (entry%kind == kind_word) what = 'is not an allowed word'
       if (entry%instead /= '' .and. value%number == entry%highest) then
         what = 'is '//text//', '//trim(entry%reason)
         remedy = 'less, such as '//trim(entry%instead)

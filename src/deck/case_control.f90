@@ -84,8 +84,8 @@ contains
     end do
     control%subcase(max(1, cases)) = now
     if (sequence%line > 0 .and. size(control%subcase) > 1) call faults%add_error( &
-      sequence, 'the SUBCASEs are a sequence, each from the end of the one before: that is not here', &
-      'CNTNLSUB = NO: each from the unloaded state')
+      sequence, 'a sequence of SUBCASEs, each from the end of the one before, is not supported', &
+      'write CNTNLSUB = NO: each begins with the unloaded state')
 
   contains
 
@@ -97,19 +97,19 @@ contains
       case ('SOL')
         words = ' '//upper(parts%value(:scan(parts%value//' ', ' ,') - 1))//' '
         if (index(static, words) == 0) &
-          call faults%add_note(parts%value_place, 'SOL: not static, as the loads here are')
+          call faults%add_note(parts%value_place, 'SOL: epcont solves for static loads only')
         if (index(sequential, words) > 0 .and. .not. any(stated .and. keyword == 'CNTNLSUB')) &
           sequence = parts%value_place
       case ('CEND')
         if (len(parts%value) > 0) &
-          call faults%add_error(parts%value_place, 'CEND takes no value', 'nothing here')
+          call faults%add_error(parts%value_place, 'CEND takes no value', 'remove it')
       case ('CNTNLSUB')
         sequence = place_type()
         if (len(parts%value) == 0 .or. upper(parts%value) == 'YES') then
           sequence = parts%word_place
         else if (upper(parts%value) /= 'NO') then
-          call refuse(parts, 'a word', ' known here', &
-                      'NO or YES: the SUBCASEs of a list (SID) are not here', faults)
+          call refuse(parts, 'a word', ' known to epcont', &
+                      'NO or YES: a list of SUBCASEs (SID) is not supported', faults)
         end if
       case ('SUBCASE')
         call begin_subcase()
@@ -163,7 +163,7 @@ contains
       call take_number(parts, now%id, faults)
       now%place = parts%word_place
       if (now%id > 0 .and. any(control%subcase(:cases - 1)%id == now%id)) call faults%add_error( &
-        parts%value_place, 'SUBCASE '//text_of(now%id)//' is there twice', 'a number of its own')
+        parts%value_place, 'SUBCASE '//text_of(now%id)//' is used twice', 'use another number')
       stated(first_own:) = .false.
     end subroutine begin_subcase
   end subroutine read_case_control
@@ -215,7 +215,7 @@ contains
 
     says_all = upper(parts%value) == 'ALL'
     if (.not. says_all .and. upper(parts%value) /= 'NONE') &
-      call refuse(parts, 'a word', ' known here', 'ALL or NONE', faults)
+      call refuse(parts, 'a word', ' known to epcont', 'ALL or NONE', faults)
   end function says_all
 
   !> Report a TEMPERATURE statement whose option is not LOAD.
@@ -224,10 +224,10 @@ contains
     type(diagnostics), intent(inout) :: faults
     character(len=:), allocatable :: remedy
 
-    remedy = 'TEMPERATURE(LOAD)'
-    if (index(parts%option, '(INI') == 1) remedy = 'TREF of MAT1: bodies are at it before they are loaded'
-    if (index(parts%option, '(MAT') == 1) remedy = 'moduli on MAT1: they do not depend on temperature'
-    call faults%add_error(parts%option_place, 'TEMPERATURE'//parts%option//' is not known here', remedy)
+    remedy = 'use TEMPERATURE(LOAD)'
+    if (index(parts%option, '(INI') == 1) remedy = 'use TREF of MAT1: the temperature of the unloaded bodies'
+    if (index(parts%option, '(MAT') == 1) remedy = 'use MAT1: moduli do not depend on temperature'
+    call faults%add_error(parts%option_place, 'TEMPERATURE'//parts%option//' is not supported', remedy)
   end subroutine refuse_option
 
   !> Check that a statement is known and given once; its options have no effect.
@@ -246,7 +246,7 @@ contains
       return
     end if
     if (stated(k)) &
-      call faults%add_error(parts%word_place, parts%word//' is stated twice', 'one '//parts%word// &
+      call faults%add_error(parts%word_place, parts%word//' is stated twice', 'write one '//parts%word// &
                             trim(merge(' a SUBCASE', '          ', now%id > 0 .and. k >= first_own)))
     stated(k) = keyword(k) /= 'SUBCASE'
     parts%word = trim(keyword(k))

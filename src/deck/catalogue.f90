@@ -17,7 +17,7 @@ module epcont_deck_catalogue
     '  CP; system only_zero; system of X1 to X3: the basic one', &
     '  X1; real zero point_optional; coordinate x [length]', &
     '  X2; real zero point_optional; coordinate y [length]', &
-    '  X3; real zero point_optional; coordinate z; 0.0 in plane scenes [length]', &
+    '  X3; real zero point_optional; coordinate z; 0.0 in plane models [length]', &
     '  CD; system only_zero; system of the displacements: the basic one', &
     '  PS; digits optional; permanent supports', &
     'CTRIA3: constant-strain triangle', &
@@ -31,9 +31,9 @@ module epcont_deck_catalogue
     '  MID1; id; its MAT1', &
     '  T; real needed positive; thickness [length]', &
     '  MID2; whole from=-1 to=99999999 heard_to=-1; -1: plane strain; else as PARAM PLANE says', &
-    '  ; any noted times=3; bending', &
+    '  ; any ignored times=3; bending', &
     '  NSM; real for=GRAV/RFORCE; non-structural mass of a unit of area', &
-    '  ; any noted times=3; bending', &
+    '  ; any ignored times=3; bending', &
     'MAT1: isotropic elastic material; two of E, G, NU', &
     '  MID; id; material', &
     '  E; real positive; Young''s modulus [stress]', &
@@ -43,11 +43,11 @@ module epcont_deck_catalogue
     '  RHO; real for=GRAV/RFORCE; density', &
     '  A; real cause zero; thermal expansion: strain by one degree', &
     '  TREF; real zero; temperature without thermal strain', &
-    '  GE; real noted; damping', &
-    '  ST; real noted; limit of tension [stress]', &
-    '  SC; real noted; limit of compression [stress]', &
-    '  SS; real noted; limit of shear [stress]', &
-    '  MCSID; system noted; material system', &
+    '  GE; real ignored; damping', &
+    '  ST; real ignored; limit of tension [stress]', &
+    '  SC; real ignored; limit of compression [stress]', &
+    '  SS; real ignored; limit of shear [stress]', &
+    '  MCSID; system ignored; material system', &
     'SPC: supports, with prescribed displacements', &
     '  SID; id; set', &
     '  G1; id; node', &
@@ -58,7 +58,7 @@ module epcont_deck_catalogue
     '  D2; real zero cause; displacement [length]', &
     'SPC1: supports', &
     '  SID; id; set', &
-    '  C; digits; directions; 3 to 6 have no effect in plane scenes', &
+    '  C; digits; directions; 3 to 6 have no effect in plane models', &
     '  G; ids ranges; nodes, or G1 THRU G2', &
     'FORCE: force F*N at a node', &
     '  SID; id; set', &
@@ -67,7 +67,7 @@ module epcont_deck_catalogue
     '  F; real needed cause; factor [force]', &
     '  N1; real zero; direction x', &
     '  N2; real zero; direction y', &
-    '  N3; real zero; direction z; 0.0 in plane scenes', &
+    '  N3; real zero; direction z; 0.0 in plane models', &
     'PLOADX1: pressure on the edge of an element', &
     '  SID; id; set', &
     '  EID; id; element', &
@@ -76,12 +76,12 @@ module epcont_deck_catalogue
     '  GA; id; corner at which the edge begins', &
     '  GB; id; corner at which it ends', &
     '  THETA; real zero; counter-clockwise from the inward normal [degree]', &
-    'RBE2: rigid platen: nodes that move as one', &
+    'RBE2: rigid platen: nodes with the same displacement', &
     '  EID; id; element', &
-    '  GN; id; node that leads', &
-    '  CM; digits; directions tied', &
-    '  GM; ids; nodes that follow', &
-    'SUPORT: reference freedoms of free bodies, solved for: the approach', &
+    '  GN; id; master node', &
+    '  CM; digits; tied directions', &
+    '  GM; ids; dependent nodes', &
+    'SUPORT: DOFs that measure rigid-body modes: their displacement is the approach', &
     '  ID1; id; node', &
     '  C1; digits; directions', &
     '  ID2; id with_next; node', &
@@ -106,29 +106,29 @@ module epcont_deck_catalogue
     '  EID; id; pair', &
     '  PID; id; its PGAP', &
     '  GA; id; node A', &
-    '  GB; id; node B, pushed along the normal', &
-    '  X1; any noted; orientation, or node G0', &
-    '  X2; real noted; orientation', &
-    '  X3; real noted; orientation', &
+    '  GB; id; node B; contact pushes it along the normal', &
+    '  X1; any ignored; orientation, or node G0', &
+    '  X2; real ignored; orientation', &
+    '  X3; real ignored; orientation', &
     '  CID; system; system whose x is the normal; blank: from GA to GB', &
     'PGAP: property of contact pairs', &
     '  PID; id; property', &
     '  U0; real zero cause; initial gap [length]', &
     '  F0; real only_zero; preload | there is no preload', &
-    '  KA; real noted; closed stiffness: contact is exact', &
-    '  KB; real noted; open stiffness', &
-    '  KT; real noted; tangential stiffness', &
+    '  KA; real ignored; closed stiffness: contact is exact', &
+    '  KB; real ignored; open stiffness', &
+    '  KT; real ignored; tangential stiffness', &
     '  MU1; real only_zero; static friction | there is no friction', &
     '  MU2; real only_zero; kinetic friction | there is no friction', &
-    '  TMAX; real noted; largest penetration', &
-    '  MAR; real noted; largest adjustment', &
-    '  TRMIN; real noted; smallest penetration', &
-    'CBAR: boundary line of a mesher: counted, no effect', &
-    '  EID; id noted; element', &
-    '  PID; id optional noted; property, not looked up', &
-    '  GA; id noted; first node', &
-    '  GB; id noted; second node', &
-    '  ; any noted times=12; anything', &
+    '  TMAX; real ignored; largest penetration', &
+    '  MAR; real ignored; largest adjustment', &
+    '  TRMIN; real ignored; smallest penetration', &
+    'CBAR: boundary line of a mesher: ignored', &
+    '  EID; id ignored; element', &
+    '  PID; id optional ignored; property, not looked up', &
+    '  GA; id ignored; first node', &
+    '  GB; id ignored; second node', &
+    '  ; any ignored times=12; anything', &
     'PARAM: a choice for the whole deck', &
     '  NAME; word; parameter', &
     '  VALUE; word; its value', &
@@ -143,8 +143,8 @@ module epcont_deck_catalogue
     'TABLES1: uniaxial curve of stress over total strain', &
     '  TID; id; table', &
     '  ; blank times=7;', &
-    '  X; real needed each; strain: 0.0, that of the yield point, and on', &
-    '  Y; real needed each ENDT; stress: 0.0, the yield stress, and on; ENDT behind the last [stress]', &
+    '  X; real needed each; strain: 0.0, that of the yield point, ...', &
+    '  Y; real needed each ENDT; stress: 0.0, the yield stress, ...; ENDT after the last [stress]', &
     'CTRIA6: six-node triangle', &
     '  like 2 CTRIA3', &
     '  G1; id; first corner, in either turning sense', &
@@ -156,13 +156,13 @@ module epcont_deck_catalogue
     'CQUAD4: four-node quadrilateral, B-bar', &
     '  like 5 CTRIA3', &
     '  G4; id; fourth node', &
-    'CTRAX3: ring of a three-node triangle; x is the radius', &
+    'CTRAX3: axisymmetric three-node triangle; x is the radius', &
     '  EID; id; element', &
     '  PID; id; its PSOLID', &
     '  G1; id; first node, in either turning sense', &
     '  G2; id; second node', &
     '  G3; id; third node', &
-    'CTRAX6: ring of a six-node triangle; x is the radius', &
+    'CTRAX6: axisymmetric six-node triangle; x is the radius', &
     '  like 2 CTRAX3', &
     '  G1; id; first corner, in either turning sense', &
     '  G2; id; between the first and the second', &
@@ -170,19 +170,19 @@ module epcont_deck_catalogue
     '  G4; id; between the second and the third', &
     '  G5; id; third corner', &
     '  G6; id; between the third and the first', &
-    'PSOLID: section of rings', &
+    'PSOLID: property of axisymmetric elements', &
     '  PID; id; property', &
     '  MID; id; its MAT1', &
     'BLSEG: line of nodes along the boundary of a body', &
     '  ID; id; line', &
     '  G; ids ranges steps; nodes in their order, in either sense; G1 THRU G2, or G1 THRU G2 BY'// &
     ' step; a closed line ends with its first node', &
-    'BCONP: contact of the nodes of one line with the segments of another', &
+    'BCONP: contact of the nodes of one line with the edges of another', &
     '  ID; id; contact', &
-    '  SLAVE; id; BLSEG whose nodes are held off', &
-    '  MASTER; id; BLSEG whose segments they are held off', &
+    '  SLAVE; id; slave line (BLSEG): its nodes may not penetrate the master line', &
+    '  MASTER; id; master line (BLSEG)', &
     '  ; blank;', &
-    '  SFAC; real noted; stiffness factor: contact is exact', &
+    '  SFAC; real ignored; stiffness factor: contact is exact', &
     '  FRICID; system only_zero; friction | there is no friction', &
     '  PTYPE; whole from=1 to=1 default=1; forces from slave and master: 1', &
     '  CID; system only_zero; system of the contact plane: the basic one', &
@@ -196,12 +196,12 @@ module epcont_deck_catalogue
 
   !> Loads and ties.
   character(len=*), parameter :: load_cards(*) = [character(len=140) :: &
-    'LOAD: sets of loads, each times a factor, under one id', &
+    'LOAD: sum of sets of loads, each with a factor', &
     '  SID; id; set', &
     '  S; real needed; factor of all', &
     '  S; real needed each; factor of a set', &
     '  L; id each; the set', &
-    'SPCD: displacements of a load case, in place of those of SPC; its set is named as loads are', &
+    'SPCD: displacements of a load case that replace those of SPC; LOAD chooses its set', &
     '  like 7 SPC', &
     'TEMP: temperatures of nodes', &
     '  SID; id; set', &
@@ -224,39 +224,39 @@ module epcont_deck_catalogue
     '  SID; id; set', &
     '  CID; system only_zero; system of N1 to N3: the basic one', &
     '  A; real needed cause; factor: acceleration', &
-    '  N1; real zero; direction x; 0.0 of rings', &
+    '  N1; real zero; direction x; 0.0 in axisymmetric models', &
     '  N2; real zero; direction y', &
-    '  N3; real zero; direction z; 0.0 in plane scenes', &
-    '  MB; whole from=-1 to=0 noted; of superelements', &
-    'RFORCE: forces of a spin, away from its axis, on all mass', &
+    '  N3; real zero; direction z; 0.0 in plane models', &
+    '  MB; whole from=-1 to=0 ignored; of superelements', &
+    'RFORCE: centrifugal forces of a rotation, on all mass', &
     '  SID; id; set', &
     '  G; system; node that the axis goes through; 0 or blank: the origin', &
     '  CID; system only_zero; system of R1 to R3: the basic one', &
-    '  A; real zero cause; factor of the spin: revolutions in a unit of time', &
+    '  A; real zero cause; factor: revolutions in a unit of time', &
     '  R1; real zero; axis x; 0.0', &
-    '  R2; real zero; axis y; that of rings', &
-    '  R3; real zero; axis z; that of plane scenes', &
-    '  METHOD; whole from=1 to=2 noted; forces are those of the mass where it is', &
-    '  RACC; real zero cause; factor of what the spin gains in a unit of time; forces go along it', &
-    '  MB; any noted; of superelements', &
+    '  R2; real zero; axis y; axis of axisymmetric models', &
+    '  R3; real zero; axis z; axis of plane models', &
+    '  METHOD; whole from=1 to=2 ignored; forces act on the undeformed mass', &
+    '  RACC; real zero cause; factor of the angular acceleration: revolutions in a unit of time squared', &
+    '  MB; any ignored; of superelements', &
     '  IDRF; system only_zero; elements: all', &
-    'MOMENT: moment M*N3 about z at a node that leads an RBE2: it turns', &
+    'MOMENT: moment M*N3 about z at the master node of an RBE2, which rotates', &
     '  SID; id; set', &
     '  G; id; node', &
     '  CID; system only_zero; system of N1 to N3: the basic one', &
     '  M; real needed cause; factor [force*length]', &
-    '  N1; real zero; direction x; 0.0 in plane scenes', &
-    '  N2; real zero; direction y; 0.0 in plane scenes', &
+    '  N1; real zero; direction x; 0.0 in plane models', &
+    '  N2; real zero; direction y; 0.0 in plane models', &
     '  N3; real zero; direction z', &
-    'MPC: equation, sum of A times displacement = 0; the first follows the others', &
+    'MPC: equation, sum of A times displacement = 0; the first DOF depends on the others', &
     '  SID; id; set', &
     '  G; id each; node', &
-    '  C; whole from=1 to=6 needed each; direction: 1 or 2 in plane scenes', &
+    '  C; whole from=1 to=6 needed each; direction: 1 or 2 in plane models', &
     '  A; real needed each two_a_line; coefficient; of the first not 0.0', &
-    'MPCADD: sets of MPC under one id', &
+    'MPCADD: union of sets of MPC', &
     '  SID; id; set', &
     '  S; ids; sets of MPC', &
-    'CELAS1: spring between two freedoms, or one and the ground', &
+    'CELAS1: spring between two DOFs, or between a DOF and the ground', &
     '  EID; id; spring', &
     '  PID; id; its PELAS', &
     '  G1; system; node; 0 or blank: the ground', &
@@ -270,54 +270,55 @@ module epcont_deck_catalogue
     '  C1; whole zero from=0 to=2; its direction', &
     '  G2; system; node; 0 or blank: the ground', &
     '  C2; whole zero from=0 to=2; its direction', &
-    '  GE; real noted; damping', &
-    '  S; real noted; stress coefficient', &
+    '  GE; real ignored; damping', &
+    '  S; real ignored; stress coefficient', &
     'PELAS: stiffness of springs; two a card', &
     '  PID1; id; property', &
     '  K1; real needed positive; stiffness [force/length]', &
-    '  GE1; real noted; damping', &
-    '  S1; real noted; stress coefficient', &
+    '  GE1; real ignored; damping', &
+    '  S1; real ignored; stress coefficient', &
     '  PID2; id with_next; second property', &
     '  K2; real positive with_last; stiffness [force/length]', &
-    '  GE2; real noted; damping', &
-    '  S2; real noted; stress coefficient', &
+    '  GE2; real ignored; damping', &
+    '  S2; real ignored; stress coefficient', &
     'NLPARM: increments of the loads, in load cases that choose it (NLPARM = ID)', &
     '  ID; id; parameters', &
     '  NINC; whole from=1 to=10000 default=1; increments, of equal size', &
-    '  ; any noted times=22; iteration: see PARAM METHOD, TOL and MAXIT']
+    '  ; any ignored times=22; iteration: see PARAM METHOD, TOL and MAXIT']
 
   character(len=*), parameter :: cards(*) = [scene_cards, load_cards]
 
   !> PARAMs: the field VALUE for each NAME.
   character(len=*), parameter :: choices(*) = [character(len=180) :: &
     'PLANE; for=PSHELL word STRAIN STRESS; every PSHELL with blank MID2', &
-    'RULE; for=CGAP/BCONP word AUTO CONRY JOINED; contact entry rule; default AUTO', &
+    'RULE; for=CGAP/BCONP word AUTO CONRY JOINED; contact solver: AUTO, simplex (CONRY), all bodies'// &
+    ' in one system (JOINED); default AUTO', &
     'GAPGEOM; for=CGAP word NO YES; YES adds the distance of the nodes to each gap; default NO', &
     'UNITS; word; printed with the results; nothing is converted', &
     'METHOD; for=MATS1 word AUTO SECANT MODSEC INISTR NEWTON; plastic iteration; default AUTO', &
-    'TOL; real positive below=1 for=MATS1; largest change of a displacement, of the largest, that ends'// &
-    ' the iteration; default 0.01, for NEWTON 1.E-8', &
+    'TOL; real positive below=1 for=MATS1; largest change of displacements, over the largest, that'// &
+    ' ends the iteration; default 0.01, for NEWTON 1.E-8', &
     'MAXIT; whole from=1 to=100000 for=MATS1; iterations of a load step; default 100', &
     'THEORY; for=MATS1 word TOTAL FLOW; plasticity: stresses follow from the strains at full load'// &
     ' (TOTAL), or increment by increment (FLOW); default TOTAL', &
     'MUP; for=MATS1 word EXACT PAPER; Poisson''s ratio in the equivalent strain: exact, or formula'// &
     ' (2-4); default EXACT', &
-    'ORIGINAL; word NO YES; all as in about 1980: SOLVER BAND, FLEXIB INVERT, RULE CONRY, METHOD'// &
+    'ORIGINAL; word NO YES; methods of about 1980: SOLVER BAND, FLEXIB INVERT, RULE CONRY, METHOD'// &
     ' SECANT, TOL 0.01, NLOAD 1, THEORY TOTAL, MUP PAPER, no ACCURACY; default NO', &
     'NLOAD; whole from=1 to=10000 for=MATS1; load steps; default 1', &
-    'SEARCH; real positive for=BCONP; how far BCONP looks for a segment; default twice the longest'// &
-    ' segment of the two lines [length]', &
+    'SEARCH; real positive for=BCONP; search distance of BCONP; default twice the longest'// &
+    ' edge of the two lines [length]', &
     'SOLVER; word AUTO BAND FRONTAL; matrices of the bodies: panels of a band, or nested fronts;'// &
     ' default AUTO', &
-    'FLEXIB; for=CGAP/BCONP word AUTO INVERT; flexibility of the contact by inversion always, or by'// &
-    ' substitution where that is cheaper; default AUTO', &
+    'FLEXIB; for=CGAP/BCONP word AUTO INVERT; flexibility of the contact always by inversion, or by'// &
+    ' substitution if that is cheaper; default AUTO', &
     'ACCURACY; real positive below=1; wanted relative error of contact pressures: sets TOL and METHOD'// &
     ' if they are left out', &
-    'CORNER; real positive to=180 for=BCONP; sides of a boundary line that turn by more than this meet at'// &
-    ' a corner; default: decided from the turns beside it [degree]', &
+    'CORNER; real positive to=180 for=BCONP; edges of a boundary line with a larger angle between them'// &
+    ' meet at a corner; default: decided from the neighbouring angles [degree]', &
     'WTMASS; real positive for=GRAV/RFORCE; factor of all mass: of RHO and NSM; default 1.0', &
-    'LGDISP; whole from=-1 to=-1 noted; no effect | displacements are small', &
-    'INREL; whole only_zero noted; no effect | supports and contact hold bodies']
+    'LGDISP; whole from=-1 to=-1 ignored; no effect | displacements are small', &
+    'INREL; whole only_zero ignored; no effect | supports and contact hold bodies']
   !> PARAMs of other programs that have no effect here.
   character(len=*), parameter :: unheard(*) = [character(len=8) :: &
     'AUTOSPC', 'BAILOUT', 'COUPMASS', 'GRDPNT', 'K6ROT', 'MAXRATIO', 'NOCOMPS', 'OGEOM', 'POST', 'PRGPST', &
@@ -373,7 +374,7 @@ contains
       field(i) = new_field(trim(choices(i)))
     end do
     do i = 1, size(unheard)
-      field(size(choices) + i) = new_field(unheard(i)//'; any noted; no effect')
+      field(size(choices) + i) = new_field(unheard(i)//'; any ignored; no effect')
     end do
     field%required = .true.
   end function parameters

@@ -63,7 +63,7 @@ contains
     else
       deck%whole = .false.
       call faults%add_error(place_type(), 'ENDDATA is missing: the deck looks cut off', &
-                            'ENDDATA as the last line')
+                            'end the deck with ENDDATA')
     end if
   end subroutine check_end
 

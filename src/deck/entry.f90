@@ -122,7 +122,7 @@ contains
   !! `id` (at least 1), a `system` (0 or an id), a `whole` number, a `real`, `digits` (directions 1 to 6), a
   !! `word` (one of the listed words, if there are any), `any`, or `blank`. Attributes follow in any order:
   !! limits (`from=`, `to=`, or `below=`, with a valid value `instead=`); `positive`; `only_zero` (0 or
-  !! blank); `cause` (a load of the model); `noted` (checked but ignored; also above `heard_to=`, or without
+  !! blank); `cause` (a load of the model); `ignored` (checked only; also above `heard_to=`, or without
   !! one of the cards `for=`); `point_optional`. A blank means `zero`, `default=`, or the value of the
   !! previous field (`as_last`). A blank is allowed for ids and digits if they are `optional` or their
   !! neighbour (`with_next`, `with_last`) is blank, and for numbers unless they are `needed`. `times=` repeats
@@ -206,7 +206,7 @@ contains
         field%has_default = .true.
       case ('cause')
         field%least = least_cause
-      case ('noted')
+      case ('ignored')
         field%used = .false.
       case ('heard_to')
         field%heard_to = number

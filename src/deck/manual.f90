@@ -42,7 +42,8 @@ contains
     integer :: k, slot
 
     text = trim(entry%name)//': '//entry%meaning//newline//newline// &
-           'field  columns  name   kind     default  use    meaning [unit], range'//newline
+           'use: used; ignored (checked, no effect); blank (must be blank)'//newline//newline// &
+           'field  columns  name   kind     default  use      meaning [unit], range'//newline
     field = entry%field
     if (entry%list_slot == huge(1)) &   ! the rest of its last line must be blank
       field = [field, (field_entry(), slot=1, modulo(-size(field), fields_a_line))]
@@ -72,14 +73,14 @@ contains
       type(field_entry), intent(in) :: field
 
       call add_row(more, name, kind_name(field%kind), default_text(field), &
-                   merge('used ', 'noted', field%used), meaning_text(field))
+                   merge('used   ', 'ignored', field%used), meaning_text(field))
     end subroutine add_field
 
     !> Add the line of a slot. Columns are those of a small field, counted on its own line of the card.
     subroutine add_row(more, name, kind, default, use, meaning)
       character(len=*), intent(in) :: more   !! text after the number of the field
       character(len=*), intent(in) :: name, kind, default, use, meaning
-      character(len=48) :: head
+      character(len=50) :: head
       integer :: first
 
       first = 9 + 8*mod(slot - 1, 8)

@@ -15,9 +15,9 @@ module epcont_messages_array_words
     'GA and GB are not the ends', 'its corners are not the ends', &
     'field 9 (CID) is blank', 'its normal is zero', &
     'the id of a CORD2R whose x-axis is the normal', 'a normal', &
-    'the x-axis of CID turned round', 'the normal turned round', &
-    'by SPC1', '(held)', 'by SUPORT,', '(reference) at node,direction:', 'SUPORT', 'reference', &
-    'an RBE2', 'a leader', 'RBE2', 'leader', 'GN', 'the leader', &
+    'the x-axis of CID', 'the normal', &
+    'with SPC1', '(held)', 'with SUPORT,', '(reference) at node,direction:', 'SUPORT', 'reference', &
+    'an RBE2', 'a tie', 'RBE2', 'tie', 'GN', '`leader`', &
     'GA and GB', 'nodes A and B', 'of GA', 'of node A', 'of GB', 'of node B', &
     'GRID', 'node', 'CGAPs', 'pairs', 'CGAP', 'pair', &
     'BLSEG lines', 'lines', 'BLSEG', 'line', 'BCONP', 'couple', 'SLAVE', 'slave', 'MASTER', 'master', &
@@ -30,7 +30,7 @@ module epcont_messages_array_words
     'MUP EXACT (ORIGINAL takes PAPER)', '.false.', 'MUP EXACT', '.false.', &
     'THEORY TOTAL', '.false.', 'MUP PAPER', 'paper_ratio', &
     'PARAM MAXIT', 'controls%most_iterations', 'METHOD', 'controls%method', '--memory', 'memory', &
-    'what follows is', 'the answer is', '`force not unique` in CONTACT', 'answer%contact%indeterminate']
+    '`force not unique` in CONTACT', 'answer%contact%indeterminate']
 
   !> Items that are known by their position in a list, and the names of these lists.
   integer, parameter :: listed(*) = [of_tie, of_platen, of_equation, of_spring, of_pressure, of_body_load]

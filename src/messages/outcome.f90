@@ -9,8 +9,9 @@ module epcont_messages_outcome
   use epcont_base_tolerances, only: no_effect
   use epcont_element_kinematics, only: directions
   use epcont_messages_names, only: centre_name, motion_name, percent, when
-  use epcont_messages_scene_text, only: scene_sentence, scene_warnings, side_changed, unsound
-  use epcont_messages_sentences, only: axis_name, body_name, sentence_of
+  use epcont_messages_scene_text, only: large_displacements, scene_sentence, scene_warnings, side_changed, &
+      unsound
+  use epcont_messages_sentences, only: axis_name, body_name, limit_load, sentence_of
   use epcont_model_finding, only: findings, of_node, of_scene
   use epcont_result_locking, only: high_poisson
   use epcont_solution, only: solution_type
@@ -27,6 +28,8 @@ module epcont_messages_outcome
     integer :: status = status_valid            !! exit status
     character(len=:), allocatable :: word       !! valid, no equilibrium, limit load, ...
     character(len=:), allocatable :: sentence   !! empty if the answer is valid
+    !> Of a limit load: ` at load factor 0.7000; last converged 0.6000:`; otherwise empty
+    character(len=:), allocatable :: at_load
     logical :: has_answer = .false.             !! displacements and forces are available
     type(findings) :: found                     !! warnings and notes about the answer
   end type outcome_type
@@ -45,6 +48,7 @@ contains
     outcome%status = run%verdict%status()
     outcome%word = run%verdict%word()
     outcome%sentence = sentence_of(run)
+    outcome%at_load = limit_load(run)
     outcome%has_answer = run%verdict%has_answer()
     if (outcome%has_answer) call remark_answer(run, outcome%found)
   end function judge
@@ -61,10 +65,10 @@ contains
     call warn_of_forces(run, found)
     do k = 1, scene_warnings
       if (k == side_changed .and. run%answer%gradient%part > 0.0_wp) then
-        call warn(found, 'displacements are not small: '//text_of(nint(100.0_wp*run%answer%gradient%part))// &
-                  ' % of the volume turned or stretched by over 0.1, most at '// &
+        call warn(found, large_displacements//'rotation or strain exceeds 0.1 in '// &
+                  text_of(nint(100.0_wp*run%answer%gradient%part))//' % of the volume (largest at '// &
                   centre_name(run%model, run%answer%gradient%worst)// &
-                  '; equilibrium and contact are those of the undeformed shape')
+                  '); equilibrium and contact use the undeformed shape')
       else
         call warn(found, scene_sentence(run%model, run%certificate%scene, k))
       end if
@@ -72,12 +76,12 @@ contains
     call warn_of_material(run, found)
     vague = count(run%answer%contact%indeterminate)
     if (vague > 0) call warn(found, &
-      'the forces of '//plural(vague, 'pair')//' are one choice of many, and so are their '// &
-      'pressures: pairs at one place, or parts that cannot bend (`force not unique` in CONTACT)')
+      'the forces and pressures of '//plural(vague, 'pair')//' are one choice of many: pairs at one '// &
+      'point, or parts that cannot bend (`force not unique` in CONTACT)')
     do k = 1, run%motions%count
       if (.not. run%answer%contact%motion_free(k)) cycle
       call found%add_note(place_type(), 'approach of '//motion_name(run, k)// &
-                                  ': nothing resists or drives this motion: its value is a choice')
+                                  ': undetermined rigid-body mode, so its value is arbitrary')
     end do
   end subroutine remark_answer
 
@@ -119,9 +123,9 @@ contains
         force = abs(run%answer%bodies(i)%resultant(c))
         error = run%accuracy%body_force(c, i)
         if (error < as_much*force .or. force < of_total*sum(run%answer%contact%force)) cycle
-        call warn(found, 'contact may not bear '//short_real(force)//' along '//axis_name(c)// &
+        call warn(found, 'contact may not carry '//short_real(force)//' along '//axis_name(c)// &
                   ' on '//body_name(run, run%answer%bodies(i)%body)// &
-                  ': its error is as large, normals lean there; what rests on it may slide')
+                  ': the error is as large, because normals are inclined; supported parts may slide')
       end do
     end do
   end subroutine warn_of_forces
@@ -133,12 +137,14 @@ contains
 
     if (run%answer%locking%elements > 0) &
       call warn(found, plural(run%answer%locking%elements, 'three-node element')// &
-                ' of nearly constant volume (Poisson''s ratio '//short_real(high_poisson)//' or more'// &
-                when(any(run%answer%plastic), ', as yielding has made it')// &
-                '): too stiff, the mean stress scatters by '//percent(run%answer%locking%scatter, 1.0_wp)// &
-                ' of the equivalent stress; six-node elements or CQUAD4 would be right')
+                when(run%answer%locking%elements > 1, ' are', ' is')// &
+                ' too stiff (locking): nearly incompressible'// &
+                when(any(run%answer%plastic), ' after yielding')//' (Poisson''s ratio '// &
+                short_real(high_poisson)//' or more), the mean stress scatters by '// &
+                percent(run%answer%locking%scatter, 1.0_wp)// &
+                ' of the equivalent stress. Use six-node elements or CQUAD4')
     if (any(run%answer%beyond)) &
-      call warn(found, 'strained beyond the last point of the table, whose last slope goes on: '// &
+      call warn(found, 'strained beyond the last point of the table, so its last slope is used: '// &
                 elements_text(count(run%answer%beyond), findloc(run%answer%beyond, .true., dim=1)))
     if (run%answer%shortfall > 0.0_wp) &
       call warn(found, 'formula (2-4) (MUP PAPER) is an approximation: stresses beyond yield are up to '// &

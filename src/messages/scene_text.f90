@@ -26,7 +26,9 @@ module epcont_messages_scene_text
   !> Depths whose ratio is below this are treated as equal.
   real(wp), parameter, public :: deeper = 1.1_wp
 
-  character(len=*), parameter :: may_help = ' is allowed. What may mend it: '
+  character(len=*), parameter, public :: large_displacements = &
+    'displacements too large for small-displacement theory: '
+  character(len=*), parameter :: may_help = ' is allowed. Possible fix: '
 
   !> Words for a place where bodies penetrate each other, or where a pair presses across a gap.
   type :: place_words
@@ -53,11 +55,11 @@ contains
     case (beyond_mirror)
       if (scene%mirror%node > 0) &
         text = 'a body passes through its mirror image: '//beyond(model, scene%mirror)// &
-               ', to which its body is held; no harm where that is no line of symmetry'
+               ', on which its body is fixed; ignore this unless it is a line of symmetry'
     case (side_changed)
       if (scene%change > largest_change) &
-        text = 'displacements are not small: '//side_name(model, scene%changed_side)// &
-               ' is turned or stretched by '//short_real(scene%change)
+        text = large_displacements//side_name(model, scene%changed_side)// &
+               ' is rotated or stretched by '//short_real(scene%change)
     case (body_in_itself)
       if (scene%itself%ratio > 1.0_wp) text = place_warning(model, scene, about, scene%itself)
     case (much_overlap)
@@ -84,20 +86,19 @@ contains
     by_much = text_of(nint(100.0_wp*place%depth/scene%moved))//' % of the largest displacement, '// &
               short_real(scene%moved)//': '
     ! Depths shrink with the edges at corners, and faster elsewhere. Sliding and rotation do not shrink.
-    finer = '; sides of about '//short_real(side/max(place%ratio, tiny(side)))//' there would leave 10 %'
-    if (place%moving) finer = '; turns and slides there are not small'
+    finer = '; edges of about '//short_real(side/max(place%ratio, tiny(side)))//' there reduce it to 10 %'
+    if (place%moving) finer = '; rotation or sliding there is large'
     select case (about)
     case (body_in_itself)
-      text = 'a body passes through itself: it lies '//word%depth//' deep, at '//word%at//', behind '// &
+      text = 'a body penetrates itself by '//word%depth//', at '//word%at//', behind '// &
              word%other_side//'; '//word%allowed//' is allowed'
     case (much_overlap)
-      text = 'bodies lie in each other by '//by_much//word%penetration//finer
+      text = 'bodies penetrate each other by '//by_much//word%penetration//finer
     case (much_gap)
       text = 'a pair presses across a gap of '//by_much//word%distance//finer
     case default
-      text = 'displacements are not small: bodies that press on each other slide by '//word%depth// &
-             ' along each other, at '//word%at//', where sides are '//short_real(side)// &
-             ' long; contact is that of undeformed places'
+      text = large_displacements//'bodies in contact slide by '//word%depth//' along each other, at '// &
+             word%at//', where sides are '//short_real(side)//' long; contact uses the undeformed shape'
     end select
   end function place_warning
 
@@ -111,8 +112,8 @@ contains
     integer :: worst
 
     if (scene%axis%node > 0) then
-      text = 'a ring is pressed to a radius below 0: '//beyond(model, scene%axis)// &
-             '; where displacements are small radii stay above 0'
+      text = 'an axisymmetric body reaches a radius below 0: '//beyond(model, scene%axis)// &
+             '; small displacements keep radii positive'
       return
     end if
     faulty = [scene%inside, scene%apart, scene%beside, scene%passed]
@@ -127,14 +128,14 @@ contains
       if (scene%deepest%depth > deeper*place%depth) &
         text = text//' (deepest, '//short_real(scene%deepest%depth)//', they are at '// &
                point_name(scene%deepest%x)//', where '//short_real(scene%deepest%allowed)//' is allowed)'
-      text = text//'. What may mend it: '//remedy(model, [place%side, place%other])
+      text = text//'. Possible fix: '//remedy(model, [place%side, place%other])
     case (2)
       text = text//'across a gap: '//word%distance//'; '//word%allowed//may_help// &
              'pairs of nodes, or lines, that face each other'
     case (3)
       text = text//'beside the other body: at '//word%at//' is '//word%depth//' beside the end of '// &
-             word%other_side//'; '//word%allowed//may_help//'bodies drawn where they come to, '// &
-             'or longer ones: contact is that of undeformed places'
+             word%other_side//'; '//word%allowed//may_help//'bodies in their final positions, '// &
+             'or longer ones: contact uses the undeformed shape'
     case (4)
       passing = model%name_of(of_element, model%mesh%body_outline%element(place%side))
       if (place%node > 0) passing = model%name_of(of_node, place%node)
@@ -158,8 +159,8 @@ contains
       word%body = first_grid(model, outline%part_of == outline%part(place%side))
       word%other_body = first_grid(model, outline%part_of == outline%part(place%other))
     end associate
-    word%penetration = 'the body of '//word%body//' lies '//word%depth//' deep in that of '// &
-                       word%other_body//', at '//word%at//', behind '//word%other_side
+    word%penetration = 'the body of '//word%body//' penetrates the body of '//word%other_body//' by '// &
+                       word%depth//', at '//word%at//', behind '//word%other_side
     word%distance = 'at '//word%at//' is '//word%depth//' off '//word%other_side
   end function words_of
 

@@ -4,7 +4,7 @@ module epcont_messages_sentences
   use epcont_base_text, only: plural, short_real
   use epcont_base_tolerances, only: valid_to
   use epcont_certificate_certificate, only: figure_name
-  use epcont_verdict, only: reason_memory, reason_no_equilibrium, reason_none, &
+  use epcont_verdict, only: reason_limit_load, reason_memory, reason_no_equilibrium, reason_none, &
       reason_not_converged, reason_overlap, reason_rounding, reason_singular, reason_unsound
   use epcont_element_kinematics, only: directions
   use epcont_messages_names, only: first_grid, joined, motion_name, when
@@ -14,13 +14,13 @@ module epcont_messages_sentences
   use epcont_solution, only: solution_type
   implicit none
   private
-  public :: body_name, sentence_of
+  public :: body_name, limit_load, sentence_of
 
   !> Largest number of pairs that are named.
   integer, parameter, public :: most_pairs = 8
   character(len=*), parameter, public :: axis_name(2) = ['x', 'y']
   character(len=*), parameter :: ill_shaped = &
-    'elements differ too much in size or stiffness, hardly anything resists a motion, '// &
+    'elements differ too much in size or stiffness, hardly anything resists a rigid-body mode, '// &
     'a body is too slender, or a Poisson''s ratio is too near 0.5'
 
 contains
@@ -38,21 +38,21 @@ contains
     case (reason_singular)
       text = 'the stiffness of '//body_name(run, run%answer%failed_body)//' cannot be factored: '// &
              ill_shaped//when(run%model%sections%has_flat_curve(), &
-                              '; or a flat curve carries no more (limit load)')
+                              '; or the load exceeds the limit load (perfectly plastic material)')
     case (reason_no_equilibrium)
       text = escaping(run)
     case (reason_overlap)
-      text = 'pairs overlap and nothing can give way: CGAP '// &
+      text = 'pairs overlap and no body can deform: CGAP '// &
              joined(pack(run%model%contact%pair_id, run%answer%contact%overlapping), ' ', most_pairs)
     case (reason_rounding)
-      text = 'no set of touching pairs passed the test: inconclusive because of rounding ('// &
+      text = 'no active set passed the test, because of rounding ('// &
              cause_of_rounding(run)//')'
     case (reason_unsound)
       text = scene_sentence(run%model, run%certificate%scene, unsound)
-    case (reason_not_converged)
+    case (reason_limit_load, reason_not_converged)
       text = unconverged(run)
     case default
-      text = 'the figures are not to be trusted: '//doubts(run)
+      text = 'the answer is not reliable: '//doubts(run)
     end select
   end function sentence_of
 
@@ -63,11 +63,11 @@ contains
     integer :: k
 
     k = maxloc(abs(run%answer%contact%escape), dim=1)
-    text = body_name(run, run%motions%body(k))//' moves off and no contact holds it: '// &
-           run%model%name_of(of_node, run%motions%node(k))//' moves along '// &
-           merge('-', '+', run%answer%contact%escape(k) < 0)// &
+    text = ' along '//merge('-', '+', run%answer%contact%escape(k) < 0)// &
            axis_name(min(directions, run%motions%component(k)))
-    if (run%motions%component(k) == angle) text = text(:index(text, ' moves along'))//'turns'
+    text = 'the load '//when(run%motions%component(k) == angle, 'rotates ', 'moves ')// &
+           body_name(run, run%motions%body(k))//when(run%motions%component(k) /= angle, text)// &
+           ' (SUPORT at '//run%model%name_of(of_node, run%motions%node(k))//'), and no contact resists it'
   end function escaping
 
   !> Say why no active set passed the test.
@@ -80,8 +80,8 @@ contains
     associate (turn => abs(run%answer%contact%escape))
       text = 'CGAP '//joined(pack(run%model%contact%pair_id, run%answer%contact%overlapping), ' ', &
                              most_pairs)// &
-             ' alone hold '//motion_name(run, findloc(turn > 0.5_wp*maxval(turn), .true., dim=1))// &
-             ', and hardly: hold it by SPC1'
+             ' alone restrain '//motion_name(run, findloc(turn > 0.5_wp*maxval(turn), .true., dim=1))// &
+             ', and hardly: fix it with SPC1'
     end associate
   end function cause_of_rounding
 
@@ -102,18 +102,18 @@ contains
     much = 0.1_wp*valid_to
     taken = epsilon(1.0_wp)/run%answer%weakest%ratio   ! the cause, even after iterative refinement
     if (.not. all(figure <= huge(figure))) then
-      text = 'the work of the loads is too far from 1.0 for a number: other units'
+      text = 'the work of the loads is too far from 1.0 for a number: use other units'
     else if (taken > much) then
       if (len(text) > 0) text = text//'; '
       text = text//'rounding takes '//short_real(taken)//' of a pivot in the stiffness of '// &
              body_name(run, run%answer%weakest%body)//': '//ill_shaped
     else if (run%certificate%lost_stress > much) then
       text = text//'; the rounding of displacements is '//short_real(run%certificate%lost_stress)// &
-             ' of the largest stress: elements too small or too stiff for how far they travel, '// &
+             ' of the largest stress: elements too small or too stiff for their displacements, '// &
              'or a Poisson''s ratio is too near 0.5'
     else if (run%answer%condition*epsilon(1.0_wp) > much) then
       text = text//'; the condition of the stiffness is '//short_real(run%answer%condition)// &
-             ': slender bodies or elements, or SUPORT nodes that are near each other'
+             ': slender bodies or elements, or SUPORT nodes that are too near each other'
     end if
   end function doubts
 
@@ -123,17 +123,27 @@ contains
     character(len=:), allocatable :: text
 
     associate (last => run%answer%history(size(run%answer%history)))
-      text = 'at load factor '//short_real(last%load_factor)//' '// &
-             when(run%answer%runs_away, 'the displacements grow without end: '// &
-                  'it is more than a material with a flat curve can carry (limit load)', &
-                  'after '//plural(last%iteration, 'iteration')//' displacements still change by '// &
-                  short_real(last%change)// &
-                  ' of the largest (PARAM MAXIT: more of them; '// &
-                  when(run%model%controls%original, 'no ORIGINAL', 'METHOD')//': another way)')// &
-             when(run%answer%carried, '; what follows is for load factor '// &
-                  short_real(run%answer%load_factor)//', the largest that converged')
+      text = when(run%answer%runs_away, 'limit load exceeded ')//'at load factor '// &
+             short_real(last%load_factor)// &
+             when(run%answer%runs_away, ': displacements grow without bound (perfectly plastic material)', &
+                  ' after '//plural(last%iteration, 'iteration')//' displacements still change by '// &
+                  short_real(last%change)//' of the largest (increase PARAM MAXIT, or '// &
+                  when(run%model%controls%original, 'remove ORIGINAL', 'choose another METHOD')//')')// &
+             when(run%answer%carried, '. Results are for load factor '// &
+                  short_real(run%answer%load_factor)//', the last converged load step')
     end associate
   end function unconverged
+
+  !> Load factors of a limit load, for standard output; empty if the limit load was not exceeded.
+  pure function limit_load(run) result(text)
+    class(solution_type), intent(in) :: run
+    character(len=:), allocatable :: text
+
+    text = ''
+    if (run%verdict%reason /= reason_limit_load) return
+    text = ' at load factor '//short_real(run%answer%history(size(run%answer%history))%load_factor)
+    if (run%answer%carried) text = text//'; last converged '//short_real(run%answer%load_factor)//':'
+  end function limit_load
 
   !> Name a body by its first node.
   pure function body_name(run, body) result(name)

@@ -57,10 +57,10 @@ contains
 
     if (.not. bytes/giga <= limit) then
       call raise(error, status_usage, &
-                 'the scene needs about '//gigabytes(bytes/giga)//' of memory, and --memory allows '// &
+                 'the model needs about '//gigabytes(bytes/giga)//' of memory, and --memory allows '// &
                  gigabytes(limit))
     else if (.not. has_memory(most_memory(bytes))) then
-      call raise(error, status_usage, 'the scene needs up to '//gigabytes(most_memory(bytes)/giga)// &
+      call raise(error, status_usage, 'the model needs up to '//gigabytes(most_memory(bytes)/giga)// &
                  ' of memory, and the system does not give it (ulimit -v)')
     end if
 

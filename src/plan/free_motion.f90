@@ -183,7 +183,7 @@ contains
       call lu_solve(factors, unit, info)
       if (norm2(unit)*norm2(square) > largest_condition) then
         call found%add_error(of_body, nodes(1), 0, 'the body of '//model%name_of(of_node, nodes(1))// &
-          ': its SUPORT freedoms hardly tell its free motions apart', 'SUPORT nodes farther from each other')
+          ': its SUPORT DOFs hardly distinguish its rigid-body modes', 'move the SUPORT nodes farther apart')
         return
       end if
       ! Until here rotations are displacements at the extent of the body; from here on they are angles.

@@ -34,13 +34,13 @@ contains
     end associate
     name = model%name_of(of_node, node(last))
     direction = text_of(component(last))
-    remedy = 'as many SUPORT freedoms as free motions'
+    remedy = 'use one SUPORT DOF for each rigid-body mode'
     if (component(last) == angle) then
       direction = '6'
       remedy = remedy//'; MOMENT 0.0 lets '//name//' rotate without SUPORT'
     end if
     call found%add_error(of_body, node(last), 0, 'the body of '//name//' has '// &
-      plural(motions, 'free motion')//' and '//plural(size(node), 'SUPORT freedom')//': '//name// &
+      plural(motions, 'rigid-body mode')//' and '//plural(size(node), 'SUPORT DOF')//': '//name// &
       ' direction '//direction//' is one too many', remedy)
   end subroutine add_surplus
 
@@ -80,7 +80,7 @@ contains
     if (moving /= nodes(1)) body = 'a part of '//body//', with '//model%name_of(of_node, moving)//','
     if (size(nodes) == 1) body = model%name_of(of_node, moving)//', which no element has,'
     call found%add_error(of_body, moving, 0, body//' is free to move: '//text(3:), &
-                         'hold it by SPC1, or solve for the motion by SUPORT'//cards)
+                         'fix it with SPC1, or solve for it with SUPORT'//cards)
   end subroutine add_loose_body
 
   !> Direction, node and mode of the largest displacement of DOFs that can be SUPORT DOFs.

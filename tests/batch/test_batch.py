@@ -63,7 +63,7 @@ class Whole(Case):
                 self.assertEqual([(row["subcase"], row["status"]) for row in rows], [("7", "valid"), ("3", "no equilibrium"), ("", "valid")])
                 self.assertEqual([row["p_max"] == rows[2]["p_max"] for row in rows], [True, False, True])
                 self.assertIn("2 decks, 3 load cases in ", run.stdout)
-                self.assertIn("cases.dat SUBCASE 3: no equilibrium: the body of GRID 1 moves off", run.stdout)
+                self.assertIn("cases.dat SUBCASE 3: no equilibrium: the load moves the body of GRID 1", run.stdout)
 
     def test_titles_and_warnings_of_load_cases(self):
         """SUBTITLE and LABEL, those above the first SUBCASE for all; a warning of a case arrives in its row, though the deck has only notes."""

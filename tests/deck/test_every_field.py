@@ -96,7 +96,7 @@ CARDS = {
                              ("GA", "5", error("not the ends of a side")), ("GB", "8", error("not the ends of a side")), ("THETA", "20.", CHANGES)]),
     "RBE2": ("plane", 0, [("EID", "1", error("the id is taken")), ("GN", "8", error("RBE2")), ("CM", "1", note("GRID 9 rotates")), ("GM1..", "6", error("GRID 6"))]),
     "SUPORT": ("plane", 0, [("ID1", "3", error("SUPORT")), ("C1", "1", error("SUPORT 9")), ("ID2", "3", error("GRID 3 has no direction 6")),
-                            ("C2", "4", error("GRID 9 has no direction 4")), *((f"{name}{k}", f"{2 * k - 1}=3 {2 * k}=2", error("1 SUPORT freedom"))
+                            ("C2", "4", error("GRID 9 has no direction 4")), *((f"{name}{k}", f"{2 * k - 1}=3 {2 * k}=2", error("1 SUPORT DOF"))
                                                                             for k in (3, 4) for name in ("ID", "C"))]),
     "CORD2R": ("plane", 0, [("CID", "99", error("there is no CORD2R 3")), ("RID", "1", ZERO), ("A1", "3=.1 6=.1", CHANGES), ("A2", ".1", error("off the x-y plane")),
                             ("A3", "1.", error("lie on one line")), ("B1", "6=.1 9=1. 10=0.", error("off the x-y plane")), ("B2", ".1", error("off the x-y plane")), ("B3", "0.", error("lie on one line")),
@@ -154,8 +154,8 @@ WITHOUT = {"PLANE": "ctrax3", "RULE": "yield", "GAPGEOM": "lines", "METHOD": "pl
            "SEARCH": "plane", "FLEXIB": "yield", "CORNER": "plane", "WTMASS": "yield"}
 #: The same for each statement of case control, put before the others of `plane` or in place of the one of its name.
 STATEMENTS = {
-    "SOL": ("SOL 103", note("SOL: not static")), "CEND": ("CEND 1", error("CEND takes no value")), "TITLE": ("TITLE = X", LISTED), "ECHO": ("ECHO = SORT", LISTED),
-    "CNTNLSUB": ("CNTNLSUB = YES", error("the SUBCASEs are a sequence")), "SUBCASE": ("SUBCASE 9", CHANGES), "SUBTITLE": ("SUBTITLE = X", LISTED),
+    "SOL": ("SOL 103", note("SOL: epcont solves for static loads")), "CEND": ("CEND 1", error("CEND takes no value")), "TITLE": ("TITLE = X", LISTED), "ECHO": ("ECHO = SORT", LISTED),
+    "CNTNLSUB": ("CNTNLSUB = YES", error("a sequence of SUBCASEs")), "SUBCASE": ("SUBCASE 9", CHANGES), "SUBTITLE": ("SUBTITLE = X", LISTED),
     "LABEL": ("LABEL = X", LISTED), "SPC": ("SPC = 9", error("SPC = 9: the deck has no such set")), "LOAD": ("LOAD = 12", CHANGES),
     "MPC": ("MPC = 5", CHANGES), "BCONTACT": ("BCONTACT = NONE", CHANGES), "DISPLACEMENT": ("DISPLACEMENT = NONE", CHANGES),
     "STRESS": ("STRESS = NONE", CHANGES), "SPCFORCES": ("SPCFORCES = ALL", CHANGES), "NLPARM": ("NLPARM = 5", error("NLPARM = 5: there is no such NLPARM")),

@@ -151,8 +151,8 @@ class Many(Extremes):
                 self.near(sum(result.force), sum(once.force))
                 self.near(result.force, [0.375/copies]*2*copies)
                 self.assertEqual(result.listing.count(", force not unique"), 2*copies)
-                self.assertIn(f"scene.dat: warning: the forces of {2*copies} pairs are one choice of many, and so are their pressures: pairs at "
-                                 "one place, or parts that cannot bend (`force not unique` in CONTACT)\n", result.message)
+                self.assertIn(f"scene.dat: warning: the forces and pressures of {2*copies} pairs are one choice of many: pairs at "
+                                 "one point, or parts that cannot bend (`force not unique` in CONTACT)\n", result.message)
 
     def test_every_second_pair_twice(self):
         for rule in ("CONRY", "JOINED"):
@@ -189,7 +189,7 @@ class Walls(Extremes):
 
     def test_rigid_on_rigid_overlap(self):
         for gap in (-1e-3, -1e-9, -1e9):
-            self.refused(held_pair(gap), 1, "pairs overlap and nothing can give way: CGAP 3001")
+            self.refused(held_pair(gap), 1, "pairs overlap and no body can deform: CGAP 3001")
 
     def test_tongue_between_two_walls(self):
         """A bar with walls above and below it, loaded either way, or wedged in by an overlap."""
@@ -205,7 +205,7 @@ class Walls(Extremes):
         """Walls nearer to each other than the tongue is thick cannot both hold the same nodes."""
         deck = bar(-0.5, 0.0)
         deck.floor(deck.nodes[1], [0.25]*2, 4001)
-        self.refused(deck, 1, "pairs overlap and nothing can give way: CGAP 100[12] 400[12]")
+        self.refused(deck, 1, "pairs overlap and no body can deform: CGAP 100[12] 400[12]")
 
 
 if __name__ == "__main__":

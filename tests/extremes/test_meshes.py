@@ -66,7 +66,7 @@ class Shapes(Extremes):
             for at in (0, 2):
                 with self.subTest(halvings=halvings, at=at):
                     deck, sizes = self.nested(halvings, at)
-                    result = self.right_or_refused(deck, "elements too small or too stiff for how far they travel")
+                    result = self.right_or_refused(deck, "elements too small or too stiff for their displacements")
                     self.assertTrue(result or halvings > 10 and at == 2)
                     if result:
                         ends = [0.0] + [0.5*(x + y) for x, y in zip([0.0] + sizes, sizes)] + [1.0]

@@ -123,7 +123,7 @@ class Choices(Case):
         told = float(re.search(rb"stress_below_curve,(.*),", files["deck.summary.csv"]).group(1))
         self.assertAlmostEqual(shortfall, told, delta=1e-9)
         self.check(self.run_with("PARAM,ORIGINAL,YES", "PARAM,ORIGINAL,YES\nPARAM,MAXIT,2"), 1,
-                   "(PARAM MAXIT: more of them; no ORIGINAL: another way)")
+                   "(increase PARAM MAXIT, or remove ORIGINAL)")
 
     def test_no_table_of_nothing(self):
         """Joined bodies have no pivots of a simplex."""
@@ -318,11 +318,20 @@ class Remarks(Case):
         said, heading, lines, summary = self.solve(force="FORCE,1,3,,300.,0.,-1.,0.")
         self.assertEqual("WARNINGS AND NOTES  (1 warning, 1 note)", heading)
         self.assertEqual(["status,valid,", "warnings,1,", "notes,1,"], summary)
-        text = "warning: displacements are not small: 100 % of the volume turned or stretched by over 0.1, most at 0.5000 0.5000; " \
-               "equilibrium and contact are those of the undeformed shape"
+        text = "warning: displacements too large for small-displacement theory: rotation or strain exceeds 0.1 in 100 % of the volume (largest at 0.5000 0.5000); " \
+               "equilibrium and contact use the undeformed shape"
         self.assertEqual(["  9:18-19: MAT1: field 6 (RHO) has no effect (cards with it: 1)",
-                          "  " + text[:text.index(" and contact")], "    " + text[text.index("and contact"):]], lines)
+                          "  " + text[:text.index(" at 0.5000")], "    " + text[text.index("at 0.5000"):]], lines)
         self.assertEqual(f"{self.directory}/scene.dat: {text}\n", said)
+
+
+class LimitLoad(Case):
+    def test_its_status_and_load_factors(self):
+        run = self.run_it(ROOT / "input" / "faults" / "punch_beyond.dat", "-o", self.directory, text=True)
+        self.assertEqual(1, run.returncode)
+        self.assertIn("punch_beyond  limit load at load factor 0.7000; last converged 0.6000:  p_max  3.64613E+03 (singular)", run.stdout)
+        self.assertIn("limit load exceeded at load factor 0.7000: displacements grow without bound", run.stderr)
+        self.assertIn("\nstatus,limit load,\n", (self.directory / "punch_beyond.summary.csv").read_text())
 
 
 class Output(Case):
@@ -352,7 +361,7 @@ class Output(Case):
 
 class Memory(Case):
     def test_the_forecast_is_above_the_limit(self):
-        self.check(self.run_it(LARGE, "-o", self.directory, "--memory", "0.001"), 3, "the scene needs about", "--memory allows 0.001000 GB")
+        self.check(self.run_it(LARGE, "-o", self.directory, "--memory", "0.001"), 3, "the model needs about", "--memory allows 0.001000 GB")
         self.assertEqual({}, self.files(self.directory))
 
     def test_no_limit(self):

@@ -162,13 +162,13 @@ class Touching(scene.Extremes):
 
     def test_wall_that_no_line_names(self):
         """The block is pushed into a wall that is in no line: not certified, and what would mend it."""
-        self.not_certified("wall_not_in_line", "bodies pass through each other: the body of GRID 15 lies 0.01348 deep in that of GRID 1, at "
-                           "-0.01296 0.1206 on side", "What may mend it: a BLSEG along side")
+        self.not_certified("wall_not_in_line", "bodies pass through each other: the body of GRID 15 penetrates the body of GRID 1 by 0.01348, at "
+                           "-0.01296 0.1206 on side", "Possible fix: a BLSEG along side")
 
     def test_corner_at_a_corner(self):
         """A key bulges into walls that are in no line. Its corner stands at that of the groove: rounding chooses the nearer side there."""
         for name in ("bulging_key", "bulging_key_mirrored"):
-            self.not_certified(name, " lies 0.01000 deep in that of GRID ", "; 0.003974 is allowed. What may mend it: ")
+            self.not_certified(name, " by 0.01000, at ", "; 0.003974 is allowed. Possible fix: ")
 
     def test_ways(self):
         """A block is moved through a plate, and exactly into another; one is moved off the ledge that it stands on."""

@@ -147,8 +147,8 @@ class Scenes(unittest.TestCase):
         self.listed(("[[contact]]", "[PARAM]\nSEARCH = 0.001\n[[contact]]"))
         self.assertAlmostEqual(whole, pressure(), delta=1e-6*whole)
         large = " ".join(line.strip() for line in self.listed(("-7500.0", "-75000.0")))
-        self.assertRegex(large, r"displacements are not small: \d\d % of the volume turned or stretched by over 0.1, most at \S+ \S+; equilibrium "
-                                r"and contact are those of the undeformed shape")
+        self.assertRegex(large, r"displacements too large for small-displacement theory: rotation or strain exceeds 0.1 in \d\d % of the volume \(largest at \S+ \S+\); equilibrium "
+                                r"and contact use the undeformed shape")
 
     def test_one_line_in_two_contacts(self):
         """A roller between two blocks, its rim one closed line: Hertz at both, and two curves in the picture."""

@@ -11,7 +11,7 @@ CASE_COLUMNS = ["subcase", "subtitle", "label"]
 #: With --one-table: what stands before a figure of the summary, and those that have a column already.
 SUMMARY = "summary_"
 TAKEN = ("status", "warnings", "max_pressure", "max_pressure_is")
-ANSWERED = {"valid", "no equilibrium", "overlap", "not converged", "singular stiffness", "contact not found", "ill-conditioned",
+ANSWERED = {"valid", "no equilibrium", "overlap", "not converged", "limit load", "singular stiffness", "contact not found", "ill-conditioned",
             "not certified"}   # words of a whole listing
 NOT_RUN = "not run"
 KILLED = "killed"              # from outside: whoever has the right may run the deck again

@@ -14,10 +14,10 @@ from tables import rows, summary  # noqa: E402
 SAME = 1e-7      # what rounding leaves between twins, of the largest
 CLOSE = 0.05     # what a figure may be off without an estimate
 DEEP = 0.105     # of the largest displacement: the program tells of a tenth, at other places of the sides
-TOLD = "bodies lie in each other by"    # unless the program says so, and where: their forces are off by about as much
+TOLD = "bodies penetrate each other by"    # unless the program says so, and where: their forces are off by about as much
 NOTHING = "nothing touches"             # a mesh that touches nothing is not held against one that does: it says so
 FACETS = "pressures and approaches will be those of facets"   # approaches are not compared, then
-LARGE = "displacements are not small"   # where master and slave exchanged need not say the same
+LARGE = "displacements too large for small-displacement theory"   # where master and slave exchanged need not say the same
 SMOOTH = math.radians(35.0)   # turns of an outline up to here may be those of a curve in chords
 CHORDS = 8       # of a side with a middle node
 LARGEST = 350    # nodes of a scene; larger ones are drawn again
