@@ -144,7 +144,7 @@ contains
                 percent(run%answer%locking%scatter, 1.0_wp)// &
                 ' of the equivalent stress. Use six-node elements or CQUAD4')
     if (any(run%answer%beyond)) &
-      call warn(found, 'strained beyond the last point of the table, so its last slope is used: '// &
+      call warn(found, 'strained beyond the last point of the table; its last slope is used: '// &
                 elements_text(count(run%answer%beyond), findloc(run%answer%beyond, .true., dim=1)))
     if (run%answer%shortfall > 0.0_wp) &
       call warn(found, 'formula (2-4) (MUP PAPER) is an approximation: stresses beyond yield are up to '// &

@@ -97,7 +97,7 @@ class Gaps(Extremes):
                 if gap < 1.0:
                     self.near(self.valid(deck).force, [1e-3/20*(0.5 if k in (0, 20) else 1.0) for k in range(21)], 1e-6)
                 else:
-                    self.refused(deck, 4, "rounding of gaps and travels")
+                    self.refused(deck, 4, "rounding error of gaps")
 
     def test_pairs_never_reached(self):
         """Gaps of 1e30 beside one that closes; beyond that is beyond the range of a field."""

@@ -184,7 +184,7 @@ class Curves(Extremes):
             at, beyond = (self.valid(yielding(points, pressure, method=method)) for pressure in (1.5, 1.501))
             self.near(at.approach, [-0.02]*2, 1e-8)
             self.assertEqual("", at.message)
-            self.assertEqual("scene.dat: warning: strained beyond the last point of the table, so its last slope is used: element 1 and 1 more\n",
+            self.assertEqual("scene.dat: warning: strained beyond the last point of the table; its last slope is used: element 1 and 1 more\n",
                              beyond.message)
 
     def test_flat_curve(self):
