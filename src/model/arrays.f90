@@ -1,5 +1,5 @@
-!> What a scene is given by: arrays, with nothing in them that follows from others. They may be changed as one
-!> likes between two solves: each looks at all of them (epcont_model_given).
+!> Model data: arrays, without anything that follows from other arrays. A caller may change them between two
+!> solves; each solve checks all of them (epcont_model_given).
 module epcont_model_arrays
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: directions
@@ -10,62 +10,62 @@ module epcont_model_arrays
   public :: body_load, element_block, line_couple, named_line, side_pressure
   public :: dof_tie, linear_equation, spring_type, turning_platen
 
-  !> The component of what turns: behind those of displacements.
+  !> Component of rotations, after those of displacements.
   integer, parameter, public :: angle = directions + 1
 
-  !> Elements of one kind.
+  !> Elements of one type.
   type :: element_block
     character(len=8) :: name = ''             !! of their card: CTRIA3, CTRIA6, CQUAD4, CQUAD8, CTRAX3, CTRAX6
-    !> Corners in either turning sense, then middles of sides, the first behind the first corner
+    !> Corners in either sense of rotation, then mid-side nodes, the first after the first corner
     !! [nodes, elements]
     integer, allocatable :: node(:, :)
-    integer, allocatable :: section(:)        !! of each [elements]
+    integer, allocatable :: section(:)        !! section of each element [elements]
   end type element_block
 
-  !> A pressure along a side of an element, linear from one of its corners to the other.
+  !> A pressure on an edge of an element, linear between its corners.
   type :: side_pressure
-    integer :: element = 0                    !! whose side it is
-    integer :: corner(2) = 0                  !! nodes at the ends of the side
-    real(wp) :: pressure(2) = 0.0_wp          !! at these, positive into the element [stress]
+    integer :: element = 0                    !! element that the edge belongs to
+    integer :: corner(2) = 0                  !! nodes at the ends of the edge
+    real(wp) :: pressure(2) = 0.0_wp          !! at these nodes, positive into the element [stress]
     real(wp) :: theta = 0.0_wp                !! counter-clockwise from the inward normal [degree]
   end type side_pressure
 
-  !> What acts on all mass (GRAV, RFORCE): a uniform acceleration, and what a spin about a centre makes.
+  !> Body load on all mass (GRAV, RFORCE): a uniform acceleration, and rotation about an axis.
   type :: body_load
-    real(wp) :: factor = 1.0_wp                   !! of its forces
+    real(wp) :: factor = 1.0_wp                   !! factor of its forces
     real(wp) :: acceleration(directions) = 0.0_wp !! uniform, such as gravity [length/time**2]
-    !> What the axis of the spin, across the plane, goes through; rings spin about theirs [length]
+    !> Point on the rotation axis, which is normal to the plane; unused for axisymmetric bodies [length]
     real(wp) :: centre(directions) = 0.0_wp
-    real(wp) :: spin = 0.0_wp                     !! pushes away from the axis [revolutions/time]
-    !> Counter-clockwise; forces go along it, against those of inertia. None of rings [revolutions/time**2]
+    real(wp) :: spin = 0.0_wp                     !! angular velocity about the axis [revolutions/time]
+    !> Angular acceleration, counter-clockwise; forces have its sense; not axisymmetric [revolutions/time**2]
     real(wp) :: spin_up = 0.0_wp
   end type body_load
 
   !> A boundary line (BLSEG).
   type :: named_line
-    !> In their order along the boundary, in either sense; none: they were not sound
+    !> In their order along the boundary, in either sense; not allocated if the card is wrong
     integer, allocatable :: node(:)
     integer :: id = 0                         !! of its card
-    logical :: is_named = .false.             !! by a contact, perhaps one that is off in this load case
-    integer, allocatable :: side(:)           !! of the outline, with the body to the left; found
-    !> Least and largest coordinates of their ends [length] [2, 2]; found
+    logical :: is_named = .false.             !! a contact names it, perhaps one of other load cases
+    integer, allocatable :: side(:)           !! edges of the outline, with the body to the left; computed
+    !> Least and largest coordinates of the ends of these edges [length] [2, 2]; computed
     real(wp) :: box(directions, 2) = 0.0_wp
   end type named_line
 
-  !> Two lines that may touch (BCONP).
+  !> Two lines that may come into contact (BCONP).
   type :: line_couple
     integer :: line(2) = 0                    !! slave and master, by their positions
     integer :: id = 0                         !! of its card
   end type line_couple
 
-  !> A node that leads others as a rigid body does (RBE2), and turns: its angle is one more unknown.
+  !> A rigid body (RBE2) whose master node rotates: its angle is an additional unknown.
   type :: turning_platen
-    integer :: leader = 0                     !! the node
-    integer, allocatable :: follower(:)       !! u = u of the leader + angle x arm
+    integer :: leader = 0                     !! master node
+    integer, allocatable :: follower(:)       !! dependent nodes: u = u of the master node + angle x arm
     logical :: held = .false.                 !! the angle is prescribed
-    real(wp) :: prescribed = 0.0_wp           !! that angle, counter-clockwise [radian]
-    logical :: reference = .false.            !! it is a SUPORT freedom
-    real(wp) :: moment = 0.0_wp               !! at the leader, counter-clockwise [force*length]
+    real(wp) :: prescribed = 0.0_wp           !! the prescribed angle, counter-clockwise [radian]
+    logical :: reference = .false.            !! the angle is a SUPORT DOF
+    real(wp) :: moment = 0.0_wp               !! at the master node, counter-clockwise [force*length]
   end type turning_platen
 
   !> A DOF that has the displacement of another one in the same direction (RBE2 whose master node does not
@@ -76,13 +76,13 @@ module epcont_model_arrays
     integer :: leader = 0                     !! master node
   end type dof_tie
 
-  !> Sum of coefficients times displacements = 0 (MPC); the first freedom follows the others.
+  !> Sum of coefficients times displacements = 0 (MPC); the first DOF depends on the others.
   type :: linear_equation
     integer, allocatable :: component(:), node(:)
     real(wp), allocatable :: coefficient(:)
   end type linear_equation
 
-  !> A spring between two freedoms, or one and the ground (CELAS1, CELAS2).
+  !> A spring between two DOFs, or one and the ground (CELAS1, CELAS2).
   type :: spring_type
     integer :: component(2) = 0               !! 1: x, 2: y, of each end
     integer :: node(2) = 0                    !! 0: the ground
@@ -98,19 +98,19 @@ module epcont_model_arrays
     integer, allocatable :: kinematics(:)       !! plane_strain, plane_stress or axisymmetric [sections]
     real(wp), allocatable :: thickness(:)       !! [length] [sections]
     real(wp), allocatable :: density(:)         !! [mass/length**3] [sections]
-    type(uniaxial_curve), allocatable :: curve(:)  !! how each section yields, if it does [sections]
+    type(uniaxial_curve), allocatable :: curve(:)  !! stress-strain curve, if the section can yield [sections]
     real(wp), allocatable :: expansion(:)       !! strain for each degree [1/temperature] [sections]
-    real(wp), allocatable :: reference_temperature(:)   !! at which there is none [temperature] [sections]
-    logical, allocatable :: held(:, :)          !! the freedom has a prescribed displacement [2, nodes]
+    real(wp), allocatable :: reference_temperature(:)   !! without thermal strain [temperature] [sections]
+    logical, allocatable :: held(:, :)          !! the DOF has a prescribed displacement [2, nodes]
     real(wp), allocatable :: prescribed(:, :)   !! that displacement [length] [2, nodes]
     type(dof_tie), allocatable :: tie(:)        !! [any]
-    logical, allocatable :: reference(:, :)     !! SUPORT freedoms [2, nodes]
+    logical, allocatable :: reference(:, :)     !! SUPORT DOFs [2, nodes]
     real(wp), allocatable :: load(:, :)         !! nodal forces [force] [2, nodes]
-    type(side_pressure), allocatable :: pressure(:)   !! in addition to these [any]
-    !> Not allocated: that of reference everywhere [temperature] [nodes]
+    type(side_pressure), allocatable :: pressure(:)   !! in addition to `load` [any]
+    !> Not allocated: reference temperature everywhere [temperature] [nodes]
     real(wp), allocatable :: temperature(:)
-    type(body_load), allocatable :: body_load(:)      !! and to those [any]
-    type(turning_platen), allocatable :: platen(:)    !! nodes that lead others and turn [any]
+    type(body_load), allocatable :: body_load(:)      !! in addition to `load` [any]
+    type(turning_platen), allocatable :: platen(:)    !! rotating rigid bodies (RBE2) [any]
     type(linear_equation), allocatable :: equation(:) !! between displacements [any]
     type(spring_type), allocatable :: spring(:)       !! [any]
     integer, allocatable :: pair_node(:, :)     !! nodes A and B that name the pair [2, pairs]
@@ -119,14 +119,14 @@ module epcont_model_arrays
     !> The distance from A to B along the normal is added to these gaps (PARAM GAPGEOM YES).
     logical :: gap_by_geometry = .false.
     type(named_line), allocatable :: line(:)    !! lines of nodes [any]
-    type(line_couple), allocatable :: couple(:) !! which of these may touch [any]
-    logical :: contact_is_off = .false.         !! bodies may pass through each other, which is warned of
+    type(line_couple), allocatable :: couple(:) !! lines that may come into contact [any]
+    logical :: contact_is_off = .false.         !! bodies may penetrate each other; this gives a warning
     type(controls_type) :: controls             !! of the plastic iteration
   end type scene_type
 
 contains
 
-  !> A scene of nodes alone: no elements, supports, ties, loads, pairs and lines.
+  !> A model of nodes alone: no elements, supports, ties, loads, pairs and lines.
   function new_scene(x) result(scene)
     real(wp), intent(in) :: x(:, :)            !! their coordinates [length] [2, nodes]
     type(scene_type) :: scene
@@ -142,8 +142,8 @@ contains
     call set_pairs(scene, reshape([integer ::], [2, 0]), reshape([real(wp) ::], [2, 0]), [real(wp) ::])
   end function new_scene
 
-  !> What elements are made of; of thickness 1, without mass, and nothing yields or expands: that may be
-  !! changed.
+  !> Set the sections: of thickness 1, without mass, yielding and expansion. The caller may change
+  !! these afterwards.
   pure subroutine set_sections(scene, young, poisson, kinematics)
     type(scene_type), intent(inout) :: scene   !! is changed
     real(wp), intent(in) :: young(:)           !! [stress] [sections]
@@ -161,15 +161,15 @@ contains
     allocate (scene%curve(size(young)))
   end subroutine set_sections
 
-  !> Elements of one kind, behind those that the scene has; their numbers go on.
+  !> Append elements of one type; their numbers continue those of the model.
   pure subroutine add_elements(scene, name, node, section)
-    type(scene_type), intent(inout) :: scene   !! is added to
-    !> Of their card: CTRIA3, CTRIA6, CQUAD4, CQUAD8, CTRAX3, CTRAX6
+    type(scene_type), intent(inout) :: scene   !! gets the elements
+    !> Name of their card: CTRIA3, CTRIA6, CQUAD4, CQUAD8, CTRAX3, CTRAX6
     character(len=*), intent(in) :: name
-    !> Corners in either turning sense, then middles of sides, the first behind the first corner
+    !> Corners in either sense of rotation, then mid-side nodes, the first after the first corner
     !! [nodes, elements]
     integer, intent(in) :: node(:, :)
-    integer, intent(in) :: section(:)          !! of each [elements]
+    integer, intent(in) :: section(:)          !! section of each element [elements]
     type(element_block), allocatable :: longer(:)
     integer :: blocks, i
 
@@ -177,7 +177,7 @@ contains
     blocks = 0
     if (allocated(scene%block)) blocks = size(scene%block)
     allocate (longer(blocks + 1))
-    do i = 1, blocks   ! the lists of blocks before are not copied for each that comes
+    do i = 1, blocks   ! for each new block, the lists of the earlier blocks are moved, not copied
       longer(i)%name = scene%block(i)%name
       call move_alloc(scene%block(i)%node, longer(i)%node)
       call move_alloc(scene%block(i)%section, longer(i)%section)
@@ -188,7 +188,7 @@ contains
     call move_alloc(longer, scene%block)
   end subroutine add_elements
 
-  !> Pairs of nodes that may touch, numbered from 1 on.
+  !> Set the pairs of nodes that may come into contact, numbered from 1.
   pure subroutine set_pairs(scene, node, normal, gap)
     type(scene_type), intent(inout) :: scene   !! is changed
     integer, intent(in) :: node(:, :)          !! A and B [2, pairs]
@@ -200,13 +200,13 @@ contains
     scene%initial_gap = gap
   end subroutine set_pairs
 
-  !> The same scene with all its arrays counted from 1, which those of a caller need not be, and of lines
-  !! nothing but what is given.
+  !> Copy the model with all arrays counted from 1, which a caller's need not be, and of lines only the
+  !! given data.
   subroutine count_from_one(given, scene)
-    type(scene_type), intent(in) :: given    !! its arrays are there, and of the shapes that they must have
-    type(scene_type), intent(out) :: scene   !! with them
+    type(scene_type), intent(in) :: given    !! its arrays are allocated, with correct shapes
+    type(scene_type), intent(out) :: scene   !! the copy
 
-    scene = new_scene(given%x)   ! of arrays counted from 1, which stay so where the shape is the same
+    scene = new_scene(given%x)   ! its arrays count from 1, and keep this if the shape is the same
     scene%held = given%held
     scene%prescribed = given%prescribed
     scene%reference = given%reference
@@ -236,7 +236,7 @@ contains
 
   contains
 
-    !> Arrays within arrays, where they are allocated.
+    !> Copy the arrays within arrays that are allocated.
     subroutine copy_lists(block, curve, line)
       type(element_block), intent(in) :: block(:)
       type(uniaxial_curve), intent(in) :: curve(:)

@@ -1,5 +1,5 @@
-!> Forces on all mass: nodal forces of gravity and spins. Both are linear in the place, so that they take no
-!> more of a scene than the mass of each node and its moments, which are integrated once.
+!> Forces on all mass: nodal forces of gravity and rotation. Both are linear in the coordinates, so that they
+!> depend on the mass of each node and its first moments only, which are integrated once.
 module epcont_model_body_forces
   use epcont_base_kinds, only: wp
   use epcont_element_element_kind, only: element_kind, most_nodes
@@ -10,10 +10,10 @@ module epcont_model_body_forces
   private
   public :: are_massless, body_forces, put_body_forces, weigh_nodes
 
-  !> Gauss points along a line, for elements of the first and of the second degree, and their weights. On a
-  !! square, of which a triangle is one with a side in its third corner, they integrate rho x N exactly, of
-  !! rings and between curved sides too: shape function, place and radius are of that degree d each, the
-  !! determinant of the Jacobian of 2 d - 1. Those of the stiffness are too few.
+  !> Gauss points along a line, for linear and quadratic elements, and their weights. A triangle is a square
+  !! with one edge collapsed to its third corner. They integrate rho x N exactly, also for axisymmetric
+  !! elements and curved edges: shape function, coordinate and radius have degree d each, the
+  !! determinant of the Jacobian 2 d - 1. The points of the stiffness are too few.
   integer, parameter :: along(2) = [3, 5], most_along = 5
   real(wp), parameter :: &
     inner = sqrt(5.0_wp - 2.0_wp*sqrt(10.0_wp/7.0_wp))/3.0_wp, &
@@ -27,19 +27,19 @@ module epcont_model_body_forces
 
   real(wp), parameter :: full_turn = 2.0_wp*acos(-1.0_wp)
 
-  !> Points of integration of a kind of elements.
+  !> Integration points of an element type.
   type :: mass_rule
     integer :: points = 0
-    real(wp) :: weight(most_along**2) = 0.0_wp               !! parts of the local area
+    real(wp) :: weight(most_along**2) = 0.0_wp               !! fractions of the local area
     real(wp) :: values(most_nodes, most_along**2) = 0.0_wp   !! shape functions
-    real(wp) :: slopes(directions, most_nodes, most_along**2) = 0.0_wp   !! by the local coordinates
+    real(wp) :: slopes(directions, most_nodes, most_along**2) = 0.0_wp   !! local derivatives
   end type mass_rule
 
 contains
 
-  !> Sections that have elements, but no mass [sections].
+  !> Find the sections that have elements, but no mass [sections].
   pure function are_massless(model) result(massless)
-    type(model_type), intent(in) :: model   !! the scene
+    type(model_type), intent(in) :: model   !! the model
     logical :: massless(size(model%sections%density))
     integer :: e
 
@@ -52,7 +52,7 @@ contains
 
   !> Find the mass of each node and its moments: integrals of rho N and rho N (x - x of the node).
   pure subroutine weigh_nodes(model)
-    type(model_type), intent(inout) :: model   !! the scene
+    type(model_type), intent(inout) :: model   !! the model
     type(mass_rule) :: rule(size(model%mesh%kinds))
     integer :: e, k
 
@@ -66,7 +66,7 @@ contains
     end do
   end subroutine weigh_nodes
 
-  !> The points of a kind.
+  !> Make the integration points of an element type.
   pure function new_mass_rule(kind) result(rule)
     type(element_kind), intent(in) :: kind
     type(mass_rule) :: rule
@@ -95,7 +95,7 @@ contains
     type(model_type), intent(inout) :: model
     integer, intent(in) :: element
     type(mass_rule), intent(in) :: rule
-    real(wp) :: from_first(directions, most_nodes)   ! far from the origin sums of x would lose digits
+    real(wp) :: from_first(directions, most_nodes)   ! relative to the first corner, to keep digits
     real(wp) :: at(directions), jacobian(directions, directions), mass, node_mass
     integer :: c, k, n, p
 
@@ -120,12 +120,12 @@ contains
     end associate
   end subroutine weigh_element
 
-  !> Nodal forces of a body load on a scene whose nodes are weighed [force] [2, nodes].
+  !> Nodal forces of a body load on a model with known nodal masses [force] [2, nodes].
   pure function body_forces(model, load) result(force)
-    type(model_type), intent(in) :: model   !! the scene
-    type(body_load), intent(in) :: load     !! what acts on its mass
+    type(model_type), intent(in) :: model   !! the model
+    type(body_load), intent(in) :: load     !! the body load
     real(wp) :: force(directions, model%mesh%nodes)
-    real(wp) :: arm(directions)   ! mass times its distance from the axis of the spin
+    real(wp) :: arm(directions)   ! mass times its distance from the rotation axis
     logical :: rings
     integer :: i
 
@@ -138,9 +138,9 @@ contains
     end do
   end function body_forces
 
-  !> Add the nodal forces of all body loads to the loads of the scene.
+  !> Add the nodal forces of all body loads to the loads of the model.
   pure subroutine put_body_forces(model)
-    type(model_type), intent(inout) :: model   !! the scene
+    type(model_type), intent(inout) :: model   !! the model
     integer :: k
 
     if (allocated(model%loads%body_force)) deallocate (model%loads%body_force)

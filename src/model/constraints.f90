@@ -7,21 +7,21 @@ module epcont_model_constraints
   private
   public :: constraints_type, freedom_sums
 
-  !> Freedoms that are sums of others, which follow nothing: row k has the terms first(k) to last(k).
+  !> DOFs that are sums of independent DOFs: row k has the terms first(k) to last(k).
   type :: freedom_sums
     integer, allocatable :: first(:), last(:)       !! [rows]
-    integer, allocatable :: component(:), node(:)   !! component `angle`: of the platen of that number [terms]
+    integer, allocatable :: component(:), node(:)   !! for the component `angle`: number of the platen [terms]
     real(wp), allocatable :: weight(:)              !! [terms]
   end type freedom_sums
 
   type :: constraints_type
     logical, allocatable :: held(:, :)          !! the DOF has a prescribed displacement [2, nodes]
     logical, allocatable :: reference(:, :)     !! SUPORT DOFs [2, nodes]
-    !> Node whose displacement the DOF shares: itself if it is not tied [2, nodes]
+    !> Node whose displacement the DOF has: itself if it is not tied [2, nodes]
     integer, allocatable :: leader(:, :)
-    integer, allocatable :: sum_of(:, :)        !! row of each DOF that is a sum; 0 if it is none [2, nodes]
+    integer, allocatable :: sum_of(:, :)        !! row of each DOF that is a sum, else 0 [2, nodes]
     type(freedom_sums) :: sum
-    type(turning_platen), allocatable :: platen(:)    !! nodes that lead others and turn [any]
+    type(turning_platen), allocatable :: platen(:)    !! rotating rigid bodies (RBE2) [any]
     type(linear_equation), allocatable :: equation(:) !! between displacements [any]
     type(spring_type), allocatable :: spring(:)       !! [any]
   contains
@@ -33,7 +33,7 @@ module epcont_model_constraints
 
 contains
 
-  !> Does a support hold a node along a component, itself or what it is tied to?
+  !> Is this DOF, or the master DOF that it depends on, fixed by a support?
   elemental logical function is_held(self, component, node)
     class(constraints_type), intent(in) :: self
     integer, intent(in) :: component, node   !! 1: x, 2: y
@@ -41,7 +41,7 @@ contains
     is_held = self%held(component, self%leader(component, node))
   end function is_held
 
-  !> Does RBE2 or MPC say where one of these nodes goes?
+  !> Does one of these nodes depend on others, by RBE2 or MPC?
   pure logical function is_tied(self, node)
     class(constraints_type), intent(in) :: self
     integer, intent(in) :: node(:)   !! these nodes [any]
@@ -50,8 +50,8 @@ contains
               any(self%sum_of(:, node) > 0)
   end function is_tied
 
-  !> Do supports and RBE2 keep the shape between these nodes? In each direction they are all held, or all tied
-  !! to one, or they turn as one.
+  !> Do supports and RBE2 keep the distances between these nodes? In each direction, either all are fixed, or
+  !! all depend on one node, or all rotate together.
   pure logical function is_rigid(self, node)
     class(constraints_type), intent(in) :: self
     integer, intent(in) :: node(:)   !! these nodes [any]
@@ -68,10 +68,10 @@ contains
     end do
   end function is_rigid
 
-  !> The platen that turns and that a node is of; 0: none.
+  !> Number of the rotating platen that a node belongs to, 0 if absent.
   pure integer function platen_of(self, node) result(platen)
     class(constraints_type), intent(in) :: self
-    integer, intent(in) :: node   !! which node
+    integer, intent(in) :: node   !! index of the node
 
     platen = findloc(self%platen%leader, node, dim=1)
     associate (row => self%sum_of(1, node))

@@ -1,4 +1,4 @@
-!> Contact of a model: a gap row for each pair, and the lines of nodes that most pairs come from.
+!> Contact of a model: a gap row for each pair, and the lines of nodes that most pairs are made from.
 module epcont_model_contact_rows
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: directions
@@ -8,42 +8,42 @@ module epcont_model_contact_rows
   private
   public :: contact_rows, line_contact
 
-  !> Contact of boundary lines, and the pairs that came of it. Lines that go on in each other, of one BCONP or
-  !! of several, are one contact: all their sides on the one hand are slaves, on the other masters.
+  !> Contact of boundary lines, and its pairs. Lines that continue each other, in one BCONP or
+  !! in several, are one contact: all edges of one side are slaves, all of the other masters.
   type :: line_contact
-    integer, allocatable :: couple(:)     !! by their positions
+    integer, allocatable :: couple(:)     !! positions of its couples of lines
     integer, allocatable :: bconp(:), slave_id(:), master_id(:)   !! ids of the cards
     type(boundary_line) :: slave, master
-    real(wp) :: search = 0.0_wp           !! how far away a side may be [length]
-    integer :: first = 1, last = 0        !! its pairs: of the slave's nodes, and from the next one on
-    integer :: first_of_master = 1        !! those of the master's nodes, most of them corners
-    integer, allocatable :: stands_on(:)  !! the side of the slave at each of the latter [pairs of the master]
-    !> Sides of the slave that face nothing at a node: which, which node [2, any]
+    real(wp) :: search = 0.0_wp           !! largest distance to an opposite edge [length]
+    integer :: first = 1, last = 0        !! its pairs: those of slave nodes first
+    integer :: first_of_master = 1        !! first pair of the master's nodes, most of which are corners
+    integer, allocatable :: stands_on(:)  !! slave edge at each of these master nodes [pairs of the master]
+    !> Slave edges without an opposite edge at one of their nodes: edge, and its end [2, any]
     integer, allocatable :: left_out(:, :)
-    integer :: nodes_left_out = 0             !! nodes of the slave without a pair
-    !> Nodes of the master that have a pair since they came near as loads moved them
+    integer :: nodes_left_out = 0             !! slave nodes without a pair
+    !> Master nodes that got a pair because the loads moved them near the slave
     integer, allocatable :: came_near(:)
-    logical :: is_wider = .false.             !! `search` has grown since nodes came near
+    logical :: is_wider = .false.             !! `search` has grown because nodes came near
   end type line_contact
 
   type :: contact_rows
     integer :: pairs = 0
-    logical :: contact_is_off = .false.         !! bodies may pass through each other, which is warned of
+    logical :: contact_is_off = .false.         !! bodies may penetrate each other; this gives a warning
     logical :: gap_by_geometry = .false.        !! the distance along the normal is part of the gap
     integer, allocatable :: pair_id(:)          !! [pairs]
     integer, allocatable :: pair_node(:, :)     !! nodes A and B that name the pair [2, pairs]
     real(wp), allocatable :: normal(:, :)       !! unit, along which B is pushed [2, pairs]
     real(wp), allocatable :: initial_gap(:)     !! [length] [pairs]
-    !> Row k of N: along its normal the nodes row_node(row_start(k):row_start(k+1)-1) open the gap by
-    !! row_weight. The weights of a row sum to 0. [pairs + 1], [entries], [entries]
+    !> Row k of N: nodes row_node(row_start(k):row_start(k+1)-1) open the gap by row_weight times their
+    !! displacement along the normal. The weights of a row sum to 0. [pairs + 1], [entries], [entries]
     integer, allocatable :: row_start(:), row_node(:)
     real(wp), allocatable :: row_weight(:)
-    !> Lower and upper bound of the force of each row; not allocated if all are normal to a surface: zero and
+    !> Lower and upper bound of the force of each row; not allocated if all are contact forces: zero and
     !! infinity, which is huge(1.0_wp) [force] [2, pairs]
     real(wp), allocatable :: force_bound(:, :)
     type(named_line), allocatable :: line(:)    !! lines of nodes [any]
-    type(line_couple), allocatable :: couple(:) !! lines that may touch [any]
-    !> Edges of the outlines of bodies, by the same numbers, with normals; only if there are lines
+    type(line_couple), allocatable :: couple(:) !! lines that may come into contact [any]
+    !> Edges of the outlines of bodies, numbered as there, with normals; only if there are lines
     type(boundary_line) :: boundary
     type(line_contact), allocatable :: line_contact(:)
   contains
@@ -54,7 +54,7 @@ module epcont_model_contact_rows
 
 contains
 
-  !> Nodes of each pair's row, zeros behind them [any, pairs].
+  !> Nodes of the gap row of each pair, padded with zeros [any, pairs].
   pure function nodes_of_pairs(self) result(node)
     class(contact_rows), intent(in) :: self
     integer :: node(maxval([self%row_start(2:) - self%row_start(:self%pairs), 0]), self%pairs)
@@ -68,15 +68,15 @@ contains
     end do
   end function nodes_of_pairs
 
-  !> How far displacements open the gap of a pair.
+  !> Compute the opening of the gap of a pair by displacements.
   pure function opening(self, pair, displacement)
     class(contact_rows), intent(in) :: self
-    integer, intent(in) :: pair   !! which pair
+    integer, intent(in) :: pair   !! index of the pair
     real(wp), intent(in) :: displacement(:, :)  !! of the nodes of its row [2, entries of the row]
     real(wp) :: opening, apart(directions)
     integer :: k
 
-    ! Summed before it is seen along the normal: a travel that the nodes share drops out without rounding.
+    ! Summed before the projection on the normal: a common translation cancels without rounding.
     apart = 0.0_wp
     do k = 1, size(displacement, 2)
       apart = apart + self%row_weight(self%row_start(pair) + k - 1)*displacement(:, k)
@@ -84,7 +84,7 @@ contains
     opening = dot_product(self%normal(:, pair), apart)
   end function opening
 
-  !> How many pairs are given one by one (CGAP); those of lines come behind them.
+  !> Number of pairs from CGAP; the pairs of lines come after them.
   pure integer function single_pairs(self)
     class(contact_rows), intent(in) :: self
 

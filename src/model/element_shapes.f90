@@ -1,4 +1,4 @@
-!> Elements, given by their nodes: turned counter-clockwise, checked, and what follows from them.
+!> Elements from their nodes: oriented counter-clockwise and checked, with the data that follow from them.
 module epcont_model_element_shapes
   use epcont_base_incidence, only: new_incidence
   use epcont_base_kinds, only: wp
@@ -12,20 +12,20 @@ module epcont_model_element_shapes
   private
   public :: complete_elements, check_axis, check_overlaps
 
-  !> Shorter sides have areas and stiffnesses that are hardly numbers.
+  !> Shorter edges have areas and stiffnesses close to underflow.
   real(wp), parameter :: shortest_side = 1.0e-30_wp
 
 contains
 
-  !> From kind, nodes and section of each element. Node 0 is one that could not be found, and section 0 one of
-  !! these.
+  !> Complete the elements from type, nodes and section of each. Node 0 or section 0 was not found on the
+  !! cards.
   subroutine complete_elements(model, found)
-    type(model_type), intent(inout) :: model   !! the scene
-    type(findings), intent(inout) :: found   !! what is wrong with it is added
+    type(model_type), intent(inout) :: model   !! the model
+    type(findings), intent(inout) :: found   !! errors are added
     logical :: is_ring(model%mesh%elements)
-    logical :: plain(model%mesh%elements)                    ! nothing has to be done to it
-    real(wp), dimension(2, most_nodes) :: x, straight   ! nodes of an element; with straight sides
-    integer :: e, n, next, plane, ring, turn            ! it, its corners; 0: it folds over
+    logical :: plain(model%mesh%elements)                    ! the element is complete
+    real(wp), dimension(2, most_nodes) :: x, straight   ! nodes of an element; with straight edges
+    integer :: e, n, next, plane, ring, turn            ! element, its corners; turn is 0 if it folds over
 
     model%mesh%node_count = model%mesh%kinds(model%mesh%kind)%nodes
     model%mesh%points = sum(model%mesh%kinds(model%mesh%kind)%points)
@@ -53,10 +53,10 @@ contains
 
   contains
 
-    !> Turn any other counter-clockwise; a shape that is none is a fault.
+    !> Turn an element with curved edges counter-clockwise; report a shape that is not valid.
     subroutine check_shape()
       integer :: k
-      real(wp) :: extent   ! from its first corner [length]
+      real(wp) :: extent   ! size, from its first corner [length]
 
       n = model%mesh%corners(e)
       associate (node => model%mesh%connectivity(:model%mesh%node_count(e), e), &
@@ -88,8 +88,8 @@ contains
       end associate
     end subroutine check_shape
 
-    !> A side's middle node may leave the middle as long as the element does not fold over; a side that bulges
-    !! more than half a circle does is hardly meant.
+    !> Check mid-side nodes: they may leave the middle unless the element folds over. An edge that bulges
+    !! more than half a circle is probably an error.
     subroutine check_middles()
       character(len=*), parameter :: remedy = 'nodes near the middles of the sides'
       character(len=:), allocatable :: name
@@ -101,7 +101,7 @@ contains
       end associate
       if (turn /= 0 .and. all(part <= 1.0_wp)) return
       node = model%mesh%connectivity(n + maxloc(part, dim=1), e)
-      name = ': middle node '//text_of(model%mesh%node_id(node))
+      name = ': mid-side node '//text_of(model%mesh%node_id(node))
       if (turn == 0) then
         call found%add_error(of_element, e, -node, name//' is so far from the middle of its side that '// &
                              'the element folds over', remedy)
@@ -111,7 +111,7 @@ contains
       end if
     end subroutine check_middles
 
-    !> `1, 2 and 3` of nodes.
+    !> Nodes in words: `1, 2 and 3`.
     pure function ids(node) result(text)
       integer, intent(in) :: node(:)
       character(len=:), allocatable :: text
@@ -124,10 +124,10 @@ contains
     end function ids
   end subroutine complete_elements
 
-  !> Turn an element counter-clockwise if it has straight sides and there is nothing to be said of it.
+  !> Turn an element counter-clockwise if it has straight edges and no errors.
   subroutine turn_plain(e, plain, model)
     integer, intent(in) :: e
-    logical, intent(out) :: plain   !! that is so, or it is not whole
+    logical, intent(out) :: plain   !! it has straight edges and no errors, or has nodes missing
     type(model_type), intent(inout) :: model
     real(wp) :: x(2, most_nodes)
     integer :: k, turn
@@ -142,15 +142,15 @@ contains
       turn = kind%turn(x)
       plain = turn /= 0 .and. &
               max(maxval(abs(x(1, 2:n) - x(1, 1))), maxval(abs(x(2, 2:n) - x(2, 1)))) >= shortest_side
-      if (plain .and. turn < 0) node([2, n]) = node([n, 2])   ! the first one stays, and the third of four
+      if (plain .and. turn < 0) node([2, n]) = node([n, 2])   ! the first corner stays, and the third of four
     end associate
   end subroutine turn_plain
 
-  !> Rings lie at x >= 0, the parabolas of their sides as well, and their nodes on the axis cannot leave it.
-  !! Supports and ties are known.
+  !> Check that axisymmetric elements, with their curved edges, lie at x >= 0, and that nodes on the axis are
+  !! fixed in x. Supports and ties are known.
   subroutine check_axis(model, found)
-    type(model_type), intent(in) :: model   !! the scene
-    type(findings), intent(inout) :: found   !! what is wrong with it is added
+    type(model_type), intent(in) :: model   !! the model
+    type(findings), intent(inout) :: found   !! errors are added
     logical, dimension(model%mesh%nodes) :: beyond, in_ring, loose
     real(wp) :: control, radius(3)
     integer :: e, i
@@ -164,7 +164,7 @@ contains
         do i = model%mesh%corners(e) + 1, size(node)
           radius = model%mesh%x(1, model%mesh%edge(e, i - model%mesh%corners(e)))
           control = 2.0_wp*radius(3) - 0.5_wp*(radius(1) + radius(2))
-          ! The least is (radius(1) radius(2) - control**2)/(radius(1) + radius(2) - 2 control)
+          ! The least radius is (radius(1) radius(2) - control**2)/(radius(1) + radius(2) - 2 control)
           beyond(node(i)) = -control > sqrt(abs(radius(1)*radius(2))) + cancelled*maxval(radius)
         end do
       end associate
@@ -187,13 +187,13 @@ contains
     found%list(found%count)%node = pack([(i, i=1, model%mesh%nodes)], loose)
   end subroutine check_axis
 
-  !> Two elements on the same corners are as stiff as both: meant for laminae, and else a mesh read twice. Of
-  !! others that have a side the same way round, one lies over the other: a node, or an element's corner, is
-  !! not where it should be.
+  !> Check for elements that overlap. Two elements on the same corners add their stiffnesses: laminae, or a
+  !! mesh read twice. If elements have an edge in the same direction, one lies over the other: a node or a
+  !! corner is wrong.
   pure subroutine check_overlaps(model, over, found)
-    type(model_type), intent(in) :: model    !! the scene
-    integer, intent(in) :: over(:)          !! which element before it each lies over; 0: none [elements]
-    type(findings), intent(inout) :: found   !! what is wrong with it is added
+    type(model_type), intent(in) :: model    !! the model
+    integer, intent(in) :: over(:)          !! an earlier element that each lies over, 0 if absent [elements]
+    type(findings), intent(inout) :: found   !! errors are added
     logical :: twice(model%mesh%elements)
     integer :: e
 
@@ -206,7 +206,7 @@ contains
     if (e > 0) call found%add_error(of_element, e, 1, ': overlaps '//model%name_of(of_element, over(e))// &
       ': both lie the same way from the side that they share'// &
       and_more(count(over > 0) - count(twice), '; so it is with ', ' more'), &
-      'elements side by side, or laminae on the same corners')
+      'elements that do not overlap, or laminae on the same corners')
 
   contains
 

@@ -1,4 +1,4 @@
-!> What temperatures would strain the bodies by, were they free to.
+!> Thermal strains of unconstrained bodies.
 module epcont_model_expansion
   use epcont_base_kinds, only: wp
   use epcont_element_element_kind, only: most_points
@@ -11,10 +11,10 @@ module epcont_model_expansion
 
 contains
 
-  !> Free strains of all points: expansion times what the temperature is above that of reference, between the
-  !! nodes as displacements are; the mean of it where an element has the mean of its change of volume.
+  !> Thermal strains of all points: expansion times temperature difference, interpolated as
+  !! displacements are; the mean over the element if it uses the mean change of volume.
   pure subroutine find_free_strains(model)
-    type(model_type), intent(inout) :: model   !! the scene, with its elements
+    type(model_type), intent(inout) :: model   !! the model, with its elements
     type(integration_point) :: point(most_points)
     integer :: e
 

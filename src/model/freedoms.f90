@@ -1,7 +1,7 @@
-!> Freedoms that follow others (RBE2), those of reference (SUPORT), the bodies that elements and ties make of
-!> nodes, and the rigid motion that supports prescribe to a body as a whole. That is taken off before the
-!> body is solved and added afterwards, as the motions are that supports leave free: it strains nothing, and
-!> strains would lose their digits in it.
+!> Dependent DOFs (RBE2), SUPORT DOFs, the bodies that elements and ties make of
+!> nodes, and the rigid-body displacement that supports prescribe to a whole body. This is subtracted before
+!> the body is solved and added afterwards, like the displacement of free rigid-body modes: it causes no
+!> strain, but strains computed from it would lose digits.
 module epcont_model_freedoms
   use epcont_base_kinds, only: wp
   use epcont_base_partition, only: new_partition, partition
@@ -15,7 +15,7 @@ module epcont_model_freedoms
   private
   public :: freedom, tie_freedom, why_not_tied, follow_to_the_end, check_reference, join_nodes, find_travels
 
-  !> A motion is taken off where all supports of a body follow it but for this part of the largest prescribed
+  !> A rigid-body displacement is subtracted if all supports of a body follow it, up to this fraction of the
   !! displacement.
   real(wp), parameter :: follows = 1.0e-2_wp
 
@@ -23,10 +23,10 @@ contains
 
   !> Apply a tie, if it is possible.
   pure subroutine tie_freedom(model, k, tie, found)
-    type(model_type), intent(inout) :: model   !! the scene
+    type(model_type), intent(inout) :: model   !! the model
     integer, intent(in) :: k                   !! position of the tie
     type(dof_tie), intent(in) :: tie
-    type(findings), intent(inout) :: found     !! what is wrong with it is added
+    type(findings), intent(inout) :: found     !! errors are added
     character(len=:), allocatable :: remedy, why
 
     associate (c => tie%component, node => tie%node, leader => tie%leader)
@@ -39,11 +39,11 @@ contains
     end associate
   end subroutine tie_freedom
 
-  !> Why a freedom cannot follow that of another node, and what would be right; empty: it can.
+  !> Explain why a DOF cannot depend on that of another node, with a remedy; empty if it can.
   pure subroutine why_not_tied(model, c, node, leader, why, remedy)
-    type(model_type), intent(in) :: model      !! the scene
-    integer, intent(in) :: c, node             !! direction and node of the freedom
-    integer, intent(in) :: leader              !! the node that it would follow
+    type(model_type), intent(in) :: model      !! the model
+    integer, intent(in) :: c, node             !! direction and node of the DOF
+    integer, intent(in) :: leader              !! the master node
     character(len=:), allocatable, intent(out) :: why, remedy
     integer :: at
 
@@ -58,16 +58,16 @@ contains
       remedy = 'nodes that follow GN, without GN'
     else if (model%constraints%leader(c, node) /= node .or. model%constraints%sum_of(c, node) > 0) then
       why = ' follows another RBE2 already'
-      remedy = 'one leader for each freedom'
+      remedy = 'use one master node for each DOF'
     else if (model%constraints%held(c, node)) then
       why = ' is held by a support too'
       remedy = 'the support at GN '//text_of(model%mesh%node_id(leader))//' instead'
     end if
   end subroutine why_not_tied
 
-  !> Chains of ties are followed to their ends: who leads follows nobody.
+  !> Resolve chains of ties: afterwards no master DOF depends on another DOF.
   pure subroutine follow_to_the_end(leader)
-    integer, intent(inout) :: leader(:, :)   !! of each freedom, itself if it is not tied [2, nodes]
+    integer, intent(inout) :: leader(:, :)   !! master node of each DOF, itself if it is not tied [2, nodes]
     integer :: c, node
 
     do node = 1, size(leader, 2)
@@ -81,9 +81,9 @@ contains
 
   !> Check that a SUPORT DOF is free to move.
   pure subroutine check_reference(model, c, node, found)
-    type(model_type), intent(in) :: model      !! the scene
-    integer, intent(in) :: c, node             !! direction and node of the freedom
-    type(findings), intent(inout) :: found     !! what is wrong with it is added
+    type(model_type), intent(in) :: model      !! the model
+    integer, intent(in) :: c, node             !! direction and node of the DOF
+    type(findings), intent(inout) :: found     !! errors are added
     logical :: is_free
 
     if (c == angle) then
@@ -94,24 +94,24 @@ contains
                 model%constraints%sum_of(c, node) == 0
     end if
     if (.not. is_free) call found%add_error(of_reference, node, c, ': '//freedom(model, c, node)// &
-      ' is held by a support or follows an RBE2', 'a freedom that is free to move')
+      ' is held by a support or follows an RBE2', 'use a DOF that is free to move')
   end subroutine check_reference
 
-  !> A freedom as messages name it: `direction 1 of GRID 17`.
+  !> Text of a DOF for messages: `direction 1 of GRID 17`.
   pure function freedom(model, c, node) result(text)
-    type(model_type), intent(in) :: model   !! the scene
-    integer, intent(in) :: c, node          !! direction and node of the freedom; or `angle`, and who turns
+    type(model_type), intent(in) :: model   !! the model
+    integer, intent(in) :: c, node          !! direction and node of the DOF; or `angle` and master node
     character(len=:), allocatable :: text
 
     text = 'direction '//text_of(merge(6, c, c == angle))//' of '//model%name_of(of_node, node)
   end function freedom
 
-  !> Sets of nodes that elements join, and ties if these are to count: then they are the bodies.
+  !> Find sets of connected nodes: by elements, and if `by_ties`, also by ties. The latter are the bodies.
   pure subroutine join_nodes(model, by_ties, set, sets)
-    type(model_type), intent(in) :: model   !! the scene
-    logical, intent(in) :: by_ties   !! RBE2 joins too
-    integer, allocatable, intent(out) :: set(:)   !! number of each node's [nodes]
-    integer, intent(out) :: sets                  !! how many there are
+    type(model_type), intent(in) :: model   !! the model
+    logical, intent(in) :: by_ties   !! RBE2 connects nodes too
+    integer, allocatable, intent(out) :: set(:)   !! set of each node [nodes]
+    integer, intent(out) :: sets                  !! number of sets
     type(partition) :: joined
     integer :: c, i, k
 
@@ -130,7 +130,7 @@ contains
     call joined%numbers(set, sets)
   end subroutine join_nodes
 
-  !> Join what follows a platen that turns, what an equation is of, and both ends of a spring.
+  !> Connect the nodes of rotating platens, of equations and of springs.
   pure subroutine join_others(model, joined)
     type(model_type), intent(in) :: model
     type(partition), intent(inout) :: joined
@@ -152,9 +152,9 @@ contains
     end do
   end subroutine join_others
 
-  !> Set the travel of each node, and what supports prescribe beyond it.
+  !> Find the prescribed rigid-body displacement of each node, and the rest of the prescribed displacements.
   pure subroutine find_travels(model)
-    type(model_type), intent(inout) :: model   !! the scene
+    type(model_type), intent(inout) :: model   !! the model
     logical :: moved(model%mesh%bodies)
     integer :: b, i
 
@@ -162,10 +162,10 @@ contains
     model%loads%beyond_travel = model%loads%prescribed
     moved = .false.
     moved(pack(model%mesh%body, any(model%loads%prescribed /= 0.0_wp, dim=1))) = .true.
-    do i = 1, size(model%constraints%equation)   ! what it joins need not follow a rigid motion
+    do i = 1, size(model%constraints%equation)   ! an equation may contradict a rigid-body displacement
       moved(model%mesh%body(model%constraints%equation(i)%node(1))) = .false.
     end do
-    do i = 1, size(model%constraints%spring)     ! nor is a spring without force then
+    do i = 1, size(model%constraints%spring)     ! a spring may get a force from it
       moved(model%mesh%body(maxval(model%constraints%spring(i)%node))) = .false.
     end do
     do b = 1, model%mesh%bodies
@@ -173,13 +173,13 @@ contains
     end do
   end subroutine find_travels
 
-  !> The motion of one body that fits best, if it fits: u = shift + turn x (x - centre), with a centre of its
-  !! own for each direction, so that the three do not depend on each other.
+  !> Find the rigid-body displacement of a body if its supports fit one: u = shift + turn x (x - centre).
+  !! Each direction has its own centre, so that the three are uncoupled.
   pure subroutine find_travel(model, node)
     type(model_type), intent(inout) :: model
-    integer, intent(in) :: node(:)   !! of the body
+    integer, intent(in) :: node(:)   !! nodes of the body
     real(wp), dimension(directions, size(node)) :: arm, travel, u
-    !> What is prescribed, and the SUPORT freedoms: these move by the approach alone
+    !> Prescribed DOFs and SUPORT DOFs, which move by the approach only
     logical :: known(directions, size(node))
     real(wp) :: shift(directions), turn
     integer :: c
@@ -190,7 +190,7 @@ contains
       shift(c) = mean(u(c, :), known(c, :))
       arm(c, :) = (2*c - 3)*(model%mesh%x(3 - c, node) - mean(model%mesh%x(3 - c, node), known(c, :)))
     end do
-    turn = 0.0_wp   ! freedoms that an RBE2 makes equal are not those of a body that turns
+    turn = 0.0_wp   ! DOFs that an RBE2 makes equal do not fit a rotation
     if (model%has_rings()) then
       shift(1) = 0.0_wp
     else if (sum(arm**2, mask=known) > same_place**2*maxval(arm**2) .and. &
@@ -204,7 +204,7 @@ contains
         abs(u - travel) > cancelled*maxval(abs(u)))
   end subroutine find_travel
 
-  !> Mean of those values that are known, exact where they are all the same; 0 of none.
+  !> Mean of the known values, exact if they are all equal; 0 if no value is known.
   pure real(wp) function mean(value, known)
     real(wp), intent(in) :: value(:)
     logical, intent(in) :: known(:)

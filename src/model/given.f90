@@ -1,4 +1,4 @@
-!> Model data: taken from the arrays of a caller, and checked for values that no model can have.
+!> Model data: taken from the arrays of a caller, and checked for invalid values.
 module epcont_model_given
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: short_real, text_of
@@ -21,12 +21,12 @@ module epcont_model_given
 
 contains
 
-  !> Take the arrays of a caller, if they are there and go together.
+  !> Copy the arrays of a caller, if all exist and their shapes agree.
   subroutine take_arrays(given, scene, cases, found)
-    type(scene_type), intent(in) :: given      !! arrays, however they are counted
-    type(scene_type), intent(out) :: scene     !! they, counted from 1
+    type(scene_type), intent(in) :: given      !! arrays with any lower bounds
+    type(scene_type), intent(out) :: scene     !! their copy, counted from 1
     type(load_cases), intent(out) :: cases     !! their loads
-    type(findings), intent(inout) :: found     !! what is wrong with it is added
+    type(findings), intent(inout) :: found     !! errors are added
 
     call check_shapes(found, given)
     if (found%errors > 0) return
@@ -34,10 +34,10 @@ contains
     cases = single_case(scene)
   end subroutine take_arrays
 
-  !> Check numbers for their ranges; the first fault of each array is reported.
+  !> Check the range of numbers; the first error of each array is reported.
   subroutine check_values(scene, found)
-    type(scene_type), intent(inout) :: scene   !! gets straight curves
-    type(findings), intent(inout) :: found     !! what is wrong with it is added
+    type(scene_type), intent(inout) :: scene   !! its curves are corrected for rounding
+    type(findings), intent(inout) :: found     !! errors are added
     type(element_kind), allocatable :: kinds(:)
     integer :: elements, i, nodes
 
@@ -103,12 +103,12 @@ contains
     call check_choices(found, scene)
   end subroutine check_values
 
-  !> It is an error where something does not hold: of many the first, by its number in place of `#`.
+  !> Report an error if not all values hold: the first one, with its number in place of `#`.
   subroutine need(found, holds, what, remedy, of)
     type(findings), intent(inout) :: found
     logical, intent(in) :: holds(:)
     character(len=*), intent(in) :: what, remedy
-    integer, intent(in), optional :: of   !! item of this number that a deck has a card for
+    integer, intent(in), optional :: of   !! item type, if a card of the deck has this number
     character(len=:), allocatable :: text
     integer :: at, which
 
@@ -121,22 +121,22 @@ contains
     if (.not. present(of)) call found%add_error(of_scene, 0, 0, text, remedy)
   end subroutine need
 
-  !> An array is there, and of the shape that is wanted.
+  !> Check that an array is allocated and has the required shape.
   subroutine fit(found, name, wanted, array)
     type(findings), intent(inout) :: found
     character(len=*), intent(in) :: name
     integer, intent(in) :: wanted(:)
-    type(*), intent(in), optional :: array(..)   !! absent: it is not allocated
+    type(*), intent(in), optional :: array(..)   !! absent: the array is not allocated
 
     if (.not. present(array)) then
-      call need(found, [.false.], name//' is not allocated', 'an array, empty where there are none')
+      call need(found, [.false.], name//' is not allocated', 'allocate it, with size 0 if it has no entries')
     else if (size(wanted) > 0) then
       call need(found, [all(shape(array) == wanted)], name//' has the shape '//text_of_shape(shape(array)), &
                 text_of_shape(wanted))
     end if
   end subroutine fit
 
-  !> Arrays are allocated, with one column for each node, section or pair.
+  !> Check that arrays are allocated, with one column for each node, section or pair.
   subroutine check_shapes(found, given)
     type(findings), intent(inout) :: found
     type(scene_type), intent(in) :: given
@@ -171,7 +171,7 @@ contains
     call fit(found, 'reference_temperature(sections)', sections, given%reference_temperature)
   end subroutine check_shapes
 
-  !> What ties freedoms names nodes that are there.
+  !> Check that ties, platens and springs name existing nodes.
   subroutine check_ties(found, scene)
     type(findings), intent(inout) :: found
     type(scene_type), intent(in) :: scene
@@ -185,7 +185,7 @@ contains
     do i = 1, size(scene%platen)
       name = 'platen('//text_of(i)//')%'
       call fit(found, name//'follower', any_shape, scene%platen(i)%follower)
-      call need(found, [within(scene%platen(i)%leader, nodes)], name//'leader is no node', up_to(nodes))
+      call need(found, [within(scene%platen(i)%leader, nodes)], name//'leader'//' is no node', up_to(nodes))
       if (found%errors > 0) return
       call need(found, within(scene%platen(i)%follower, nodes), name//'follower(#) is no node', up_to(nodes))
       call need(found, [has_size(scene%platen(i)%prescribed) .and. has_size(scene%platen(i)%moment)], &
@@ -197,10 +197,10 @@ contains
                        i=1, size(scene%spring))], &
               'names no node or component', '0, or '//up_to(nodes)//'; component 0, 1 or 2', of_spring)
     call need(found, scene%spring%stiffness >= least_divisor .and. scene%spring%stiffness <= farthest, &
-              'its stiffness is none', above_zero(), of_spring)
+              'its stiffness is out of range', above_zero(), of_spring)
   end subroutine check_ties
 
-  !> Equations have terms, and these name nodes and components that are there.
+  !> Check that equations have terms, which name existing nodes and components.
   subroutine check_equations(found, scene)
     type(findings), intent(inout) :: found
     type(scene_type), intent(in) :: scene
@@ -218,14 +218,14 @@ contains
                 'a term at least')
       if (found%errors > 0) return
       call need(found, within(scene%equation(i)%node, nodes), name//'node(#) is no node', up_to(nodes))
-      call need(found, within(scene%equation(i)%component, directions), name//'component(#) is none', &
-                '1 or 2')
+      call need(found, within(scene%equation(i)%component, directions), &
+                name//'component(#) is out of range', '1 or 2')
       call need(found, has_size(scene%equation(i)%coefficient), name//'coefficient(#) is out of range', &
                 any_size())
     end do
   end subroutine check_equations
 
-  !> A curve that can be.
+  !> Check a stress-strain curve.
   subroutine check_curve(found, i, scene)
     type(findings), intent(inout) :: found
     integer, intent(in) :: i
@@ -247,7 +247,7 @@ contains
     end associate
   end subroutine check_curve
 
-  !> Elements of one kind: its name, its nodes and their sections, which are rings where it is.
+  !> Check elements of one type: name, nodes and sections; axisymmetric types need axisymmetric sections.
   subroutine check_block(found, scene, kinds, nodes, name, block, elements)
     type(findings), intent(inout) :: found
     type(scene_type), intent(in) :: scene
@@ -277,7 +277,7 @@ contains
               'axisymmetric for rings (CTRAX3), and for no others')
   end subroutine check_block
 
-  !> The choices of `controls` are some of those that there are, its figures what they can be.
+  !> Check that the choices of `controls` exist and its numbers are in range.
   subroutine check_choices(found, scene)
     type(findings), intent(inout) :: found
     type(scene_type), intent(in) :: scene
@@ -321,7 +321,7 @@ contains
     text = '1 to '//text_of(most)
   end function up_to
 
-  !> A shape in parentheses.
+  !> Write a shape in parentheses.
   pure function text_of_shape(extent) result(text)
     integer, intent(in) :: extent(:)
     character(len=:), allocatable :: text
@@ -331,16 +331,16 @@ contains
     text = '('//trim(number)//')'
   end function text_of_shape
 
-  !> Is what loads a scene none, or of a size?
+  !> Is the value zero, or of a size that products of it cannot overflow?
   elemental logical function has_size(cause)
     real(wp), intent(in) :: cause
 
     has_size = cause == 0.0_wp .or. abs(cause) >= least_cause .and. abs(cause) <= farthest
   end function has_size
 
-  !> Is there a thing of a number?
+  !> Is a number between 1 and the last one?
   elemental logical function within(number, most)
-    integer, intent(in) :: number, most   !! the last one
+    integer, intent(in) :: number, most   !! `most` is the last one
 
     within = number >= 1 .and. number <= most
   end function within

@@ -1,5 +1,5 @@
-!> The load cases of a scene: what sets of loads and supports say, and which of them each case has. A scene
-!> bears one case at a time (`put_case`).
+!> Load cases of a model: the contents of sets of loads and supports, and the sets of each case. A model
+!> has the loads of one case at a time (`put_case`).
 module epcont_model_load_cases
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of
@@ -15,84 +15,84 @@ module epcont_model_load_cases
   private
   public :: load_case, load_cases, put_case, single_case
 
-  !> The contacts of a case, beside the id of its one BCONP.
+  !> Contacts of a case, if it is not the id of a single BCONP.
   integer, parameter, public :: contact_all = 0, contact_none = -1
 
   !> A force at a node.
   type, public :: nodal_force
-    integer :: set = 0                          !! by its id
+    integer :: set = 0                          !! id of its set
     integer :: node = 0
     real(wp) :: force(directions) = 0.0_wp      !! [force]
   end type nodal_force
 
-  !> A pressure along a side of an element.
+  !> A pressure on an edge of an element.
   type, public :: set_pressure
-    integer :: set = 0                          !! by its id
+    integer :: set = 0                          !! id of its set
     type(side_pressure) :: given
   end type set_pressure
 
-  !> What acts on all mass.
+  !> A load on all mass.
   type, public :: set_body_load
-    integer :: set = 0                          !! by its id
-    type(body_load) :: given                    !! factor 0: no case has it
+    integer :: set = 0                          !! id of its set
+    type(body_load) :: given                    !! factor 0: no case uses it
   end type set_body_load
 
-  !> A moment at the leader of a platen that turns.
+  !> A moment at the master node of a rotating platen.
   type, public :: set_moment
-    integer :: set = 0                          !! by its id
+    integer :: set = 0                          !! id of its set
     integer :: platen = 0
     real(wp) :: moment = 0.0_wp                 !! [force*length]
   end type set_moment
 
-  !> A displacement of a freedom that supports hold.
+  !> A displacement of a fixed DOF.
   type, public :: set_displacement
-    integer :: set = 0                          !! by its id
+    integer :: set = 0                          !! id of its set
     integer :: c = 0, node = 0                  !! direction and node; or `angle` and platen
     real(wp) :: displacement = 0.0_wp           !! [length]
-    integer :: card = 0, field = 0              !! SPC or SPCD that says so, and its field with the node
+    integer :: card = 0, field = 0              !! its SPC or SPCD, and the field of the node
   end type set_displacement
 
   !> Temperatures of all nodes.
   type, public :: set_temperatures
-    integer :: set = 0                          !! by its id
+    integer :: set = 0                          !! id of its set
     real(wp), allocatable :: temperature(:)     !! [nodes]
   end type set_temperatures
 
-  !> Which sets a case has.
+  !> Sets of a load case.
   type :: load_case
-    integer :: id = 0                           !! of its SUBCASE; 0: the deck has none
-    integer, allocatable :: set(:)              !! of loads, by their ids
-    real(wp), allocatable :: factor(:)          !! of each
-    integer :: supports = 0                     !! set of supports, by its id; 0: none
-    integer :: temperatures = 0                 !! set of these, by its id; 0: none
-    integer :: contact = 0                      !! the only BCONP that it has; contact_all or contact_none
+    integer :: id = 0                           !! of its SUBCASE, 0 if absent
+    integer, allocatable :: set(:)              !! ids of its sets of loads
+    real(wp), allocatable :: factor(:)          !! of each set
+    integer :: supports = 0                     !! id of its set of supports, 0 if absent
+    integer :: temperatures = 0                 !! id of its set of temperatures, 0 if absent
+    integer :: contact = 0                      !! its single BCONP; contact_all or contact_none
     integer :: load_steps = 1                   !! in which its loads are applied
-    integer :: pattern = 1                      !! of the freedoms that supports hold, and contacts
+    integer :: pattern = 1                      !! group of cases with the same supports and contacts
   contains
     procedure :: share_of
     procedure :: where_text
   end type load_case
 
-  !> All cases, and what their sets say.
+  !> All load cases, and the contents of their sets.
   type :: load_cases
     type(load_case), allocatable :: case(:)
-    integer :: patterns = 1                                !! scenes that are solved apart
+    integer :: patterns = 1                                !! number of groups that are solved separately
     type(nodal_force), allocatable :: force(:)             !! FORCE
     type(set_pressure), allocatable :: pressure(:)         !! PLOADX1
     type(set_body_load), allocatable :: body(:)            !! each GRAV, then each RFORCE
     type(set_moment), allocatable :: moment(:)             !! MOMENT
-    type(set_displacement), allocatable :: held_at(:)      !! SPC, of sets of supports; others are held at 0
-    type(set_displacement), allocatable :: moved(:)        !! SPCD, of sets of loads: instead of those
-    type(set_temperatures), allocatable :: heat(:)         !! TEMP and TEMPD, of those sets that cases have
+    type(set_displacement), allocatable :: held_at(:)      !! SPC with a displacement, in sets of supports
+    type(set_displacement), allocatable :: moved(:)        !! SPCD in sets of loads: replaces `held_at`
+    type(set_temperatures), allocatable :: heat(:)         !! TEMP and TEMPD of the sets that cases use
   contains
     procedure :: of_pattern
   end type load_cases
 
 contains
 
-  !> The only load case of model data that come from arrays: set 1 of each kind.
+  !> Make the only load case of model data from arrays: set 1 of each load.
   pure function single_case(data) result(cases)
-    type(scene_type), intent(in) :: data   !! checked
+    type(scene_type), intent(in) :: data   !! model data, checked
     type(load_cases) :: cases
     integer :: c, i
 
@@ -115,21 +115,21 @@ contains
     cases%heat(1)%temperature = data%temperature
   end function single_case
 
-  !> The cases of a pattern, in their order.
+  !> Cases of a pattern, in their order.
   pure function of_pattern(self, pattern) result(cases)
     class(load_cases), intent(in) :: self
-    integer, intent(in) :: pattern   !! which
+    integer, intent(in) :: pattern   !! number of the pattern
     integer, allocatable :: cases(:)
     integer :: k
 
     cases = pack([(k, k=1, size(self%case))], self%case%pattern == pattern)
   end function of_pattern
 
-  !> Put a load case on a scene, in place of the one before.
+  !> Apply a load case to a model, replacing the one before.
   pure subroutine put_case(cases, k, model)
     type(load_cases), intent(in) :: cases      !! all of them
-    integer, intent(in) :: k                   !! which
-    type(model_type), intent(inout) :: model   !! the scene
+    integer, intent(in) :: k                   !! number of the case
+    type(model_type), intent(inout) :: model   !! the model
     real(wp) :: share
     integer :: i
 
@@ -161,7 +161,7 @@ contains
     call put_temperatures(cases, cases%case(k), model)
   end subroutine put_case
 
-  !> The temperatures of a case, and what comes of them.
+  !> Apply the temperatures of a case and their thermal strains.
   pure subroutine put_temperatures(cases, case, model)
     type(load_cases), intent(in) :: cases
     type(load_case), intent(in) :: case
@@ -174,7 +174,7 @@ contains
     call find_free_strains(model)
   end subroutine put_temperatures
 
-  !> What supports prescribe in a case.
+  !> Apply the prescribed displacements of a case.
   pure subroutine put_displacements(cases, case, model)
     type(load_cases), intent(in) :: cases
     type(load_case), intent(in) :: case
@@ -188,7 +188,7 @@ contains
         if (at%set == case%supports) prescribed(at%c, at%node) = at%displacement
       end associate
     end do
-    do i = 1, size(cases%moved)   ! SPCD stands in place of SPC
+    do i = 1, size(cases%moved)   ! SPCD replaces SPC
       associate (at => cases%moved(i))
         if (any(case%set == at%set)) prescribed(at%c, at%node) = case%share_of(at%set)*at%displacement
       end associate
@@ -197,7 +197,7 @@ contains
     model%constraints%platen%prescribed = prescribed(angle, :size(model%constraints%platen))
   end subroutine put_displacements
 
-  !> The factor of a set of loads in a case; 0 where it is none of it.
+  !> Factor of a set of loads in a case; 0 if the case does not use it.
   pure real(wp) function share_of(case, set) result(share)
     class(load_case), intent(in) :: case
     integer, intent(in) :: set

@@ -1,4 +1,4 @@
-!> Checks of loads: pressures act on sides of elements, body loads on mass.
+!> Checks of loads: pressures act on edges of elements, body loads on mass.
 module epcont_model_load_checks
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: short_real
@@ -18,11 +18,11 @@ module epcont_model_load_checks
 
 contains
 
-  !> Check the loads of all load cases, as far as that needs no supports.
+  !> Check those properties of the loads of all load cases that do not depend on supports.
   subroutine check_loads(model, cases, found)
-    type(model_type), intent(in) :: model     !! the scene: its mesh and sections
-    type(load_cases), intent(in) :: cases     !! of the scene
-    type(findings), intent(inout) :: found    !! what is wrong with it is added
+    type(model_type), intent(in) :: model     !! the model: its mesh and sections
+    type(load_cases), intent(in) :: cases     !! cases of the model
+    type(findings), intent(inout) :: found    !! errors are added
 
     call check_pressures(model, cases%pressure, found)
     if (all(cases%body%given%factor == 0.0_wp)) return
@@ -30,7 +30,7 @@ contains
     if (model%has_rings()) call check_ring_loads(cases%body%given, found)
   end subroutine check_loads
 
-  !> Check that pressures act on sides of their elements. All those inside a body give one warning.
+  !> Check that pressures act on edges of their elements. All those inside a body give one warning.
   subroutine check_pressures(model, pressure, found)
     type(model_type), intent(in) :: model
     type(set_pressure), intent(in) :: pressure(:)
@@ -71,11 +71,11 @@ contains
     end do
   end subroutine check_masses
 
-  !> Check that body loads are the same all around the axis.
+  !> Check that body loads are axisymmetric.
   subroutine check_ring_loads(load, found)
     type(body_load), intent(in) :: load(:)   !! in the order of their cards
     type(findings), intent(inout) :: found
-    character(len=*), parameter :: of_rings = '0.0: rings bear nothing across their axis, which is y'
+    character(len=*), parameter :: of_rings = '0.0: axisymmetric loads act along the axis, which is y'
     integer :: k
 
     do k = 1, size(load)
@@ -91,12 +91,12 @@ contains
     end do
   end subroutine check_ring_loads
 
-  !> Check the forces of all body loads whose factor is not 0, and whether they go with lines of symmetry;
-  !! find the masses of nodes.
+  !> Check all body loads whose factor is not 0 for overflow and for symmetry;
+  !! compute the masses of nodes.
   subroutine check_body_forces(model, load, found)
-    type(model_type), intent(inout) :: model   !! the scene, whole and with its supports
+    type(model_type), intent(inout) :: model   !! complete, with its supports
     type(body_load), intent(in) :: load(:)     !! in the order of their cards
-    type(findings), intent(inout) :: found     !! what is wrong with it is added
+    type(findings), intent(inout) :: found     !! errors are added
     real(wp) :: largest
     integer :: k
 
@@ -113,8 +113,8 @@ contains
 
   contains
 
-    !> Warn of a spin about a point beside a line of symmetry: sides along an axis whose nodes are held across
-    !! it, and free along it.
+    !> Warn if the rotation axis is beside a line of symmetry: an axis-parallel edge whose nodes are fixed
+    !! across it, and free along it.
     subroutine look_at_mirrors(k)
       integer, intent(in) :: k
       integer :: c, e, edge(3), side
@@ -140,9 +140,9 @@ contains
       end do
     end subroutine look_at_mirrors
 
-    !> Is a node held at its place across a line along an axis, and free along it?
+    !> Is a node fixed at zero across a line along an axis, and free along it?
     pure logical function holds_across(c, node)
-      integer, intent(in) :: c, node   !! the direction across
+      integer, intent(in) :: c, node   !! direction across the line
 
       holds_across = model%constraints%is_held(c, node) .and. .not. model%constraints%is_held(3 - c, node)
       if (holds_across) holds_across = model%loads%prescribed(c, model%constraints%leader(c, node)) == 0.0_wp

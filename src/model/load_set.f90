@@ -8,8 +8,8 @@ module epcont_model_load_set
 
   type :: load_set
     real(wp), allocatable :: load(:, :)         !! nodal forces of all loads [force] [2, nodes]
-    real(wp), allocatable :: prescribed(:, :)   !! displacement of DOFs that are held [length] [2, nodes]
-    !> The rigid motion of its body that supports prescribe as a whole, and what they prescribe beyond it
+    real(wp), allocatable :: prescribed(:, :)   !! displacement of fixed DOFs [length] [2, nodes]
+    !> Rigid-body displacement that supports prescribe, and the rest of the prescribed displacements
     !! [length] [2, nodes].
     real(wp), allocatable :: travel(:, :), beyond_travel(:, :)
     !> Not allocated: the reference temperature everywhere [temperature] [nodes]
@@ -18,7 +18,7 @@ module epcont_model_load_set
     real(wp), allocatable :: free_strain(:)
     type(body_load), allocatable :: body_load(:)   !! [any]
     real(wp), allocatable :: body_force(:, :)   !! part of `load` from body loads, if any [force] [2, nodes]
-    !> The mass of each node by its shape functions, and its moments about the node, for body loads; not
+    !> Mass of each node by its shape functions, and its first moments about the node, for body loads; not
     !! allocated before they are needed [mass, mass*length, mass*length] [3, nodes]
     real(wp), allocatable :: mass(:, :)
   end type load_set

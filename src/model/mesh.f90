@@ -1,4 +1,4 @@
-!> The mesh of a model: nodes, elements, and the bodies that these make.
+!> Mesh of a model: nodes, elements and bodies.
 module epcont_model_mesh
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
@@ -14,19 +14,19 @@ module epcont_model_mesh
     real(wp), allocatable :: x(:, :)            !! coordinates [length] [2, nodes]
     integer, allocatable :: node_id(:)          !! [nodes]
     integer, allocatable :: element_id(:)       !! [elements]
-    type(element_kind), allocatable :: kinds(:) !! the table of elements [any]
-    integer, allocatable :: kind(:)             !! of each element: its row there [elements]
+    type(element_kind), allocatable :: kinds(:) !! table of element types [any]
+    integer, allocatable :: kind(:)             !! row in this table [elements]
     integer, allocatable :: node_count(:)       !! nodes of each element [elements]
     !> The nodes of each element: its corners counter-clockwise, then the mid-side nodes, the first after the
-    !! first corner; 0 if it has no more [most of all, elements]
+    !! first corner; padded with zeros [most of all, elements]
     integer, allocatable :: connectivity(:, :)
     integer, allocatable :: section(:)          !! section of each element [elements]
-    type(incidence) :: around                   !! the elements around each node
+    type(incidence) :: around                   !! elements at each node
     integer :: points = 0                       !! integration points of all elements
-    !> Of each element; those of element e end before that of e + 1 [elements + 1]
+    !> First point of each element; the last entry is points + 1 [elements + 1]
     integer, allocatable :: first_point(:)
     integer, allocatable :: point_element(:)    !! [points]
-    integer, allocatable :: body(:)             !! of each node [nodes]
+    integer, allocatable :: body(:)             !! body of each node [nodes]
     type(outline_type) :: body_outline          !! of all bodies
   contains
     procedure :: coordinates
@@ -43,25 +43,25 @@ contains
   !> Coordinates of the nodes of an element [length] [2, its nodes].
   pure function coordinates(self, element) result(x)
     class(mesh_type), intent(in) :: self
-    integer, intent(in) :: element   !! which element
+    integer, intent(in) :: element   !! index of the element
     real(wp) :: x(directions, self%node_count(element))
 
     x = self%x(:, self%connectivity(:self%node_count(element), element))
   end function coordinates
 
-  !> Corners, and sides, of an element.
+  !> Number of corners, and edges, of an element.
   pure integer function corners(self, element)
     class(mesh_type), intent(in) :: self
-    integer, intent(in) :: element   !! which element
+    integer, intent(in) :: element   !! index of the element
 
     corners = self%kinds(self%kind(element))%corners
   end function corners
 
-  !> Nodes of a side of an element: where it begins and ends, counter-clockwise, and its middle, 0 where it
-  !! has none.
+  !> Nodes of an edge of an element: both ends, counter-clockwise, and its mid-side node, 0 if
+  !! absent.
   pure function edge(self, element, side)
     class(mesh_type), intent(in) :: self
-    integer, intent(in) :: element, side   !! which element, which side of it
+    integer, intent(in) :: element, side   !! the element, and number of its edge
     integer :: edge(3)
 
     associate (node => self%connectivity(:, element), n => self%corners(element))
@@ -70,11 +70,11 @@ contains
     end associate
   end function edge
 
-  !> Nodes of the side of an element that ends at two corners, in either order, as `edge` has them; 0: it has
-  !! none.
+  !> Nodes of the edge of an element between two corners, in any order, as returned by `edge`; 0 if there is
+  !! no such edge.
   pure function edge_between(self, element, a, b) result(node)
     class(mesh_type), intent(in) :: self
-    integer, intent(in) :: element   !! which element
+    integer, intent(in) :: element   !! index of the element
     integer, intent(in) :: a, b      !! the corners
     integer :: node(3), side
 
@@ -85,7 +85,7 @@ contains
     node = 0
   end function edge_between
 
-  !> Elements that have a side between two corners.
+  !> Elements that have an edge between two corners.
   pure function with_side(self, a, b) result(element)
     class(mesh_type), intent(in) :: self
     integer, intent(in) :: a, b      !! the corners
@@ -96,10 +96,10 @@ contains
     element = pack(element, [(any(self%edge_between(element(k), a, b) > 0), k=1, size(element))])
   end function with_side
 
-  !> Coordinates of the nodes of a side [length] [2, 2 or 3].
+  !> Coordinates of the nodes of an edge [length] [2, 2 or 3].
   pure function edge_coordinates(self, edge) result(x)
     class(mesh_type), intent(in) :: self
-    integer, intent(in) :: edge(3)   !! nodes of the side, see `edge`
+    integer, intent(in) :: edge(3)   !! nodes of the edge, see `edge`
     real(wp) :: x(directions, merge(3, 2, edge(3) > 0))
 
     x = self%x(:, edge(:size(x, 2)))

@@ -1,7 +1,7 @@
-!> The model as it is solved: its parts, checked once and read-only from then on.
+!> Model for the solution: its parts, checked once and read-only afterwards.
 !>
-!> Components come first in all arrays. Nodes, elements and pairs are known by their position; their ids
-!> of the deck serve for output alone.
+!> Components come first in all arrays. Nodes, elements and pairs are known by their position; ids
+!> of the deck are for output only.
 module epcont_model_model
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of
@@ -22,7 +22,7 @@ module epcont_model_model
     type(sections_type) :: sections
     type(constraints_type) :: constraints
     type(contact_rows) :: contact
-    type(load_set) :: loads                     !! of the load case that it has now
+    type(load_set) :: loads                     !! loads of the current load case
     type(controls_type) :: controls
   contains
     procedure :: depth
@@ -35,27 +35,27 @@ module epcont_model_model
 
 contains
 
-  !> What belongs to a length in the plane at a radius: the thickness of an element, or the way round its ring
+  !> Depth of the plane at a radius: thickness of an element, or circumference if it is axisymmetric
   !! [length].
   pure real(wp) function depth(self, element, radius)
     class(model_type), intent(in) :: self
-    integer, intent(in) :: element   !! which element
+    integer, intent(in) :: element   !! index of the element
     real(wp), intent(in) :: radius   !! x [length]
 
     depth = self%sections%thickness(self%mesh%section(element))
     if (self%is_ring(element)) depth = 2.0_wp*acos(-1.0_wp)*radius
   end function depth
 
-  !> Is an element a ring? One whose section could not be found is none.
+  !> Is an element axisymmetric? If its section was not found, it is not.
   pure logical function is_ring(self, element)
     class(model_type), intent(in) :: self
-    integer, intent(in) :: element   !! which element
+    integer, intent(in) :: element   !! index of the element
 
     is_ring = self%mesh%section(element) > 0
     if (is_ring) is_ring = self%sections%kinematics(self%mesh%section(element)) == axisymmetric
   end function is_ring
 
-  !> Are the elements rings? (All are, or none.)
+  !> Are the elements axisymmetric? (All or no elements are.)
   pure logical function has_rings(self)
     class(model_type), intent(in) :: self
 
@@ -66,13 +66,13 @@ contains
   !> Can an element yield?
   elemental function can_yield(self, element)
     class(model_type), intent(in) :: self
-    integer, intent(in) :: element   !! which element
+    integer, intent(in) :: element   !! index of the element
     logical :: can_yield
 
     can_yield = allocated(self%sections%curve(self%mesh%section(element))%strain)
   end function can_yield
 
-  !> The bodies that each pair has nodes of; 0 ends them [any, pairs].
+  !> Bodies that each pair has nodes of, padded with zeros [any, pairs].
   pure function bodies_of_pairs(self) result(body)
     class(model_type), intent(in) :: self
     integer, allocatable :: body(:, :)
@@ -96,11 +96,11 @@ contains
     body = found(:most, :)
   end function bodies_of_pairs
 
-  !> What messages call a part of the scene: `GRID 17`, `CTRIA3 5`.
+  !> Name of a part of the model in messages: `GRID 17`, `CTRIA3 5`.
   pure function name_of(self, kind, which) result(name)
     class(model_type), intent(in) :: self
     integer, intent(in) :: kind    !! of_node, of_element, of_section, of_pair, of_line or of_couple
-    integer, intent(in) :: which   !! of these, by its position
+    integer, intent(in) :: which   !! position of the part
     character(len=:), allocatable :: name
 
     select case (kind)

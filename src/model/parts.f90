@@ -10,10 +10,10 @@ module epcont_model_parts
 
 contains
 
-  !> Move the arrays of model data to the parts of the model, except the loads of cases, ties and blocks.
+  !> Move the arrays of model data to the parts of the model, except loads of cases, ties and blocks.
   pure subroutine make_parts(data, model)
-    type(scene_type), intent(inout) :: data    !! its arrays are taken
-    type(model_type), intent(inout) :: model   !! keeps its ids; without them, they are positions
+    type(scene_type), intent(inout) :: data    !! its arrays are moved
+    type(model_type), intent(inout) :: model   !! keeps its ids; if it has no ids, they are positions
 
     call move_alloc(data%x, model%mesh%x)
     model%mesh%nodes = size(model%mesh%x, 2)
@@ -51,7 +51,7 @@ contains
     if (.not. allocated(model%mesh%node_id)) call number_items(model)
   end subroutine make_parts
 
-  !> All elements in one list.
+  !> Put all elements in one list.
   pure subroutine list_elements(block, model)
     type(element_block), intent(in) :: block(:)
     type(model_type), intent(inout) :: model
@@ -74,7 +74,7 @@ contains
     end associate
   end subroutine list_elements
 
-  !> Ids are positions.
+  !> Use positions as ids.
   pure subroutine number_items(model)
     type(model_type), intent(inout) :: model
     integer :: i
@@ -88,7 +88,7 @@ contains
     model%contact%couple%id = [(i, i=1, size(model%contact%couple))]
   end subroutine number_items
 
-  !> The row of the table of elements that has a card; 0: none.
+  !> Row of a card in the table of element types, 0 if absent.
   pure integer function kind_of(kinds, card)
     type(element_kind), intent(in) :: kinds(:)   !! the table
     character(len=*), intent(in) :: card         !! its name

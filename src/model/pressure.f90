@@ -1,4 +1,4 @@
-!> Pressures along sides of elements.
+!> Pressures on edges of elements.
 module epcont_model_pressure
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: directions
@@ -12,13 +12,13 @@ module epcont_model_pressure
 
 contains
 
-  !> The side of a pressure.
+  !> Find the edge of a pressure.
   pure subroutine find_side(model, given, ends, behind)
-    type(model_type), intent(in) :: model      !! the scene
+    type(model_type), intent(in) :: model      !! the model
     type(side_pressure), intent(in) :: given   !! the pressure
-    !> Nodes of the side, counter-clockwise, and its middle, 0 where it has none; 0: there is no such side
+    !> Nodes of the edge, counter-clockwise, and its mid-side node, 0 if absent; all 0: no such edge
     integer, intent(out) :: ends(3)
-    integer, intent(out) :: behind   !! the element that has the side too; 0: none
+    integer, intent(out) :: behind   !! the other element at this edge, 0 if absent
     integer, allocatable :: beside(:)
     integer :: k
 
@@ -26,15 +26,15 @@ contains
     behind = 0
     if (ends(1) == 0 .or. model%mesh%section(given%element) == 0) return
     beside = model%mesh%with_side(ends(1), ends(2))
-    do k = size(beside), 1, -1   ! the element behind goes the other way along the side
+    do k = size(beside), 1, -1   ! the other element has the edge in the opposite direction
       if (all(model%mesh%edge_between(beside(k), ends(1), ends(2)) == ends([2, 1, 3]))) behind = beside(k)
     end do
   end subroutine find_side
 
-  !> Add the nodal forces of a pressure along a side.
+  !> Add the nodal forces of a pressure on an edge.
   pure subroutine add_pressure(model, given, share)
-    type(model_type), intent(inout) :: model   !! the scene
-    type(side_pressure), intent(in) :: given   !! the pressure; its element has a section, and the side
+    type(model_type), intent(inout) :: model   !! the model
+    type(side_pressure), intent(in) :: given   !! the pressure; its element has a section, and the edge exists
     real(wp), intent(in) :: share              !! factor of the pressure
     type(edge_point) :: point(edge_point_count)
     real(wp) :: depth, direction(directions), at_ends(2), value
@@ -44,7 +44,7 @@ contains
     at_ends = share*merge(given%pressure, given%pressure([2, 1]), ends(1) == given%corner(1))
     point = edge_points(model%mesh%edge_coordinates(ends))
     do p = 1, edge_point_count
-      ! From inward: the element lies to the left
+      ! Relative to inward: the element is to the left
       direction = turned([-point(p)%tangent(2), point(p)%tangent(1)], given%theta)
       depth = model%depth(given%element, point(p)%x(1))
       value = at_ends(1) + (at_ends(2) - at_ends(1))*point(p)%along

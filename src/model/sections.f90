@@ -1,4 +1,4 @@
-!> What the elements of a model are made of.
+!> Thickness and material of the elements.
 module epcont_model_sections
   use epcont_base_kinds, only: wp
   use epcont_model_controls, only: uniaxial_curve
@@ -6,7 +6,7 @@ module epcont_model_sections
   private
   public :: sections_type
 
-  !> Of each section [sections].
+  !> Thickness and material of each section [sections].
   type :: sections_type
     real(wp), allocatable :: young(:)           !! [stress]
     real(wp), allocatable :: poisson(:)
@@ -15,7 +15,7 @@ module epcont_model_sections
     real(wp), allocatable :: density(:)         !! [mass/length**3]
     type(uniaxial_curve), allocatable :: curve(:)  !! stress-strain curve, if it can yield
     real(wp), allocatable :: expansion(:)       !! strain for each degree [1/temperature]
-    real(wp), allocatable :: reference_temperature(:)   !! without thermal strain [temperature]
+    real(wp), allocatable :: reference_temperature(:)   !! temperature without thermal strain [temperature]
     integer, allocatable :: property_id(:)      !! PSHELL or PSOLID
     integer, allocatable :: material_id(:)      !! MAT1
   contains
@@ -24,7 +24,7 @@ module epcont_model_sections
 
 contains
 
-  !> Does a section's curve end in a flat line? Then there may be loads that nothing carries.
+  !> Is a section perfectly plastic at the end of its curve? Then loads may have no equilibrium.
   pure function has_flat_curve(self) result(flat)
     class(sections_type), intent(in) :: self
     logical :: flat

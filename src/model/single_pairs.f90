@@ -1,4 +1,4 @@
-!> Pairs of nodes that are given one by one (CGAP): checked, and what follows from their nodes.
+!> Pairs of nodes from CGAP: checked, and completed from their nodes.
 module epcont_model_single_pairs
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: short_real, text_of
@@ -15,11 +15,11 @@ module epcont_model_single_pairs
 
 contains
 
-  !> From nodes, normals and gaps of each pair. Node 0 is one that could not be found; a normal of zero is one
+  !> Complete pairs from nodes, normals and gaps. Node 0 was not found; if a normal is zero, it points
   !! from A to B.
   subroutine complete_pairs(model, found)
-    type(model_type), intent(inout) :: model   !! the scene
-    type(findings), intent(inout) :: found   !! what is wrong with it is added
+    type(model_type), intent(inout) :: model   !! the model
+    type(findings), intent(inout) :: found   !! errors are added
     real(wp), allocatable :: shortest(:)     ! edge at each node, found when a pair first needs it
     character(len=:), allocatable :: others
     real(wp) :: between(directions)
@@ -68,7 +68,7 @@ contains
 
   contains
 
-    !> Shortest edge at each node; 0 at nodes without elements, which say nothing of the mesh's size.
+    !> Shortest edge at each node; 0 at nodes without elements, which have no mesh size.
     pure function shortest_edge() result(edge)
       real(wp) :: edge(model%mesh%nodes)
       integer :: e, k, side(3)

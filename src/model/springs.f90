@@ -1,4 +1,4 @@
-!> Springs between two freedoms, or one and the ground.
+!> Springs between two DOFs, or between a DOF and the ground.
 module epcont_model_springs
   use epcont_base_kinds, only: wp
   use epcont_model_finding, only: findings, of_spring
@@ -9,11 +9,11 @@ module epcont_model_springs
 
 contains
 
-  !> A spring has one end at least at a freedom, and the other elsewhere.
+  !> Check that a spring has at least one end at a DOF, and that its ends differ.
   subroutine check_spring_ends(model, found)
-    type(model_type), intent(in) :: model    !! the scene
-    type(findings), intent(inout) :: found   !! what is wrong with it is added
-    integer :: bare, grounded   ! end without a direction; with the direction of the ground; 0: none
+    type(model_type), intent(in) :: model    !! the model
+    type(findings), intent(inout) :: found   !! errors are added
+    integer :: bare, grounded   ! end without a direction; with the direction of the ground, 0 if absent
     integer :: k
 
     do k = 1, size(model%constraints%spring)
@@ -29,16 +29,16 @@ contains
         else if (bare > 0) then
           call found%add_error(of_spring, k, bare, ': has no direction there', 'direction 1 or 2')
         else if (node(1) == node(2) .and. component(1) == component(2)) then
-          call found%add_error(of_spring, k, 0, ': has both ends at one freedom', 'two of them')
+          call found%add_error(of_spring, k, 0, ': has both ends at one DOF', 'use two DOFs')
         end if
       end associate
     end do
   end subroutine check_spring_ends
 
-  !> By how much the second end of a spring moves beyond the first [length].
+  !> Elongation of a spring: displacement of its second end minus that of its first end [length].
   pure real(wp) function spring_stretch(model, k, displacement) result(stretch)
-    type(model_type), intent(in) :: model        !! the scene
-    integer, intent(in) :: k                     !! which spring
+    type(model_type), intent(in) :: model        !! the model
+    integer, intent(in) :: k                     !! index of the spring
     real(wp), intent(in) :: displacement(:, :)   !! [length] [2, nodes]
     integer :: i
 
@@ -50,9 +50,9 @@ contains
     end do
   end function spring_stretch
 
-  !> Forces that nodes must exert on all springs to hold them [force] [2, nodes].
+  !> Forces of the nodes on all springs [force] [2, nodes].
   pure function spring_forces(model, displacement) result(force)
-    type(model_type), intent(in) :: model        !! the scene
+    type(model_type), intent(in) :: model        !! the model
     real(wp), intent(in) :: displacement(:, :)   !! [length] [2, nodes]
     real(wp), allocatable :: force(:, :)
     real(wp) :: pull

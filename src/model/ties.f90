@@ -1,5 +1,5 @@
-!> Freedoms that are sums of others: of nodes that follow an RBE2 whose leader turns, and of MPC equations.
-!> Those that follow one other (RBE2 without a turn) have its number for a leader, and are none of these.
+!> DOFs that are sums of others: nodes of an RBE2 whose master node rotates, and MPC equations.
+!> DOFs that equal one other DOF (RBE2 without rotation) have a master node instead of a sum.
 module epcont_model_ties
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: directions
@@ -13,11 +13,11 @@ module epcont_model_ties
 
 contains
 
-  !> Have the nodes of a platen follow its leader, if that can be.
+  !> Make the nodes of a platen depend on its master node, if possible.
   subroutine turn_followers(model, platen, found)
-    type(model_type), intent(inout) :: model   !! the scene; those that cannot follow are taken off the platen
-    integer, intent(in) :: platen              !! which of those that turn
-    type(findings), intent(inout) :: found     !! what is wrong with it is added
+    type(model_type), intent(inout) :: model   !! the model; other nodes are removed from the platen
+    integer, intent(in) :: platen              !! index of the rotating platen
+    type(findings), intent(inout) :: found     !! errors are added
     character(len=:), allocatable :: remedy, why
     logical, allocatable :: follows(:)
     integer :: c, i
@@ -32,17 +32,17 @@ contains
           follows(i) = .false.
           exit
         end do
-        if (follows(i)) model%constraints%sum_of(:, node(i)) = 1   ! a number until there are rows
+        if (follows(i)) model%constraints%sum_of(:, node(i)) = 1   ! a placeholder until the rows exist
       end do
     end associate
     model%constraints%platen(platen)%follower = pack(model%constraints%platen(platen)%follower, follows)
   end subroutine turn_followers
 
-  !> The first freedom of an equation follows the others: it must be free to do so.
+  !> Check that the first DOF of an equation can depend on the others.
   subroutine check_equation(model, k, found)
-    type(model_type), intent(inout) :: model   !! the scene; the freedom is marked
-    integer, intent(in) :: k                   !! which equation
-    type(findings), intent(inout) :: found     !! what is wrong with it is added
+    type(model_type), intent(inout) :: model   !! the model; the DOF is marked
+    integer, intent(in) :: k                   !! index of the equation
+    type(findings), intent(inout) :: found     !! errors are added
     character(len=:), allocatable :: why
 
     associate (c => model%constraints%equation(k)%component(1), node => model%constraints%equation(k)%node(1))
@@ -54,21 +54,21 @@ contains
       else if (model%constraints%held(c, node)) then
         why = ' is held by a support'
       else if (model%constraints%reference(c, node)) then
-        why = ' is a SUPORT freedom'
+        why = ' is a SUPORT DOF'
       end if
       if (len(why) > 0) call found%add_error(of_equation, k, -1, ': '//freedom(model, c, node)//why// &
-        ', and cannot follow the others', 'first a freedom that nothing else holds or moves')
+        ', and cannot follow the others', 'put a DOF first that no other card fixes or moves')
       model%constraints%sum_of(c, node) = 1
     end associate
   end subroutine check_equation
 
-  !> Write each of these freedoms as a sum of those that follow nothing. (Leaders end their chains.)
+  !> Write each of these DOFs as a sum of independent DOFs. (Chains of ties are already resolved.)
   subroutine complete_ties(model, found)
-    type(model_type), intent(inout) :: model   !! the scene
-    type(findings), intent(inout) :: found     !! equations that go round in circles are added
+    type(model_type), intent(inout) :: model   !! the model
+    type(findings), intent(inout) :: found     !! equations with circular dependence are added
     integer, parameter :: untouched = 0, begun = 1, done = 2
     integer, allocatable :: state(:), equation(:)
-    integer, allocatable :: first(:), component(:), node(:)   ! terms as they are given
+    integer, allocatable :: first(:), component(:), node(:)   ! terms on the cards
     real(wp), allocatable :: weight(:)
     integer :: c, i, k, last, rows
 
@@ -97,7 +97,7 @@ contains
     do k = 1, size(model%constraints%equation)
       associate (given => model%constraints%equation(k), &
                  first_one => model%constraints%equation(k)%coefficient(1))
-        ! A first coefficient of 0.0 has been reported; it must not divide.
+        ! A first coefficient of 0.0 has been reported; avoid the division by it.
         call add_row(given%component(1), given%node(1), given%component(2:), given%node(2:), &
                      -given%coefficient(2:)/merge(1.0_wp, first_one, first_one == 0.0_wp))
         equation(rows) = k
@@ -117,7 +117,7 @@ contains
 
   contains
 
-    !> u = u of the leader + angle x arm.
+    !> Add u = u of the master node + angle x arm.
     subroutine add_platen()
       real(wp) :: arm(directions)
       integer :: j
@@ -131,7 +131,7 @@ contains
       end associate
     end subroutine add_platen
 
-    !> One more freedom, and its terms.
+    !> Add a row for one DOF, with its terms.
     subroutine add_row(c, follower, components, nodes, weights)
       integer, intent(in) :: c, follower, components(:), nodes(:)
       real(wp), intent(in) :: weights(:)
@@ -146,7 +146,7 @@ contains
       end associate
     end subroutine add_row
 
-    !> Put in place of each term that follows others what it follows.
+    !> Replace each term that is a sum by the terms of that sum.
     recursive subroutine resolve(row)
       integer, intent(in) :: row
       integer :: i, j
@@ -171,7 +171,7 @@ contains
     end subroutine resolve
   end subroutine complete_ties
 
-  !> The terms of a freedom, by what they follow.
+  !> Add the independent terms of a DOF.
   subroutine put_terms(first, component, node, weight, row, model, last)
     integer, intent(in) :: first(:), component(:), node(:), row
     real(wp), intent(in) :: weight(:)
@@ -209,7 +209,7 @@ contains
     end subroutine put
   end subroutine put_terms
 
-  !> Room for so many terms, behind those that there are.
+  !> Make space for more terms after the present ones.
   subroutine make_room(last, terms, model)
     integer, intent(in) :: last, terms
     type(model_type), intent(inout) :: model
@@ -226,13 +226,13 @@ contains
     model%constraints%sum%weight = new_weight
   end subroutine make_room
 
-  !> A moment at the leader of a platen that turns: forces on those that follow it, across their arms and as
-  !! these are long, and on the leader what balances their sum.
+  !> Apply a moment at a rotating platen as forces: on the dependent nodes, normal and proportional to their
+  !! arms, and on the master node the negative of their sum.
   pure subroutine add_moment(model, platen, moment, load)
-    type(model_type), intent(in) :: model     !! the scene
-    integer, intent(in) :: platen             !! which of those that turn
+    type(model_type), intent(in) :: model     !! the model
+    integer, intent(in) :: platen             !! index of the rotating platen
     real(wp), intent(in) :: moment            !! counter-clockwise [force*length]
-    real(wp), intent(inout) :: load(:, :)     !! it is added to them [force] [2, nodes]
+    real(wp), intent(inout) :: load(:, :)     !! forces are added [force] [2, nodes]
     real(wp) :: arm(directions, size(model%constraints%platen(platen)%follower)), force(directions), squares
     integer :: i
 
@@ -248,10 +248,10 @@ contains
     end associate
   end subroutine add_moment
 
-  !> The angle that takes the followers of a platen where they are [radian].
+  !> Angle of a platen from the displacements of its dependent nodes [radian].
   pure real(wp) function platen_angle(model, platen, displacement) result(turn)
-    type(model_type), intent(in) :: model        !! the scene
-    integer, intent(in) :: platen                !! which of those that turn
+    type(model_type), intent(in) :: model        !! the model
+    integer, intent(in) :: platen                !! index of the rotating platen
     real(wp), intent(in) :: displacement(:, :)   !! [length] [2, nodes]
     real(wp), dimension(directions) :: arm, moved
     real(wp) :: squares

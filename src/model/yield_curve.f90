@@ -1,4 +1,4 @@
-!> Curves of materials that yield: made, and checked.
+!> Stress-strain curves of materials that yield: made and checked.
 module epcont_model_yield_curve
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: plural, short_real, text_of
@@ -9,19 +9,19 @@ module epcont_model_yield_curve
   private
   public :: bilinear_curve, curve_fault, straighten
 
-  !> The strain of the yield point and its stress over E may differ by this part; the stress over E is used.
+  !> Strain of the yield point and its stress over E may differ by this fraction; stress over E is used.
   real(wp), parameter :: same_strain = 1.0e-2_wp
 
-  !> What is wrong with a curve.
+  !> Error of a stress-strain curve.
   type :: curve_fault
-    integer :: point = 0   !! the first that cannot be; beyond the last one: one is missing; 0: all can
-    character(len=:), allocatable :: what, remedy   !! is wrong with it; would be right
+    integer :: point = 0   !! first wrong point; after the last one: a point is missing; 0: no error
+    character(len=:), allocatable :: what, remedy   !! message and remedy
   end type curve_fault
 
 contains
 
-  !> The curve of a yield stress and a slope over plastic strain: E H/(E + H) over total strain. Where
-  !! there is no such curve, it has points that are refused.
+  !> Make the curve of a yield stress and a hardening modulus: slope E H/(E + H) over total strain. If
+  !! there is no such curve, it has invalid points.
   pure type(uniaxial_curve) function bilinear_curve(young, yield_stress, hardening) result(curve)
     real(wp), intent(in) :: young          !! E [stress]
     real(wp), intent(in) :: yield_stress   !! [stress]
@@ -38,12 +38,12 @@ contains
     curve%endless = [curve%strain(3), curve%stress(3)]
   end function bilinear_curve
 
-  !> A curve as it is meant: its elastic part is that of E, and what falls by rounding is level; or its first
-  !! point that cannot be.
+  !> Correct a curve for rounding: its elastic slope is E, and a fall by rounding becomes level; or return its
+  !! first invalid point.
   pure subroutine straighten(curve, young, fault)
-    type(uniaxial_curve), intent(inout) :: curve   !! of as many strains as stresses
+    type(uniaxial_curve), intent(inout) :: curve   !! as many strains as stresses
     real(wp), intent(in) :: young                  !! E [stress]
-    type(curve_fault), intent(out) :: fault        !! if there is one
+    type(curve_fault), intent(out) :: fault        !! error, if there is one
     character(len=:), allocatable :: remedy
     integer :: k
 

@@ -173,7 +173,7 @@ class Ties(scene.Extremes):
                 (beam("CELAS1,950,7,53,1"), "CELAS1 950: there is no PELAS 7\n"),
                 (beam("CELAS2,950,1.0"), "CELAS2 950: has no node\n"),
                 (beam("CELAS2,950,1.0,53"), "CELAS2 950: has no direction there\n"),
-                (beam("CELAS2,950,1.0,53,1,53,1"), "CELAS2 950: has both ends at one freedom\n")):
+                (beam("CELAS2,950,1.0,53,1,53,1"), "CELAS2 950: has both ends at one DOF\n")):
             with self.subTest(words=words):
                 result = scene.solve(deck)
                 self.assertEqual(2, result.status)
