@@ -1,4 +1,4 @@
-!> From the cards of a deck to the scene, and what is found of it to messages with their places in the deck.
+!> Makes the model from the cards of a deck, and messages with card and field from its findings.
 module epcont_build_build
   use epcont_base_diagnostic, only: diagnostic, diagnostics
   use epcont_base_sorting, only: sorted_order
@@ -38,18 +38,18 @@ module epcont_build_build
 
 contains
 
-  !> Build the model of a deck. Everything that is wrong with it is added to `faults`; the model serves only
-  !! without errors.
+  !> Build the model of a deck. All errors are added to `faults`; the model is complete only
+  !! if there are no errors.
   subroutine build_model(deck, model, faults, all_cases, of_pattern)
     type(deck_type), intent(in) :: deck          !! its cards
-    type(model_type), intent(out) :: model       !! the scene, with the first load case of that pattern
-    type(diagnostics), intent(inout) :: faults   !! of the deck; they are added to
+    type(model_type), intent(out) :: model       !! the model, with the first load case of the pattern
+    type(diagnostics), intent(inout) :: faults   !! of the deck; more are added
     type(load_cases), intent(out), optional :: all_cases   !! of the deck
-    integer, intent(in), optional :: of_pattern  !! of supports and contacts; else that of the first case
+    integer, intent(in), optional :: of_pattern  !! of supports and contacts; default: that of the first case
     type(element_kind), allocatable :: kinds(:)
     type(load_cases) :: cases
     type(scene_type) :: data
-    integer :: case, pattern   ! the first of that pattern, and what of_pattern says
+    integer :: case, pattern   ! first case of the pattern, and value of of_pattern
 
     pattern = 1
     if (present(of_pattern)) pattern = of_pattern
@@ -64,7 +64,7 @@ contains
     call tell(deck, faults)
   end subroutine build_model
 
-  !> Ids are unique.
+  !> Check that ids are unique.
   subroutine check_ids(deck, kinds, faults)
     type(deck_type), intent(in) :: deck
     type(element_kind), intent(in) :: kinds(:)
@@ -105,7 +105,7 @@ contains
                        faults)
   end subroutine read_data
 
-  !> Note the cards that nothing uses: no other card, or no load case.
+  !> Note the cards that no other card or no load case uses.
   subroutine note_without_effect(deck, kinds, cases, faults)
     type(deck_type), intent(in) :: deck
     type(element_kind), intent(in) :: kinds(:)
@@ -130,11 +130,11 @@ contains
       call note_unnamed(deck, card_bconp, 1, cases%case%contact, 'BCONTACT', faults)
     if (all(cases%case%contact == contact_none) .and. deck%card(card_cgap)%count > 0) &
       call faults%add_note(card_cgap, 1, 1, &
-        ': BCONTACT is NONE in all load cases'//and_more(deck%card(card_cgap)%count, ' (', ' more CGAPs)'))
+        ': BCONTACT = NONE in all load cases'//and_more(deck%card(card_cgap)%count, ' (', ' more CGAPs)'))
 
   contains
 
-    !> The ids in a column of a table.
+    !> Ids in a column of a table.
     pure function ids(card, column)
       integer, intent(in) :: card, column
       integer :: ids(deck%card(card)%count)
@@ -142,12 +142,12 @@ contains
       ids = nint(deck%card(card)%value(column, :))
     end function ids
   end subroutine note_without_effect
-  !> Put the names of their cards before what was found of the scene, with the places of these.
+  !> Begin each finding of the model with the name of its card, and add the place of the card.
   subroutine tell(deck, faults, case)
     type(deck_type), intent(in) :: deck          !! its cards
-    type(diagnostics), intent(inout) :: faults   !! of the deck, and findings of the scene that it makes
-    integer, intent(in), optional :: case        !! the first one with the supports of the scene
-    integer, allocatable :: elements(:)   ! the cards of elements
+    type(diagnostics), intent(inout) :: faults   !! of the deck, and findings of its model
+    integer, intent(in), optional :: case        !! first case with the supports of the model
+    integer, allocatable :: elements(:)   ! element tables
     integer :: i
 
     elements = element_cards(deck, element_kinds())
@@ -157,7 +157,7 @@ contains
 
   contains
 
-    !> The same of one; it is then no finding any more.
+    !> Do this for one finding, which then is an ordinary message.
     subroutine name_card(one)
       type(diagnostic), intent(inout) :: one
       integer :: card(3)
@@ -172,7 +172,7 @@ contains
       one%which = 0
     end subroutine name_card
 
-    !> The table, the card and the column, or the negative item of a list, that a finding is about.
+    !> Table, card and column (if negative: item of a list) of a finding.
     pure function card_of(one) result(card)
       type(diagnostic), intent(in) :: one
       integer :: card(3), c
@@ -187,7 +187,7 @@ contains
           if (card(2) <= deck%card(card(1))%count) exit
           card(2) = card(2) - deck%card(card(1))%count
         end do
-        if (card(3) < 0) &   ! a node: behind id and section
+        if (card(3) < 0) &   ! a node: after id and section
           card(3) = findloc(deck%card(card(1))%value(:, card(2)), &
                             deck%card(card_grid)%value(1, -card(3)), dim=1, back=.true.)
       case (of_section)
@@ -209,7 +209,7 @@ contains
       end select
     end function card_of
 
-    !> The k-th card of two tables: those of the second one are counted after those of the first.
+    !> The k-th card of two tables, counted through both.
     pure function behind(first, second, k) result(card)
       integer, intent(in) :: first, second, k
       integer :: card(2)
@@ -218,7 +218,7 @@ contains
       if (k > deck%card(first)%count) card = [second, k - deck%card(first)%count]
     end function behind
 
-    !> The item of a BLSEG's list that names the k-th node of the line.
+    !> Item of a BLSEG's list that names the k-th node of the line.
     pure integer function list_item(line, k) result(item)
       integer, intent(in) :: line, k
       integer :: nodes
@@ -233,11 +233,11 @@ contains
     end function list_item
   end subroutine tell
 
-  !> Name the supports of a load case in a fault that depends on them, if other cases have other supports.
+  !> Name the load case in a fault that depends on its supports, if other cases have other supports.
   subroutine name_supports(one, subcase, case)
     type(diagnostic), intent(inout) :: one
     type(subcase_control), intent(in) :: subcase(:)   !! [cases]
-    integer, intent(in) :: case                       !! which of them
+    integer, intent(in) :: case                       !! index of the case
     character(len=:), allocatable :: name
     integer :: other
 
@@ -253,12 +253,12 @@ contains
     end if
   end subroutine name_supports
 
-  !> The SPC1 cards, in free field, that hold some nodes in direction 1.
+  !> SPC1 cards, in free field, that fix some nodes in direction 1.
   pure function holding_cards(deck, ids) result(text)
     type(deck_type), intent(in) :: deck
     integer, intent(in) :: ids(:)
     character(len=:), allocatable :: text
-    integer, parameter :: most_fields = 6   ! of a line with SPC1, its set and directions
+    integer, parameter :: most_fields = 6   ! of a line that begins with SPC1, set and directions
     integer, allocatable :: id(:)
     integer :: fields, from, item, set(size(deck%subcase)), to
     type(findings) :: unheard
@@ -272,7 +272,7 @@ contains
       do to = from, size(id) - 1
         if (id(to + 1) /= id(to) + 1) exit
       end do
-      if (to == from + 1) to = from   ! two nodes are no range
+      if (to == from + 1) to = from   ! two nodes are not a range
       item = merge(3, 1, to > from)
       if (fields + item > most_fields) then
         if (len(text) > 0) text = text//' and '

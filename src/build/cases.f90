@@ -1,4 +1,4 @@
-!> Load cases from case control, and what the sets say that they have: FORCE, PLOADX1,
+!> Load cases from case control, and the contents of their sets: FORCE, PLOADX1,
 !> GRAV, RFORCE, LOAD, SPC and SPCD.
 module epcont_build_cases
   use epcont_base_kinds, only: wp
@@ -21,21 +21,21 @@ module epcont_build_cases
   private
   public :: read_cases
 
-  !> Cards whose first field is a set of loads, which LOAD may combine; and of supports.
+  !> Cards whose first field is a set of loads, which LOAD may combine; and cards of supports.
   integer, parameter :: load_cards(*) = [card_force, card_ploadx1, card_spcd, card_grav, card_rforce, &
                                          card_moment]
   integer, parameter :: support_cards(*) = [card_spc, card_spc1]
 
 contains
 
-  !> The load cases of a deck, and what their sets say.
+  !> Read the load cases of a deck, and the contents of their sets.
   subroutine read_cases(deck, nodes, kinds, data, cases, found)
     type(deck_type), intent(in) :: deck        !! its cards
     type(card_index), intent(in) :: nodes      !! ids of GRID
     type(element_kind), intent(in) :: kinds(:) !! of elements
-    type(scene_type), intent(inout) :: data    !! elements and sections; gets the RBE2 leaders that turn
-    type(load_cases), intent(out) :: cases     !! of the scene
-    type(findings), intent(inout) :: found     !! what is wrong with it is added
+    type(scene_type), intent(inout) :: data    !! elements and sections; gets the rotating RBE2 master nodes
+    type(load_cases), intent(out) :: cases     !! of the model
+    type(findings), intent(inout) :: found     !! errors are added
     integer, dimension(size(deck%subcase)) :: loads, supports
     integer, allocatable :: used(:)            ! sets of loads
     integer :: k
@@ -71,9 +71,9 @@ contains
 
   contains
 
-    !> The sets that a case has: the one that it chooses, or those that a LOAD combines under that id.
+    !> Sets of a case: the chosen one, or the sets that a LOAD with this id combines.
     subroutine combine(chosen, case)
-      integer, intent(in) :: chosen   !! 0: none
+      integer, intent(in) :: chosen   !! 0 if absent
       type(load_case), intent(inout) :: case
       integer :: row
 
@@ -91,7 +91,7 @@ contains
       end associate
     end subroutine combine
 
-    !> The load steps of each case: those of its NLPARM, else of PARAM NLOAD.
+    !> Set the load steps of each case: from its NLPARM, else from PARAM NLOAD.
     subroutine choose_load_steps()
       integer :: k, row
 
@@ -111,7 +111,7 @@ contains
     end subroutine choose_load_steps
   end subroutine read_cases
 
-  !> FORCE.
+  !> Read FORCE.
   subroutine add_forces(deck, nodes, used, cases, found)
     type(deck_type), intent(in) :: deck
     type(card_index), intent(in) :: nodes
@@ -137,15 +137,15 @@ contains
         idle(i) = all(direction == 0.0_wp)
         if (force%number('N3', i) /= 0.0_wp) &
           call found%add_error(card_force, i, force%column('N3'), ': field 8 (N3) points off the plane', &
-                               '0.0: scenes lie in the x-y plane')
-        ! Not zero, but of a size that no field may give it.
+                               '0.0: models lie in the x-y plane')
+        ! Not zero, but of a magnitude outside the allowed range.
         if (factor /= 0.0_wp .and. largest > 0.0_wp .and. &
             (abs(factor)*largest < least_cause .or. abs(factor)*largest > farthest)) &
           call found%add_error(card_force, i, force%column('F'), &
                                ': field 5 (F) times the vector of N1 and N2 is too far from 1.0', &
                                'other units: forces from '//short_real(least_cause)//' to '// &
                                short_real(farthest)//', or 0.0')
-        ! What rounding has left of a right angle, such as the cosine of 90 degrees, is no direction.
+        ! Rounding of a right angle, such as the cosine of 90 degrees, is set to zero.
         where (abs(direction) < epsilon(1.0_wp)*largest) direction = 0.0_wp
         cases%force(count(node(:i) > 0))%force = factor*direction
       end do
@@ -154,7 +154,7 @@ contains
 
   contains
 
-    !> A FORCE without a direction is an error. Vectors of zeros are no forces, which is noted once.
+    !> Report a FORCE without a direction as an error. Vectors of zeros give one note.
     subroutine report_idle(idle)
       logical, intent(in) :: idle(:)   !! N1 and N2 are zero [cards]
       logical :: blank(size(idle))
@@ -173,7 +173,7 @@ contains
     end subroutine report_idle
   end subroutine add_forces
 
-  !> PLOADX1.
+  !> Read PLOADX1.
   subroutine add_pressures(deck, nodes, kinds, used, cases, found)
     type(deck_type), intent(in) :: deck
     type(card_index), intent(in) :: nodes
@@ -206,7 +206,7 @@ contains
     cases%pressure = cases%pressure(:last)
   end subroutine add_pressures
 
-  !> SPCD of the sets that are used.
+  !> Read SPCD of the sets that are used.
   subroutine add_displacements(deck, nodes, data, used, moved, found)
     type(deck_type), intent(in) :: deck
     type(card_index), intent(in) :: nodes

@@ -1,4 +1,4 @@
-!> What the PARAMs choose for the contact solver and the plastic iteration.
+!> Choices of the PARAMs for the contact solver and the plastic iteration.
 module epcont_build_choices
   use epcont_base_kinds, only: wp
   use epcont_deck_card_kinds, only: card_param
@@ -10,13 +10,13 @@ module epcont_build_choices
   private
   public :: read_controls, check_once
 
-  !> What PARAM ORIGINAL YES leaves no choice of (`original_controls`).
+  !> PARAMs that PARAM ORIGINAL YES replaces (`original_controls`).
   character(len=8), parameter :: chosen(*) = [character(len=8) :: &
     'SOLVER', 'FLEXIB', 'RULE', 'METHOD', 'TOL', 'MUP', 'ACCURACY', 'NLOAD', 'THEORY']
 
 contains
 
-  !> The choices; where nothing is said of one, its default.
+  !> Read the choices; each has a default.
   pure type(controls_type) function read_controls(deck) result(controls)
     type(deck_type), intent(in) :: deck   !! its cards
 
@@ -37,8 +37,8 @@ contains
 
   contains
 
-    !> The place of the word that a PARAM says among the names of its choices, from 0 on; `default` where it
-    !! says none of these.
+    !> Position, from 0, of the word of a PARAM among the names of its choices; `default` if the PARAM is
+    !! absent or has another word.
     pure integer function choice(parameter, names, default)
       character(len=*), intent(in) :: parameter, names(:)
       integer, intent(in) :: default
@@ -48,12 +48,12 @@ contains
     end function choice
   end function read_controls
 
-  !> Each PARAM stands once, and none beside ORIGINAL YES that this chooses: of two, one would be ignored.
+  !> Check that each PARAM is given once, and not together with an ORIGINAL YES that replaces it.
   pure subroutine check_once(deck, original, found)
     type(deck_type), intent(in) :: deck   !! its cards
     logical, intent(in) :: original       !! PARAM ORIGINAL YES
-    type(findings), intent(inout) :: found   !! what is wrong with it is added
-    character(len=:), allocatable :: beside   ! ORIGINAL
+    type(findings), intent(inout) :: found   !! errors are added
+    character(len=:), allocatable :: beside   ! PARAM that ORIGINAL replaces
     integer :: row
 
     beside = ''

@@ -1,4 +1,4 @@
-!> What may touch: pairs of nodes from CGAP, PGAP and CORD2R, lines of nodes from BLSEG and BCONP.
+!> Contact: pairs of nodes from CGAP, PGAP and CORD2R, lines of nodes from BLSEG and BCONP.
 module epcont_build_contacts
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of
@@ -15,13 +15,13 @@ module epcont_build_contacts
 
 contains
 
-  !> Pairs, then lines.
+  !> Read pairs, then lines.
   subroutine read_contacts(deck, nodes, chosen, data, found)
     type(deck_type), intent(in) :: deck        !! its cards
     type(card_index), intent(in) :: nodes      !! ids of GRID
     integer, intent(in) :: chosen              !! the only BCONP; contact_all or contact_none
     type(scene_type), intent(inout) :: data    !! gets pairs, lines and couples
-    type(findings), intent(inout) :: found     !! what is wrong with it is added
+    type(findings), intent(inout) :: found     !! errors are added
     !> x-axes in the plane of the systems: the basic one, number 0, and those of CORD2R
     real(wp) :: axis(2, 0:deck%card(card_cord2r)%count)
     integer :: i, k
@@ -51,7 +51,7 @@ contains
 
   contains
 
-    !> The axis of a CORD2R; of a bad one it remains that of the basic system.
+    !> Read the x-axis of a CORD2R. If the card is wrong, the axis of the basic system stays.
     subroutine read_system()
       real(wp) :: point(3, 3), x(3), z(3), to_c(3)
       integer :: a
@@ -73,8 +73,8 @@ contains
       end if
     end subroutine read_system
 
-    !> CGAP. A pair whose system cannot be found has any normal, and one without a system none, until its
-    !! nodes give it.
+    !> Read CGAP. A pair whose system was not found has an arbitrary normal; one without a system has a zero
+    !! normal until its nodes define it.
     subroutine read_pairs()
       integer, dimension(deck%card(card_cgap)%count) :: property, system
       integer :: i, k, node(2, size(system))
@@ -99,7 +99,7 @@ contains
       data%gap_by_geometry = deck%parameter_word('GAPGEOM') == 'YES'
     end subroutine read_pairs
 
-    !> The nodes of a BLSEG, ranges and steps written out; none where it is not sound.
+    !> Expand the nodes of a BLSEG, with ranges and steps; not allocated if the card is wrong.
     subroutine read_line()
       integer :: id, k
       logical :: sound
@@ -113,7 +113,7 @@ contains
             if (nodes%whole) &
               call found%add_error(card_blseg, i, -k, ': there is no GRID '//text_of(id), 'the id of a GRID')
             sound = .false.
-            exit   ! of a range the first one
+            exit   ! the first node of a range
           end do
         end do
         data%line(i)%node = [integer ::]

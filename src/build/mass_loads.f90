@@ -1,4 +1,4 @@
-!> Body loads of a scene from GRAV and RFORCE.
+!> Body loads from GRAV and RFORCE.
 module epcont_build_mass_loads
   use epcont_base_kinds, only: wp
   use epcont_build_reference, only: card_index, resolve
@@ -13,7 +13,7 @@ module epcont_build_mass_loads
 
 contains
 
-  !> One body load for each GRAV, then for each RFORCE; those that no case has are left at the factor 0.
+  !> Make one body load for each GRAV, then for each RFORCE; those that no case uses keep the factor 0.
   subroutine read_mass_loads(deck, nodes, rings, x, used, body, found)
     type(deck_type), intent(in) :: deck        !! its cards
     type(card_index), intent(in) :: nodes      !! ids of GRID
@@ -21,7 +21,7 @@ contains
     real(wp), intent(in) :: x(:, :)            !! coordinates of the nodes [length] [2, nodes]
     integer, intent(in) :: used(:)             !! sets of loads
     type(set_body_load), allocatable, intent(out) :: body(:)
-    type(findings), intent(inout) :: found     !! what is wrong with it is added
+    type(findings), intent(inout) :: found     !! errors are added
     integer :: i
 
     associate (grav => deck%card(card_grav), rforce => deck%card(card_rforce))
@@ -34,7 +34,7 @@ contains
 
   contains
 
-    !> GRAV.
+    !> Read GRAV.
     subroutine read_gravity(load)
       type(body_load), intent(inout) :: load(:)
       real(wp) :: direction(2)
@@ -44,18 +44,18 @@ contains
         do i = 1, size(load)
           if (load(i)%factor == 0.0_wp .or. .not. card%sound(i)) cycle
           direction = [card%number('N1', i), card%number('N2', i)]
-          call want_zero(card_grav, i, 'N3', 'off the plane', '0.0: scenes lie in the x-y plane')
+          call want_zero(card_grav, i, 'N3', 'off the plane', '0.0: models lie in the x-y plane')
           if (all(direction == 0.0_wp)) &
             call found%add_error(card_grav, i, card%column('N1'), ': N1 and N2 are 0.0: no direction', &
                                  'where it acts to, such as 0.0 and -1.0')
-          ! As of FORCE: what rounding has left of a right angle is no direction.
+          ! As for FORCE: rounding of a right angle is set to zero.
           where (abs(direction) < epsilon(1.0_wp)*maxval(abs(direction))) direction = 0.0_wp
           load(i)%acceleration = card%number('A', i)*direction
         end do
       end associate
     end subroutine read_gravity
 
-    !> RFORCE.
+    !> Read RFORCE.
     subroutine read_spins(load)
       type(body_load), intent(inout) :: load(:)
       integer :: centre(size(load)), i
@@ -81,15 +81,15 @@ contains
       end associate
     end subroutine read_spins
 
-    !> About which axis a scene spins.
+    !> The rotation axis, in words.
     pure function axis_is() result(text)
       character(len=:), allocatable :: text
 
-      text = 'scenes spin about z'
-      if (rings) text = 'rings spin about their axis, y'
+      text = 'plane models rotate about z'
+      if (rings) text = 'axisymmetric models rotate about their axis, y'
     end function axis_is
 
-    !> A field that must be zero, since it points where nothing is.
+    !> Report a field that is not zero, but has a direction that the model does not have.
     subroutine want_zero(card, i, name, where_to, remedy)
       integer, intent(in) :: card, i
       character(len=*), intent(in) :: name, where_to, remedy

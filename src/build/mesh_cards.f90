@@ -18,9 +18,9 @@ module epcont_build_mesh_cards
   public :: element_cards, read_mesh, take_ids
 
   real(wp), parameter :: &
-    !> LIMIT1 and the table's yield stress may differ by this part.
+    !> LIMIT1 and the table's yield stress may differ by this fraction.
     same_stress = 1.0e-4_wp, &
-    !> Moduli that are all three given agree to this part.
+    !> If all three moduli are given, they agree to this fraction.
     same_moduli = 1.0e-3_wp
 
   type :: material_card
@@ -28,21 +28,21 @@ module epcont_build_mesh_cards
     real(wp) :: poisson = 0.0_wp
     real(wp) :: expansion = 0.0_wp             !! [1/temperature]
     real(wp) :: reference_temperature = 0.0_wp
-    real(wp) :: density = 1.0_wp    !! of a card that is faulty: not zero, which is a fault [mass/length**3]
+    real(wp) :: density = 1.0_wp    !! not zero, as a wrong card must not cause another error [mass/length**3]
     type(uniaxial_curve) :: curve
   end type material_card
 
 contains
 
-  !> Nodes, materials, sections, elements.
+  !> Read nodes, materials, sections and elements.
   subroutine read_mesh(deck, nodes, kinds, data, found)
     type(deck_type), intent(in) :: deck           !! its cards
     type(card_index), intent(in) :: nodes         !! ids of GRID
     type(element_kind), intent(in) :: kinds(:)    !! of elements
     type(scene_type), intent(out) :: data         !! gets nodes, sections and elements
-    type(findings), intent(inout) :: found        !! what is wrong with it is added
-    type(material_card), allocatable :: material(:)   ! of each MAT1
-    integer, allocatable :: cards(:)                  ! of elements
+    type(findings), intent(inout) :: found        !! errors are added
+    type(material_card), allocatable :: material(:)   ! for each MAT1
+    integer, allocatable :: cards(:)                  ! element tables
     integer :: i
 
     associate (grid => deck%card(card_grid))
@@ -51,7 +51,7 @@ contains
         do i = 1, grid%count
           if (z(i) /= 0.0_wp) &
             call refuse(deck, card_grid, i, 'X3', ': field 6 (X3) is '//short_real(z(i))//', off the plane', &
-                        '0.0: scenes lie in the x-y plane', found)
+                        '0.0: models lie in the x-y plane', found)
         end do
       end associate
     end associate
@@ -64,7 +64,7 @@ contains
 
   contains
 
-    !> The elements of a table.
+    !> Read the elements of a table.
     subroutine read_elements(card)
       integer, intent(in) :: card
       integer :: k, n
@@ -80,7 +80,7 @@ contains
         do k = 1, n
           call resolve(deck, card, 2 + k, nodes, found, node(k, :))
         end do
-        ! In their order along the boundary
+        ! Reorder the nodes: corners first
         if (ring .and. n > 4) node = node([(k, k=1, n, 2), (k, k=2, n, 2)], :)
         call add_elements(data, table%entry%name, node, section)
       end associate
@@ -91,7 +91,7 @@ contains
   subroutine take_ids(deck, kinds, pairs, model)
     type(deck_type), intent(in) :: deck          !! its cards
     type(element_kind), intent(in) :: kinds(:)   !! of elements
-    integer, intent(in) :: pairs                 !! of CGAP, if they are not switched off
+    integer, intent(in) :: pairs                 !! number of CGAPs that are not switched off
     type(model_type), intent(inout) :: model     !! gets the ids
     integer, allocatable :: cards(:)
     integer :: i
@@ -107,22 +107,22 @@ contains
     model%contact%pair_id = nint(deck%card(card_cgap)%value(1, :pairs))
   end subroutine take_ids
 
-  !> A field is at fault.
+  !> Report an error in a field.
   subroutine refuse(deck, card, i, name, what, remedy, found)
     type(deck_type), intent(in) :: deck
     integer, intent(in) :: card, i
-    character(len=*), intent(in) :: name, what, remedy   !! of the field; is wrong; would be right
+    character(len=*), intent(in) :: name, what, remedy   !! field, fault and remedy
     type(findings), intent(inout) :: found
 
     call found%add_error(card, i, deck%card(card)%column(name), what, remedy)
   end subroutine refuse
 
-  !> One material a MAT1, with its curve.
+  !> Read one material for each MAT1, with its curve.
   subroutine read_materials(deck, found, material)
     type(deck_type), intent(in) :: deck
     type(findings), intent(inout) :: found
     type(material_card), allocatable, intent(inout) :: material(:)
-    integer, dimension(deck%card(card_mats1)%count) :: m, table    ! the MAT1, the TABLES1; 0: none
+    integer, dimension(deck%card(card_mats1)%count) :: m, table    ! the MAT1; the TABLES1, 0 if absent
     integer :: i
 
     associate (mat1 => deck%card(card_mat1), mats1 => deck%card(card_mats1))
@@ -139,7 +139,7 @@ contains
     end associate
   end subroutine read_materials
 
-  !> MAT1: E and NU from two of E, G, NU.
+  !> Read MAT1: E and NU from two of E, G, NU.
   subroutine read_elasticity(deck, i, found, material)
     type(deck_type), intent(in) :: deck
     integer, intent(in) :: i
@@ -172,7 +172,7 @@ contains
     end associate
   end subroutine read_elasticity
 
-  !> MATS1: the curve of its table, or the bilinear one of LIMIT1 and H.
+  !> Read MATS1: the curve of its table, or the bilinear curve of LIMIT1 and H.
   subroutine read_yielding(deck, i, table, material, found)
     type(deck_type), intent(in) :: deck
     integer, intent(in) :: i, table   !! the MATS1, the TABLES1
@@ -198,8 +198,8 @@ contains
     if (table > 0) call read_table(deck, i, table, material%young, material%curve, found)
   end subroutine read_yielding
 
-  !> TABLES1. Its yield stress is kept and its yield strain replaced by that over E, so that the elastic
-  !! part is MAT1's.
+  !> Read TABLES1. Its yield stress is kept; its yield strain is replaced by stress over E, so that the
+  !! elastic part is that of the MAT1.
   subroutine read_table(deck, i, t, young, curve, found)
     type(deck_type), intent(in) :: deck
     integer, intent(in) :: i, t   !! the MATS1, the TABLES1
@@ -230,7 +230,7 @@ contains
     end associate
   end subroutine read_table
 
-  !> PSHELL, then PSOLID.
+  !> Read PSHELL, then PSOLID.
   subroutine read_sections(deck, material, data, found)
     type(deck_type), intent(in) :: deck
     type(material_card), intent(in) :: material(:)
@@ -269,7 +269,7 @@ contains
     end associate
   end subroutine read_sections
 
-  !> Plane strain or plane stress of a PSHELL: it says plane strain, or PARAM PLANE chooses.
+  !> Choose plane strain or plane stress for a PSHELL: the card gives plane strain, or PARAM PLANE chooses.
   subroutine choose_kinematics(deck, i, kinematics, found)
     type(deck_type), intent(in) :: deck
     integer, intent(in) :: i
@@ -290,7 +290,7 @@ contains
     end associate
   end subroutine choose_kinematics
 
-  !> The cards of elements, in the order in which they are read: those that the table of elements names.
+  !> Tables of element cards in the order of reading: those in the table of element types.
   pure function element_cards(deck, kinds) result(cards)
     type(deck_type), intent(in) :: deck         !! its cards
     type(element_kind), intent(in) :: kinds(:)  !! of elements

@@ -1,5 +1,5 @@
-!> Ids of cards: unique in their space, found where other cards name them; and which set of supports or loads
-!> is used.
+!> Ids of cards: unique among cards that share ids, and resolved on cards that name them; and the used sets of
+!> supports or loads.
 module epcont_build_reference
   use epcont_base_sorting, only: id_index, new_id_index, sorted_order
   use epcont_base_text, only: text_of
@@ -14,25 +14,25 @@ module epcont_build_reference
   public :: card_index, index_of, check_combinations, check_unique, resolve, chosen_sets
   public :: check_choices, named_node, nodes_of_fields, nodes_of_lists, note_unnamed, note_unused
 
-  !> The ids that fields may name, and what they are of.
+  !> The ids that fields may name, and their type.
   type, extends(id_index) :: card_index
     character(len=8) :: noun = ''    !! GRID, or `element`
-    logical :: whole = .true.        !! what is not found is not there; else it may be what was not read
+    logical :: whole = .true.        !! false if cards with errors may have other ids
   end type card_index
 
-  !> A node that a card names, with some of its freedoms.
+  !> A node that a card names, with some of its DOFs.
   type :: named_node
     integer :: card(3) = 0   !! table, card, field or item of its list that names the node
-    integer :: node = 0      !! which
-    integer :: digits = 0    !! the field that names the freedoms
+    integer :: node = 0      !! its index
+    integer :: digits = 0    !! field that names the DOFs
   end type named_node
 
 contains
 
-  !> The ids in the first fields of all sound cards of a table; of all BLSEGs, which need not be whole.
+  !> Ids in the first fields of all correct cards of a table; of all BLSEGs, also those with errors.
   pure type(card_index) function index_of(deck, card) result(index)
     type(deck_type), intent(in) :: deck   !! its cards
-    integer, intent(in) :: card           !! which table
+    integer, intent(in) :: card           !! table
 
     associate (table => deck%card(card))
       index = card_index(new_id_index(merge(int(table%value(1, :)), -1, &
@@ -41,11 +41,11 @@ contains
     end associate
   end function index_of
 
-  !> Each id stands once in the first fields of these tables, which share one id space.
+  !> Check that each id is used once in the first fields of these tables, which share their ids.
   pure subroutine check_unique(deck, cards, found)
     type(deck_type), intent(in) :: deck      !! its cards
-    integer, intent(in) :: cards(:)          !! which tables
-    type(findings), intent(inout) :: found   !! what is wrong with it is added
+    integer, intent(in) :: cards(:)          !! tables
+    type(findings), intent(inout) :: found   !! errors are added
     integer, allocatable :: id(:), order(:), row(:), table(:)
     integer :: c, earlier, i, k
 
@@ -62,14 +62,14 @@ contains
     end do
   end subroutine check_unique
 
-  !> Positions of what a field of each card names; 0 where there is no such thing, or where nothing is named.
-  !! The former is a fault, but for the id 0, the basic system, and where others are at fault.
+  !> Find the positions that a field of each card names; 0 if the id does not exist or the field is blank.
+  !! The former is an error, except for id 0, the basic system, and if unread cards may have the id.
   subroutine resolve(deck, card, column, index, found, position)
     type(deck_type), intent(in) :: deck      !! its cards
-    integer, intent(in) :: card              !! which table
+    integer, intent(in) :: card              !! table
     integer, intent(in) :: column            !! the field that holds the id
-    type(card_index), intent(in) :: index    !! of what may be meant
-    type(findings), intent(inout) :: found   !! what is wrong with it is added
+    type(card_index), intent(in) :: index    !! ids that may be named
+    type(findings), intent(inout) :: found   !! errors are added
     integer, intent(out) :: position(:)      !! [cards]
     integer :: i, id
 
@@ -82,7 +82,7 @@ contains
       !$omp end parallel do
       do i = 1, table%count
         if (position(i) > 0) cycle
-        if (.not. table%given(column, i)) cycle   ! the reader has said so where it must be
+        if (.not. table%given(column, i)) cycle   ! the reader has reported required fields
         id = int(table%value(column, i))
         if (id == 0 .or. .not. (table%sound(i) .and. index%whole)) cycle
         call found%add_error(card, i, column, ': '//table%entry%field_text(column)//': there is no '// &
@@ -92,16 +92,16 @@ contains
     end associate
   end subroutine resolve
 
-  !> The set that SPC =, MPC = or LOAD = names in each load case; where none does, the only set there is, of
-  !! loads if the deck has no more than one case.
+  !> Find the set that SPC =, MPC = or LOAD = names in each load case. Without a choice, the only set is used;
+  !! a set of loads only if the deck has at most one case.
   pure subroutine chosen_sets(deck, cards, choice, word, found, set)
     type(deck_type), intent(in) :: deck      !! its cards
     integer, intent(in) :: cards(:)          !! tables whose first field is the set
     type(set_choice), intent(in) :: choice(:)   !! [cases]
     character(len=*), intent(in) :: word     !! SPC, MPC or LOAD
-    type(findings), intent(inout) :: found   !! what is wrong with it is added
-    integer, intent(out) :: set(:)           !! 0: there is none [cases]
-    integer, allocatable :: id(:), row(:), table(:)   ! of all cards, as far as they are given
+    type(findings), intent(inout) :: found   !! errors are added
+    integer, intent(out) :: set(:)           !! 0 if absent [cases]
+    integer, allocatable :: id(:), row(:), table(:)   ! of all cards whose set is given
     integer :: c, i
 
     id = [(nint(deck%card(cards(c))%value(1, :)), c=1, size(cards))]
@@ -124,13 +124,13 @@ contains
                          'the set of the cards in the deck', found)
   end subroutine chosen_sets
 
-  !> Report each choice of case control that no card has, once.
+  !> Report once each choice of case control that no card matches.
   pure subroutine check_choices(deck, choice, ids, word, what, remedy, found)
     type(deck_type), intent(in) :: deck            !! its cards
     type(set_choice), intent(in) :: choice(:)      !! of the load cases
     integer, intent(in) :: ids(:)                  !! of the cards
-    character(len=*), intent(in) :: word           !! of case control: SPC
-    character(len=*), intent(in) :: what, remedy   !! is wrong; would be right
+    character(len=*), intent(in) :: word           !! word of case control: SPC
+    character(len=*), intent(in) :: what, remedy   !! fault and remedy
     type(findings), intent(inout) :: found         !! errors are added
     integer :: k
 
@@ -141,16 +141,16 @@ contains
     end do
   end subroutine check_choices
 
-  !> Check the cards that combine sets under one id, LOAD or MPCADD. Their id is not that of a set, and the
-  !! sets exist: they are those of other cards.
+  !> Check the cards that combine sets under one id, LOAD or MPCADD: their id must not be that of a set, and
+  !! their sets must exist on other cards.
   subroutine check_combinations(deck, card, members, noun, remedy, found)
     type(deck_type), intent(in) :: deck           !! its cards
-    integer, intent(in) :: card                   !! table of those that combine
+    integer, intent(in) :: card                   !! table of the combining cards
     integer, intent(in) :: members(:)             !! tables of the cards in the sets
-    character(len=*), intent(in) :: noun, remedy  !! the sets are of these; cards that they hold
-    type(findings), intent(inout) :: found        !! what is wrong is added
+    character(len=*), intent(in) :: noun, remedy  !! name of the sets; cards that they contain
+    type(findings), intent(inout) :: found        !! errors are added
     character(len=:), allocatable :: what
-    integer, allocatable :: id(:)                 ! of the sets
+    integer, allocatable :: id(:)                 ! ids of the sets
     integer :: i, item, set
 
     id = [(nint(deck%card(members(i))%value(1, :)), i=1, size(members))]
@@ -171,7 +171,7 @@ contains
     end associate
   end subroutine check_combinations
 
-  !> The set that an item of the list of LOAD or MPCADD names: behind its factor, or alone.
+  !> Set of an item of the list of LOAD or MPCADD: after its factor, or alone.
   pure integer function member_of(item) result(set)
     type(list_item), intent(in) :: item
 
@@ -182,7 +182,7 @@ contains
   !> Note the cards that no other card names.
   pure subroutine note_unnamed(deck, card, column, names, by, found)
     type(deck_type), intent(in) :: deck       !! its cards
-    integer, intent(in) :: card, column       !! table of those that may be named, and field of their ids
+    integer, intent(in) :: card, column       !! table of cards that may be named, and column of their ids
     integer, intent(in) :: names(:)           !! ids in the fields that name them
     character(len=*), intent(in) :: by        !! cards with these fields
     type(findings), intent(inout) :: found    !! notes are added
@@ -199,12 +199,12 @@ contains
     end associate
   end subroutine note_unnamed
 
-  !> A note for each card whose set no load case uses.
+  !> Note each card whose set no load case uses.
   pure subroutine note_unused(deck, cards, used, found)
     type(deck_type), intent(in) :: deck      !! its cards
     integer, intent(in) :: cards(:)          !! tables whose first field is the set
     integer, intent(in) :: used(:)           !! ids of sets
-    type(findings), intent(inout) :: found   !! what is noted is added
+    type(findings), intent(inout) :: found   !! notes are added
     integer :: c, i
 
     do c = 1, size(cards)
@@ -216,10 +216,10 @@ contains
       end associate
     end do
   end subroutine note_unused
-  !> SPC and SUPORT: nodes, each with its directions in the next field.
+  !> Read SPC and SUPORT: nodes, each with its directions in the next field.
   function nodes_of_fields(deck, card, columns, nodes, found) result(named)
     type(deck_type), intent(in) :: deck
-    integer, intent(in) :: card, columns(:)   !! which table, the fields of its nodes
+    integer, intent(in) :: card, columns(:)   !! table, fields of its nodes
     type(card_index), intent(in) :: nodes
     type(findings), intent(inout) :: found
     type(named_node), allocatable :: named(:)
@@ -235,10 +235,10 @@ contains
     named = pack(named, named%node > 0)
   end function nodes_of_fields
 
-  !> SPC1 and RBE2: directions, then a list of nodes. Of a range some may be missing.
+  !> Read SPC1 and RBE2: directions, then a list of nodes. Nodes of a range may be missing.
   function nodes_of_lists(deck, card, nodes, found) result(named)
     type(deck_type), intent(in) :: deck
-    integer, intent(in) :: card   !! which table
+    integer, intent(in) :: card   !! table
     type(card_index), intent(in) :: nodes
     type(findings), intent(inout) :: found
     type(named_node), allocatable :: named(:)
@@ -252,7 +252,7 @@ contains
         do item = table%list_start(i), table%list_start(i + 1) - 1
           node = nodes%within(table%list(item)%from, table%list(item)%to)
           if (size(node) == 0 .and. nodes%whole) call refuse(i, item)
-          do while (last + size(node) > size(named))   ! room doubles
+          do while (last + size(node) > size(named))   ! doubled if too small
             named = [named, named]
           end do
           do k = 1, size(node)
@@ -266,7 +266,7 @@ contains
 
   contains
 
-    !> There is none of these nodes.
+    !> Report that these nodes do not exist.
     subroutine refuse(i, item)
       integer, intent(in) :: i, item
       character(len=:), allocatable :: ids

@@ -1,4 +1,4 @@
-!> Supports, ties and reference freedoms from GRID PS, SPC, SPC1, RBE2 and SUPORT.
+!> Supports, ties and SUPORT DOFs from GRID PS, SPC, SPC1, RBE2 and SUPORT.
 module epcont_build_supports
   use epcont_base_kinds, only: wp
   use epcont_build_reference, only: card_index, named_node, nodes_of_fields, nodes_of_lists, resolve
@@ -15,17 +15,17 @@ module epcont_build_supports
 
 contains
 
-  !> The DOFs that the supports of each load case fix. Cases with the same ones and the same contacts are a
+  !> Find the DOFs that the supports of each load case fix. Cases with the same supports and contacts form a
   !! pattern; the data get the supports of one pattern.
   subroutine read_supports(deck, nodes, pattern, data, cases, idle, found)
     type(deck_type), intent(in) :: deck         !! its cards
     type(card_index), intent(in) :: nodes       !! ids of GRID
     integer, intent(in) :: pattern              !! whose supports the data get
-    type(scene_type), intent(inout) :: data     !! with the leaders that rotate; gets the supports
+    type(scene_type), intent(inout) :: data     !! with the rotating master nodes; gets the supports
     type(load_cases), intent(inout) :: cases    !! get their patterns
     !> Fixed in this pattern, but not in all: a SUPORT DOF has no effect [angle, nodes]
     logical, allocatable, intent(out) :: idle(:, :)
-    type(findings), intent(inout) :: found      !! what is wrong is added
+    type(findings), intent(inout) :: found      !! errors are added
     logical, allocatable :: held(:, :, :)       ! by each pattern [angle, nodes, patterns]
     logical, allocatable :: now(:, :)           ! by a load case [angle, nodes]
     integer, allocatable :: first(:)            ! case of each pattern
@@ -57,14 +57,14 @@ contains
     data%platen%held = now(angle, data%platen%leader)
   end subroutine read_supports
 
-  !> The DOFs that GRID PS and a set of supports fix.
+  !> Find the DOFs that GRID PS and a set of supports fix.
   subroutine find_held(deck, nodes, set, data, held, moved, found)
     type(deck_type), intent(in) :: deck
     type(card_index), intent(in) :: nodes
-    integer, intent(in) :: set                 !! of SPC and SPC1; 0: none
-    type(scene_type), intent(in) :: data       !! which leaders rotate
+    integer, intent(in) :: set                 !! of SPC and SPC1, 0 if absent
+    type(scene_type), intent(in) :: data       !! with the rotating master nodes
     logical, allocatable, intent(out) :: held(:, :)   !! [angle, nodes]
-    type(set_displacement), allocatable, intent(inout) :: moved(:)   !! those that are not 0 are added
+    type(set_displacement), allocatable, intent(inout) :: moved(:)   !! displacements other than 0 are added
     type(findings), intent(inout) :: found
     type(named_node), allocatable :: named(:)
     real(wp), allocatable :: prescribed(:, :)  ! as `held` [length]
@@ -92,7 +92,7 @@ contains
 
   contains
 
-    !> Fix the DOFs of a node that a card names. Of those with another displacement already one is reported.
+    !> Fix the DOFs of a node that a card names. If one has another displacement already, that is reported.
     subroutine hold(named)
       type(named_node), intent(in) :: named
       integer :: c, conflict
@@ -114,7 +114,7 @@ contains
         end do
         if (conflict > 0) call found%add_error( &
           card(1), card(2), card(3), ': '//direction_text(deck, conflict, node)// &
-          ' is held at another displacement already', 'one displacement for each freedom')
+          ' is held at another displacement already', 'give one displacement for each DOF')
       end associate
     end subroutine hold
   end subroutine find_held
@@ -126,9 +126,9 @@ contains
     type(scene_type), intent(in) :: data
     type(load_cases), intent(in) :: cases
     logical, intent(in) :: held(:, :, :)      !! DOFs that are fixed, by direction or `angle`, node, pattern
-    type(findings), intent(inout) :: found    !! what is wrong is added
+    type(findings), intent(inout) :: found    !! errors are added
     logical :: reported(size(cases%moved))
-    integer, allocatable :: before(:, :)      ! first displacement that each DOF has; 0: none
+    integer, allocatable :: before(:, :)      ! first displacement that each DOF has, 0 if absent
     integer :: i, k, node
 
     reported = .false.
@@ -168,12 +168,12 @@ contains
     end subroutine refuse
   end subroutine check_displacements
 
-  !> RBE2: ties, and followers of the leaders that rotate.
+  !> Read RBE2: ties, and dependent nodes of rotating master nodes.
   subroutine read_ties(deck, nodes, data, found)
     type(deck_type), intent(in) :: deck        !! its cards
     type(card_index), intent(in) :: nodes      !! ids of GRID
-    type(scene_type), intent(inout) :: data    !! gets the ties and followers
-    type(findings), intent(inout) :: found     !! what is wrong is added
+    type(scene_type), intent(inout) :: data    !! gets the ties and dependent nodes
+    type(findings), intent(inout) :: found     !! errors are added
     type(named_node), allocatable :: named(:)
     integer :: c, i, last, leader(deck%card(card_rbe2)%count), platen
 
@@ -204,7 +204,7 @@ contains
 
   contains
 
-    !> An RBE2 ties direction 1 or 2; if its leader rotates, both.
+    !> Check that an RBE2 ties direction 1 or 2; if its master node rotates, both.
     subroutine check_ties()
       logical :: tied(directions)
       integer :: i
@@ -223,13 +223,13 @@ contains
     end subroutine check_ties
   end subroutine read_ties
 
-  !> SUPORT.
+  !> Read SUPORT.
   subroutine read_references(deck, nodes, idle, data, found)
     type(deck_type), intent(in) :: deck        !! its cards
     type(card_index), intent(in) :: nodes      !! ids of GRID
-    logical, intent(in) :: idle(:, :)          !! DOFs that have no effect, being fixed [angle, nodes]
+    logical, intent(in) :: idle(:, :)          !! DOFs that are fixed and have no effect [angle, nodes]
     type(scene_type), intent(inout) :: data    !! gets the SUPORT DOFs
-    type(findings), intent(inout) :: found     !! what is wrong is added
+    type(findings), intent(inout) :: found     !! errors are added
     type(named_node), allocatable :: named(:)
     integer :: at, c, i
 

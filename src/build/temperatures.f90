@@ -1,4 +1,4 @@
-!> Temperatures of the nodes from TEMP and TEMPD, in the sets that load cases choose.
+!> Temperatures of the nodes from TEMP and TEMPD, for the sets that load cases choose.
 module epcont_build_temperatures
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of
@@ -14,16 +14,16 @@ module epcont_build_temperatures
 
 contains
 
-  !> The temperatures of each set that is chosen, which all nodes must have whose elements expand.
+  !> Read the temperatures of each chosen set. All nodes of elements that expand must have one.
   subroutine read_temperatures(deck, nodes, data, cases, found)
     type(deck_type), intent(in) :: deck          !! its cards
     type(card_index), intent(in) :: nodes        !! ids of GRID
     type(scene_type), intent(in) :: data         !! elements and sections
     type(load_cases), intent(inout) :: cases     !! sets of temperatures are added
-    type(findings), intent(inout) :: found       !! what is wrong with it is added
-    integer :: node(deck%card(card_temp)%count, 3)   ! that a TEMP names
-    integer :: named_by(2, deck%card(card_grid)%count)   ! TEMP card and field that name a node; 0: none
-    integer :: default_by                 ! TEMPD of all others; 0: none
+    type(findings), intent(inout) :: found       !! errors are added
+    integer :: node(deck%card(card_temp)%count, 3)   ! nodes that a TEMP names
+    integer :: named_by(2, deck%card(card_grid)%count)   ! TEMP card and field that name a node, 0 if absent
+    integer :: default_by                 ! TEMPD of all other nodes, 0 if absent
     integer :: k
 
     do k = 1, size(node, 2)
@@ -46,9 +46,9 @@ contains
 
   contains
 
-    !> Which load case has which set, and all of these.
+    !> Find the set of each load case, and the list of all chosen sets.
     subroutine choose_sets()
-      logical :: is_first(size(deck%subcase))   ! case that has its set
+      logical :: is_first(size(deck%subcase))   ! first case with this set
       integer :: i
 
       associate (set => cases%case%temperatures)
@@ -59,7 +59,7 @@ contains
       end associate
     end subroutine choose_sets
 
-    !> TEMPD.
+    !> Read TEMPD.
     subroutine read_default(set, temperature)
       integer, intent(in) :: set
       real(wp), allocatable, intent(out) :: temperature(:)
@@ -77,7 +77,7 @@ contains
       end associate
     end subroutine read_default
 
-    !> TEMP.
+    !> Read TEMP.
     subroutine read_nodes(set, temperature)
       integer, intent(in) :: set
       real(wp), intent(inout) :: temperature(:)
@@ -95,10 +95,10 @@ contains
       end do
     end subroutine read_nodes
 
-    !> What a card says, once, of nodes.
+    !> Take the temperature of a card for its nodes; a second one is an error.
     subroutine take(card, i, column, by, temperature)
-      integer, intent(in) :: card, i, column   !! it, and the field before the temperature
-      integer, intent(inout) :: by             !! the card that has said so of them before
+      integer, intent(in) :: card, i, column   !! the card, and the field before the temperature
+      integer, intent(inout) :: by             !! an earlier card with these nodes
       real(wp), intent(inout) :: temperature(:)
 
       associate (said => deck%card(card)%value(column + 1, i))
@@ -111,7 +111,7 @@ contains
     end subroutine take
   end subroutine read_temperatures
 
-  !> Nodes of elements that expand have temperatures, and those alone.
+  !> Check that exactly the nodes of elements that expand have temperatures.
   subroutine check_nodes(deck, data, named_by, default_by, set, found)
     type(deck_type), intent(in) :: deck
     type(scene_type), intent(in) :: data
@@ -128,7 +128,7 @@ contains
       'TEMP or TEMPD')
     if (default_by > 0 .and. .not. any(unnamed) .and. any(expands)) &
       call found%add_note(card_tempd, default_by, 1, ': all nodes have a TEMP in set '//text_of(set))
-    if (found%errors > 0) return   ! it may be what could not be read
+    if (found%errors > 0) return   ! a wrong card may have it
     vain = named_by(1, :) > 0 .and. .not. expands
     k = findloc(vain, .true., dim=1)
     if (k > 0) then
@@ -140,7 +140,7 @@ contains
     end if
   end subroutine check_nodes
 
-  !> Which nodes have elements whose material expands? [nodes]
+  !> Find the nodes with elements whose material expands [nodes].
   pure function expanding_nodes(data) result(expands)
     type(scene_type), intent(in) :: data
     logical :: expands(size(data%x, 2))
@@ -157,7 +157,7 @@ contains
     end do
   end function expanding_nodes
 
-  !> A note of each set that no load case chooses.
+  !> Note each set that no load case chooses.
   pure subroutine note_unused(deck, used, found)
     type(deck_type), intent(in) :: deck       !! its cards
     integer, intent(in) :: used(:)            !! ids of sets

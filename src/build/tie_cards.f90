@@ -1,5 +1,5 @@
-!> What ties freedoms to each other, beside the nodes that RBE2 leads: which of its leaders turn, and with
-!> which moments (MOMENT); equations (MPC, MPCADD); springs (CELAS1, CELAS2, PELAS).
+!> Dependent DOFs beside those of RBE2: rotating master nodes and their
+!> moments (MOMENT); equations (MPC, MPCADD); springs (CELAS1, CELAS2, PELAS).
 module epcont_build_tie_cards
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: id_index, new_id_index
@@ -17,10 +17,10 @@ module epcont_build_tie_cards
   public :: check_directions, direction_text, dof_node, find_moments, find_platens, names, &
     read_equations, read_springs
 
-  !> The digits of both displacements and of the rotation about z.
+  !> Digits of both displacements and of the rotation about z.
   integer, parameter, public :: digit(angle) = [1, 2, 6]
 
-  character(len=*), parameter :: in_plane = ': scenes lie in the x-y plane'
+  character(len=*), parameter :: in_plane = ': models lie in the x-y plane'
 
 contains
 
@@ -32,16 +32,16 @@ contains
     names = any(mod(nint(digits)/10**[0, 1, 2, 3, 4, 5], 10) == c)
   end function names
 
-  !> The node of a DOF; of the rotation, the number of the platen that it leads; 0 if there is no such DOF.
+  !> Node of a DOF; of a rotation, the number of its platen; 0 if there is no such DOF.
   pure integer function dof_node(data, c, node)
-    type(scene_type), intent(in) :: data   !! which leaders rotate
+    type(scene_type), intent(in) :: data   !! with the rotating master nodes
     integer, intent(in) :: c, node         !! direction, or `angle`; and node
 
     dof_node = node
     if (c == angle) dof_node = findloc(data%platen%leader, node, dim=1)
   end function dof_node
 
-  !> A DOF of a node as messages name it: `direction 1 of GRID 17`.
+  !> Text of a DOF for messages: `direction 1 of GRID 17`.
   pure function direction_text(deck, c, node) result(text)
     type(deck_type), intent(in) :: deck   !! its cards
     integer, intent(in) :: c, node        !! direction, or `angle`; and node
@@ -50,11 +50,11 @@ contains
     text = 'direction '//text_of(digit(c))//' of '//deck%card(card_grid)%identity(node)
   end function direction_text
 
-  !> Report a direction that a field names and the node does not have: 3 to 5, and 6 unless it leads an RBE2
-  !! that rotates.
+  !> Report a direction that a field names and the node lacks: 3 to 5, and 6 unless the node is a rotating
+  !! RBE2 master.
   subroutine check_directions(deck, data, node, digits, card, found)
     type(deck_type), intent(in) :: deck       !! its cards
-    type(scene_type), intent(in) :: data      !! which leaders turn
+    type(scene_type), intent(in) :: data      !! with the rotating master nodes
     integer, intent(in) :: node
     real(wp), intent(in) :: digits            !! of the field
     integer, intent(in) :: card(3)            !! table, card, field of the directions
@@ -69,20 +69,20 @@ contains
     end do
   end subroutine check_directions
 
-  !> Leaders of RBE2 that turn: a SUPORT, a displacement or a MOMENT of sets that are used names their turn.
-  !! Others are held.
+  !> Find rotating RBE2 master nodes: a SUPORT, a displacement or a MOMENT in a used set names their rotation.
+  !! The rotation of the others is fixed.
   subroutine find_platens(deck, nodes, supports, loads, data, found)
     type(deck_type), intent(in) :: deck           !! its cards
     type(card_index), intent(in) :: nodes         !! ids of GRID
     integer, intent(in) :: supports(:), loads(:)  !! ids of the sets that are used
-    type(scene_type), intent(inout) :: data       !! gets the leaders
-    type(findings), intent(inout) :: found        !! gets the origins of these
-    type(findings) :: unheard   ! is told where the cards are read
+    type(scene_type), intent(inout) :: data       !! gets the master nodes
+    type(findings), intent(inout) :: found        !! gets the cards of these nodes
+    type(findings) :: unheard   ! reported later, when these cards are read
     type(named_node), allocatable :: named(:)
     logical :: rotates(deck%card(card_grid)%count)
-    logical, allocatable :: turns(:)   ! the first RBE2 of each leader that does
+    logical, allocatable :: turns(:)   ! first RBE2 of each rotating master node
     integer :: i, k, leader(deck%card(card_rbe2)%count)
-    integer, allocatable :: row(:)     ! these
+    integer, allocatable :: row(:)     ! indices of these RBE2
 
     rotates = .false.
     named = [nodes_of_fields(deck, card_suport, [1, 3, 5, 7], nodes, unheard), &
@@ -116,14 +116,14 @@ contains
     end do
   end subroutine find_platens
 
-  !> MOMENT, about z.
+  !> Read MOMENT, about z.
   subroutine find_moments(deck, nodes, loads, data, moment, found)
     type(deck_type), intent(in) :: deck        !! its cards
     type(card_index), intent(in) :: nodes      !! ids of GRID
     integer, intent(in) :: loads(:)            !! ids of the sets that are used
-    type(scene_type), intent(in) :: data       !! which leaders turn
+    type(scene_type), intent(in) :: data       !! with the rotating master nodes
     type(set_moment), allocatable, intent(out) :: moment(:)
-    type(findings), intent(inout) :: found     !! what is wrong is added
+    type(findings), intent(inout) :: found     !! errors are added
     integer :: i, node(deck%card(card_moment)%count), platen
 
     call resolve(deck, card_moment, 2, nodes, found, node)
@@ -150,12 +150,12 @@ contains
     end associate
   end subroutine find_moments
 
-  !> MPC of the set that is chosen, which MPCADD may make of others.
+  !> Read MPC of the chosen set, which an MPCADD may combine from others.
   subroutine read_equations(deck, nodes, data, found)
     type(deck_type), intent(in) :: deck        !! its cards
     type(card_index), intent(in) :: nodes      !! ids of GRID
     type(scene_type), intent(inout) :: data    !! gets the equations
-    type(findings), intent(inout) :: found     !! what is wrong is added
+    type(findings), intent(inout) :: found     !! errors are added
     integer :: i, k, set(size(deck%subcase))
     integer, allocatable :: card(:), sets(:)
     logical :: sound
@@ -191,7 +191,7 @@ contains
 
   contains
 
-    !> Terms of a card; those times 0.0 are none, but for the first.
+    !> Read the terms of a card. Terms with the coefficient 0.0 are skipped, except the first.
     subroutine read_equation(card, equation, sound)
       integer, intent(in) :: card
       type(linear_equation), intent(out) :: equation
@@ -224,12 +224,12 @@ contains
     end subroutine read_equation
   end subroutine read_equations
 
-  !> CELAS1 with PELAS, CELAS2.
+  !> Read CELAS1 with PELAS, and CELAS2.
   subroutine read_springs(deck, nodes, data, found)
     type(deck_type), intent(in) :: deck        !! its cards
     type(card_index), intent(in) :: nodes      !! ids of GRID
     type(scene_type), intent(inout) :: data    !! gets the springs
-    type(findings), intent(inout) :: found     !! what is wrong is added
+    type(findings), intent(inout) :: found     !! errors are added
     type(id_index) :: properties
     real(wp), allocatable :: stiffness(:)      ! of the properties
     integer :: i
@@ -244,7 +244,7 @@ contains
 
   contains
 
-    !> A card may have two properties: each has an id of its own.
+    !> Check properties. A card may have two, each with its own id.
     subroutine check_properties(cards)
       integer, intent(in) :: cards
       integer :: at
@@ -261,7 +261,7 @@ contains
       end do
     end subroutine check_properties
 
-    !> The cards of one kind. A spring is left out if a node was not found.
+    !> Read the cards of one type. A spring is left out if a node was not found.
     subroutine read_table(card)
       integer, intent(in) :: card
       integer, parameter :: first = 3   ! column of nodes and directions
