@@ -1,9 +1,9 @@
-!> Pairs of lines that make no moment where there is none: force and counterforce lie on one line, and in
+!> Removes moments that pairs of lines would have by error: force and counterforce lie on one line, and in
 !> round contact all these lines meet in one point.
 !>
-!> A pin turns freely in its hole. Where normals miss the centre by what the digits of a deck leave, or the
-!> master's share in a gap lies beside the node by what chords make of a circle, contact would hold that turn
-!> by levers of nothing, and the pin would turn until it comes loose.
+!> A pin turns freely in its hole. If normals miss the centre by the rounding of a deck, or the master weights
+!> are centred beside the node because chords replace a circle, contact would resist that rotation with
+!> tiny lever arms, and the pin would rotate until it comes loose.
 module epcont_contact_geometry_balance
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: coincident, rounded_off
@@ -14,16 +14,16 @@ module epcont_contact_geometry_balance
   private
   public :: balance_pairs
 
-  !> Normals have a centre where they turn by 20 degrees at least: the variance of their directions then.
+  !> Normals have a centre if they turn by at least 20 degrees: variance of their directions at this angle.
   real(wp), parameter :: least_turn = 0.01_wp
 
 contains
 
-  !> Balance the pairs of lines, but for nodes where a line of symmetry may cut a body: what lies beyond it
-  !! balances these. Contacts whose centres lie at one place, inside and outside of a ring, have one centre.
+  !> Balance the pairs of lines, except at nodes where a line of symmetry may cut a body: there the other half
+  !! balances them. Contacts with the same centre, inside and outside of a ring, share one centre.
   subroutine balance_pairs(model)
-    type(model_type), intent(inout) :: model   !! the scene, with all its pairs
-    real(wp) :: centre(2, size(model%contact%line_contact))   ! of those that are round [length]
+    type(model_type), intent(inout) :: model   !! the model, with all its pairs
+    real(wp) :: centre(2, size(model%contact%line_contact))   ! of round contacts [length]
     logical :: cut(model%mesh%nodes)
     integer :: c, centres, i, k
 
@@ -49,8 +49,8 @@ contains
 
   contains
 
-    !> Have the normals of a contact's pairs meet in one point, where those of the slave's nodes nearly do. A
-    !! slave that is round itself, in a round hollow, has its own normals, not the hollow's: it may turn.
+    !> Make the normals of a contact's pairs meet in one point, if those of the slave nodes nearly do. A slave
+    !! that is round itself, in a round hollow, keeps its own normals, as it may rotate.
     subroutine turn_normals(contact, pairs)
       type(line_contact), intent(in) :: contact
       integer, intent(in) :: pairs(:)
@@ -86,11 +86,11 @@ contains
       end do
     end subroutine turn_normals
 
-    !> The master's nodes share in a gap so that the counterforce lies on the line of the force: where they do
-    !! not, some of their weights go along the boundary from one to the other.
+    !> Shift master weights along the boundary so that the counterforce lies on the line of the
+    !! force.
     subroutine move_weights(pair)
       integer, intent(in) :: pair
-      real(wp), allocatable :: along(:), much(:)   ! of the master's nodes: places along the boundary; weights
+      real(wp), allocatable :: along(:), much(:)   ! of master nodes: positions on the boundary; weights
       real(wp) :: lever, width
       integer :: k
 
@@ -113,10 +113,10 @@ contains
     end subroutine move_weights
   end subroutine balance_pairs
 
-  !> The place where lines meet, but for what places on a line may differ by, and how far from there their own
-  !! places are at least; 0: they do not meet.
+  !> Point where lines meet, up to the position error of a line, and the least distance of the given points
+  !! from it; 0: they do not meet.
   pure subroutine find_centre(x, direction, centre, radius)
-    real(wp), intent(in) :: x(:, :), direction(:, :)   !! a place of each line [length] [2, lines]
+    real(wp), intent(in) :: x(:, :), direction(:, :)   !! a point on each line [length] [2, lines]
     real(wp), intent(out) :: centre(2), radius         !! [length]
     real(wp) :: across(2, size(x, 2)), matrix(2, 2), right(2), determinant
 
@@ -133,7 +133,7 @@ contains
 
   contains
 
-    !> How far the lines pass by a place.
+    !> Distances of the lines from a point.
     pure function levers_about(place) result(lever)
       real(wp), intent(in) :: place(2)
       real(wp) :: lever(size(x, 2))

@@ -1,4 +1,4 @@
-!> Model data, from cards or from the arrays of a caller, checked and made a model that can be solved. Nodes,
+!> Checks model data, from cards or from arrays of a caller, and makes a model that can be solved. Nodes,
 !> elements and pairs are known by their columns.
 module epcont_contact_geometry_complete
   use epcont_base_kinds, only: wp
@@ -27,11 +27,11 @@ module epcont_contact_geometry_complete
 
 contains
 
-  !> Make a model from the arrays of a caller; without errors it can be solved.
+  !> Make a model from the arrays of a caller; it can be solved if there are no errors.
   subroutine complete_arrays(given, model, found)
     type(scene_type), intent(in) :: given      !! model data
     type(model_type), intent(out) :: model     !! made from them
-    type(findings), intent(out) :: found       !! all that is wrong with it, or looks so
+    type(findings), intent(out) :: found       !! all errors and warnings
     type(load_cases) :: cases
     type(scene_type) :: data
 
@@ -39,14 +39,14 @@ contains
     if (found%errors == 0) call complete_model(data, cases, 1, model, found)
   end subroutine complete_arrays
 
-  !> Check model data and make them a model; without errors it can be solved. References of model data that
-  !! have errors already may be 0: the object was not found, which has been reported.
+  !> Check model data and make the model; it can be solved if there are no errors. If the data have errors
+  !! already, their references may be 0: the object was not found, which has been reported.
   subroutine complete_model(data, cases, case, model, found)
-    type(scene_type), intent(inout) :: data    !! its arrays are taken
+    type(scene_type), intent(inout) :: data    !! its arrays are moved
     type(load_cases), intent(in) :: cases      !! of the model
-    integer, intent(in) :: case                !! load case that it gets
+    integer, intent(in) :: case                !! load case of the model
     type(model_type), intent(inout) :: model   !! has ids, if they are not positions
-    type(findings), intent(inout) :: found     !! all that is wrong with it, or looks so
+    type(findings), intent(inout) :: found     !! all errors and warnings are added
     type(outline_shape) :: drawn
 
     if (found%errors == 0) then
@@ -57,8 +57,8 @@ contains
     call complete_elements(model, found)
     call complete_freedoms(data%tie, model, found)
     call check_axis(model, found)
-    ! What iterations of a mesher leave of zero. Sides are longer by far, but what it makes of gaps would load
-    ! the scene.
+    ! Remove rounding of a mesher near zero. Edges are longer by far, but gaps made of it would load
+    ! the model.
     where (abs(model%mesh%x) < least_cause) model%mesh%x = 0.0_wp
     call complete_pairs(model, found)
     call find_line_contacts(model, found)
@@ -73,7 +73,7 @@ contains
     call warn_of_lying_together(model, drawn, found)
   end subroutine complete_model
 
-  !> Complete ties, platens, SUPORT DOFs, equations and springs. Each is checked against those before it.
+  !> Complete ties, platens, SUPORT DOFs, equations and springs. Each is checked against the earlier ones.
   subroutine complete_freedoms(tie, model, found)
     type(dof_tie), intent(in) :: tie(:)
     type(model_type), intent(inout) :: model
@@ -108,10 +108,10 @@ contains
     call check_spring_ends(model, found)
   end subroutine complete_freedoms
 
-  !> MUP PAPER is of the secant stiffness, and of plane strain. Flow theory has no secant.
+  !> Check that MUP PAPER has the secant stiffness and plane strain, and flow theory another method.
   pure subroutine check_controls(model, found)
-    type(model_type), intent(in) :: model   !! the scene
-    type(findings), intent(inout) :: found   !! what is wrong with it is added
+    type(model_type), intent(in) :: model   !! the model
+    type(findings), intent(inout) :: found   !! errors are added
     integer :: s
 
     if (model%controls%flow_theory) then

@@ -1,5 +1,5 @@
-!> What the nodes of lines in contact face, by geometry alone: each node of the slave's sides against the
-!> master, and in concave corners a second face of it.
+!> Projections of nodes of contact lines, by geometry alone: each node of the slave edges on the
+!> master, and in concave corners a second projection.
 module epcont_contact_geometry_faces
   use epcont_base_kinds, only: wp
   use epcont_geometry_boundary_line, only: boundary_line, facing_type
@@ -9,38 +9,38 @@ module epcont_contact_geometry_faces
   private
   public :: faces_type, find_faces, has_face, node_face
 
-  !> A node and what it faces.
+  !> A node and its projection.
   type, extends(facing_type) :: node_face
     integer :: node = 0
   end type node_face
 
-  !> What nodes of the slave face.
+  !> Projections of the slave nodes.
   type :: faces_type
-    type(node_face), allocatable :: row(:)   !! each of them a row [any]
-    !> Of the nodes of each side; 0: they face nothing [3, sides]
+    type(node_face), allocatable :: row(:)   !! one row for each projection [any]
+    !> Rows of the nodes of each edge; 0: no projection [3, edges]
     integer, allocatable :: row_of(:, :)
-    integer :: same_way = 0                  !! nodes near sides that look the same way only
+    integer :: same_way = 0                  !! nodes near edges whose normals have the same sense
   end type faces_type
 
 contains
 
-  !> Has a node a face whose normal is near another?
+  !> Has a node a projection with nearly the same normal?
   pure logical function has_face(faces, node, normal, least_cosine)
-    type(node_face), intent(in) :: faces(:)    !! of these nodes [any]
-    integer, intent(in) :: node                !! which one
-    real(wp), intent(in) :: normal(2)          !! the other
-    real(wp), intent(in) :: least_cosine       !! of the angle between near ones
+    type(node_face), intent(in) :: faces(:)    !! projections of these nodes [any]
+    integer, intent(in) :: node                !! index of the node
+    real(wp), intent(in) :: normal(2)          !! normal to compare with
+    real(wp), intent(in) :: least_cosine       !! cosine of the largest angle between them
 
     has_face = any(faces%node == node .and. &
                    faces%normal(1)*normal(1) + faces%normal(2)*normal(2) > least_cosine)
   end function has_face
 
-  !> What the nodes of the slave face of the master, in their order along its sides; then second faces, but
-  !! where the node has one like them: its other side faces the same.
+  !> Project the slave nodes on the master, in their order along the edges; then find second projections,
+  !! unless they have the normal of another projection of the node.
   subroutine find_faces(contact, obstacles, faces)
-    type(line_contact), intent(inout) :: contact    !! the contact of lines: nodes are left out of it
+    type(line_contact), intent(inout) :: contact    !! the contact; nodes left out are added
     type(boundary_line), intent(in) :: obstacles    !! the outlines of all bodies
-    type(faces_type), intent(out) :: faces          !! what they face
+    type(faces_type), intent(out) :: faces          !! the projections
     integer, parameter :: in_turn(3) = [1, 3, 2]    ! start, middle, end
     type(node_face), dimension(3*size(contact%slave%element)) :: first, second
     integer :: left_out(2, 3*size(contact%slave%element))
@@ -64,7 +64,7 @@ contains
 
   contains
 
-    !> What a node of a side faces, if that is not known from the side beside it.
+    !> Project a node of an edge, unless the neighbouring edge has done so.
     subroutine look_from_node(side, which)
       integer, intent(in) :: side, which
       type(facing_type) :: face(2)
@@ -75,7 +75,7 @@ contains
         neighbour = 0
         if (which < 3) neighbour = slave%neighbour(which, side)
         if (neighbour > 0) row = faces%row_of(3 - which, neighbour)
-        if (row > 0) then   ! where boundary and face are smooth, as looked at from there
+        if (row > 0) then   ! if boundary and master are smooth, use the neighbour's projection
           if (all(slave%normal(:, which, side) == slave%normal(:, 3 - which, neighbour)) .and. &
               all(second(:seconds)%node /= node)) return
         end if
@@ -91,9 +91,9 @@ contains
           left_out(:, left) = [side, which]
           return
         end if
-        ! Sides that meet in a hinge are not neighbours.
+        ! Edges that meet in a hinge are not neighbours.
         if (which < 3 .and. neighbour == 0) row = findloc(first(:rows)%node, node, dim=1)
-        if (row > 0) then   ! round a corner each side has a pair of its own
+        if (row > 0) then   ! around a corner, each edge has its own pair
           if (face(1)%cosine(first(row)) > same_face) return
         end if
         rows = rows + 1

@@ -1,4 +1,4 @@
-!> Finds the outlines of all bodies from the elements, and from nothing else.
+!> Outlines of all bodies, found from the elements alone.
 module epcont_contact_geometry_free_sides
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_geometry_outline_shape, only: outline_type
@@ -12,21 +12,21 @@ module epcont_contact_geometry_free_sides
 
 contains
 
-  !> The outlines of a scene: all sides that one element alone has, part by part, and in each the one behind
-  !! the other that begins where that ended.
+  !> Find the outlines of a model: all edges that belong to one element only, part by part, each followed by
+  !! the edge that begins at its end.
   function find_outline(model, found) result(outline)
-    type(model_type), intent(in) :: model    !! the scene
+    type(model_type), intent(in) :: model    !! the model
     type(findings), intent(inout) :: found   !! elements that overlap are added
     type(outline_type) :: outline
-    !> Free sides as they are found, and those before them: which one of which element
+    !> Free edges, and their predecessors: number of the edge, element
     integer, dimension(2, size(model%mesh%around%group)) :: free, former
-    !> The elements around a node; which of their corners it is, the next and the former one
+    !> Elements around a node; index of the node among their corners, and the next and the former corner
     integer, dimension(maxval(model%mesh%around%start(2:) - model%mesh%around%start(:model%mesh%nodes))) :: &
       element, own, next, last
-    !> Of the sides of each element; 0: not free
+    !> Numbers of the edges of each element; 0: not free
     integer :: number(maxval(model%mesh%kinds%corners), model%mesh%elements)
     integer, allocatable :: after(:), before(:), chain(:), order(:), place(:)
-    integer :: over(model%mesh%elements)   ! an element with a side of it the same way round; 0: there is none
+    integer :: over(model%mesh%elements)   ! an element with an edge in the same direction, 0 if absent
     type(incidence) :: by_part
     integer :: k, node, sides
 
@@ -38,8 +38,8 @@ contains
     end do
     call check_overlaps(model, over, found)
     before = [(number(former(1, k), former(2, k)), k=1, sides)]
-    ! Only where elements lie on each other, and share a side the same way round, is there none: it begins
-    ! anew.
+    ! If elements overlap and share an edge in the same direction, an edge may have no successor: it begins
+    ! a new chain.
     after = [(k, k=1, sides)]
     where (before == 0) before = after
     do k = 1, sides
@@ -63,8 +63,8 @@ contains
 
   contains
 
-    !> Free sides that begin at a node. The elements' sides to the next and from the former corner are
-    !! compared: a side is shared where it is met both ways; where it is met twice one way, elements overlap.
+    !> Find free edges that begin at a node. The elements' edges to the next and from the former corner are
+    !! compared: an inner edge occurs in both directions; if one direction occurs twice, elements overlap.
     subroutine look_around()
       integer :: corners, i, k, n
 
@@ -73,7 +73,7 @@ contains
         associate (e => model%mesh%around%group(i))
           corners = model%mesh%corners(e)
           k = place_of(node, model%mesh%connectivity(:corners, e))
-          if (k == 0) cycle   ! the middle of a side
+          if (k == 0) cycle   ! a mid-side node
           n = n + 1
           element(n) = e
           own(n) = k
@@ -94,7 +94,7 @@ contains
       end do
     end subroutine look_around
 
-    !> Parts: the bodies, but for RBE2, numbered as their first nodes come.
+    !> Find parts: bodies without the effect of RBE2, numbered by their first nodes.
     subroutine find_parts()
       integer, allocatable :: part(:), set(:)
       integer :: i, sets
@@ -116,7 +116,7 @@ contains
       end do
     end subroutine find_parts
 
-    !> The sides, each behind the one before it, as the first of them come.
+    !> List the edges, each after its predecessor, in the order of first edges.
     pure function chained() result(chain)
       integer :: chain(sides), k, n, s
       logical :: done(sides)
@@ -135,7 +135,7 @@ contains
     end function chained
   end function find_outline
 
-  !> Where in a list a node stands; 0: nowhere.
+  !> Position of a node in a list; 0 if absent.
   pure integer function place_of(node, list) result(k)
     integer, intent(in) :: node, list(:)
 
@@ -144,8 +144,8 @@ contains
     end do
   end function place_of
 
-  !> From the element whose side to the next corner is free, round the node to the one whose side from the
-  !! former is.
+  !> From the element whose edge to the next corner is free, go around the node to the element whose edge from
+  !! the former corner is free.
   pure integer function fan_end(from, to, first) result(last)
     integer, intent(in) :: from(:), to(:)
     integer, intent(in) :: first

@@ -1,5 +1,5 @@
-!> Contacts: bodies and their outlines, which couples of lines go together, and what there is to say of the
-!> pairs that come of them.
+!> Contacts of lines: bodies and their outlines, couples of lines that belong together, their pairs, and
+!> warnings about these.
 module epcont_contact_geometry_line_contacts
   use epcont_base_kinds, only: wp
   use epcont_base_partition, only: new_partition, partition
@@ -21,28 +21,28 @@ module epcont_contact_geometry_line_contacts
   public :: find_line_contacts
 
   real(wp), parameter :: &
-    !> Where nothing is said of it, a side is looked for within this many times the longest side of the two
+    !> Default search distance, in lengths of the longest edge of the two
     !! lines.
     default_search = 2.0_wp, &
-    !> If nothing is found, within this many times as much, again and again, until more than the scene is
-    !! looked through.
+    !> If nothing is found, the search distance is multiplied by this factor until it exceeds the size of the
+    !! model.
     widening = 4.0_wp
 
 contains
 
-  !> Bodies, their outlines, and the pairs of all contacts of lines behind those that are given one by one:
-  !! after elements, supports, ties and single pairs. Lines and couples are known by their nodes and lines;
-  !! where there were errors before, there is no boundary to look at, and these alone are checked.
+  !> Find bodies, their outlines, and the pairs of all contacts of lines, which follow the single pairs.
+  !! Elements, supports, ties and single pairs are complete. If there have been errors, there are no outlines,
+  !! and only lines and couples are checked.
   subroutine find_line_contacts(model, found)
-    type(model_type), intent(inout) :: model   !! the scene
-    type(findings), intent(inout) :: found   !! what is wrong with it is added
-    integer, allocatable :: number(:)   ! of the contact that each couple is of
+    type(model_type), intent(inout) :: model   !! the model
+    type(findings), intent(inout) :: found   !! errors are added
+    integer, allocatable :: number(:)   ! contact of each couple
     logical :: used(0:size(model%contact%line))
     type(line_contact) :: contact
     type(faces_type) :: faces
     integer :: c, contacts, i
 
-    if (found%errors == 0) then   ! only sound elements have outlines
+    if (found%errors == 0) then   ! only correct elements have outlines
       call join_nodes(model, .true., model%mesh%body, model%mesh%bodies)
       model%mesh%body_outline = find_outline(model, found)
     end if
@@ -71,8 +71,8 @@ contains
 
   contains
 
-    !> A line does not touch itself, and two lines touch once: of two contacts each would bear a part of the
-    !! forces.
+    !> Check a couple: a line does not touch itself, and two lines are in one contact only, since each
+    !! contact would carry a part of the forces.
     subroutine check_couple()
       integer :: k
 
@@ -99,7 +99,7 @@ contains
       end associate
     end subroutine check_couple
 
-    !> Do two lines have a side in common?
+    !> Do two lines have an edge in common?
     pure logical function overlap(a, b)
       integer, intent(in) :: a, b
 
@@ -108,7 +108,7 @@ contains
         have_common(model%contact%line(a)%side, model%contact%line(b)%side)
     end function overlap
 
-    !> Do two lines have a node in common? Of many that there may be, boxes tell that most do not.
+    !> Do two lines have a node in common? Most do not, which their boxes show quickly.
     pure logical function meet(a, b)
       integer, intent(in) :: a, b
 
@@ -119,8 +119,8 @@ contains
       end associate
     end function meet
 
-    !> Couples whose lines go on in each other are one contact: of one slave against several masters, or where
-    !! both meet.
+    !> Join couples into one contact if their lines continue each other: one slave against several masters, or
+    !! both lines meet.
     subroutine join_couples()
       type(partition) :: sets
       integer :: i, k
@@ -138,7 +138,7 @@ contains
     end subroutine join_couples
   end subroutine find_line_contacts
 
-  !> The contact of some couples, without its pairs.
+  !> Make the contact of some couples, without pairs.
   pure type(line_contact) function new_contact(model, couples) result(contact)
     type(model_type), intent(in) :: model
     integer, intent(in) :: couples(:)
@@ -160,7 +160,7 @@ contains
 
   contains
 
-    !> Sides of some lines, each once.
+    !> Edges of some lines, each once.
     pure type(boundary_line) function sides_of(lines)
       integer, intent(in) :: lines(:)
       integer :: k
@@ -169,7 +169,7 @@ contains
     end function sides_of
   end function new_contact
 
-  !> The pairs of a contact, looked for ever farther until there is one; and the warnings.
+  !> Find the pairs of a contact, with growing search distance until there is one, and the warnings.
   subroutine find_pairs(model, found, contact, faces)
     type(model_type), intent(inout) :: model
     type(findings), intent(inout) :: found
@@ -203,7 +203,7 @@ contains
     end subroutine add_nothing_faced
   end subroutine find_pairs
 
-  !> Is a number, from 1 on, in both lists?
+  !> Have two lists a positive number in common?
   pure logical function have_common(a, b)
     integer, intent(in) :: a(:), b(:)
     logical, allocatable :: in_a(:)
@@ -213,7 +213,7 @@ contains
     have_common = any(in_a(b))
   end function have_common
 
-  !> Each number once, in the order in which they come.
+  !> Remove repeated numbers; the order stays.
   pure function once(numbers)
     integer, intent(in) :: numbers(:)
     integer, allocatable :: once(:)

@@ -1,6 +1,6 @@
-!> Pairs of a contact of lines, by geometry alone: each node of the slave's sides against what it faces of the
-!> master's, and each corner of the master that stands on a side of the slave, between its nodes. Gap and
-!> normal are those at the node; what the master's nodes share in it comes from
+!> Pairs of a contact of lines, by geometry alone: each node of the slave edges with its projection on the
+!> master, and each corner of the master that projects onto a slave edge between its nodes. Gap and
+!> normal are those at the node; the weights of the master nodes come from
 !> epcont_contact_geometry_mortar.
 module epcont_contact_geometry_line_pairs
   use epcont_base_kinds, only: wp
@@ -14,21 +14,21 @@ module epcont_contact_geometry_line_pairs
   private
   public :: add_pairs, end_pairs
 
-  !> A node's normals on the two lines differ by less (cosine) where it has a pair there: 35 degrees, of
+  !> Cosine of the largest angle between a node's normals on the two lines if it has a pair: 35 degrees, for
   !! coarse curves.
   real(wp), parameter :: opposite = 0.816_wp
 
 contains
 
-  !> Append the pairs of a contact, with their rows of N. The node that stands on a side is B, the nodes of
-  !! that side are A.
+  !> Append the pairs of a contact, with their rows of N. The projected node is B, the nodes of the
+  !! opposite edge are A.
   subroutine add_pairs(model, contact, faces)
-    type(model_type), intent(inout) :: model       !! the scene
+    type(model_type), intent(inout) :: model       !! the model
     type(line_contact), intent(inout) :: contact   !! the contact of lines
-    type(faces_type), intent(out) :: faces         !! what nodes of the slave face
+    type(faces_type), intent(out) :: faces         !! projections of the slave nodes
     type(mortar_row), allocatable :: rows(:)
-    type(node_face), allocatable :: tips(:)        ! nodes of the master, and what they face of the slave
-    integer, allocatable :: ends(:)                ! of them, those at joints that rows are for
+    type(node_face), allocatable :: tips(:)        ! master nodes, and their projections on the slave
+    integer, allocatable :: ends(:)                ! those of them at joints that have rows
     logical :: covered(size(contact%slave%element))
     integer :: k
 
@@ -50,7 +50,7 @@ contains
 
   contains
 
-    !> Corners of the master that stand on a side of the slave which does not face the master all along, ends
+    !> Find corners of the master on slave edges that are not covered by the master, ends
     !! at joints, and nodes that came near.
     subroutine find_tips()
       type(facing_type) :: on(2)
@@ -76,8 +76,8 @@ contains
       end do
     end subroutine find_tips
 
-    !> Does a corner lie on a node of the slave that has a pair there, of whichever of its sides? (At a corner
-    !! rounding tells which of them is faced.) At a joint that is the pair of the other end.
+    !> Is a corner at a slave node that has a pair there, on any of its edges? (At a corner, rounding
+    !! chooses the edge.) At a joint, this is the pair of the other end.
     pure logical function is_held(corner, on)
       type(looking_point), intent(in) :: corner
       type(facing_type), intent(in) :: on
@@ -94,7 +94,7 @@ contains
       end associate
     end function is_held
 
-    !> Does a node face an end of the master where a corner of it lies that is not that end?
+    !> Does a node project onto an end of the master at which another node is a corner?
     pure logical function is_at_joint(row, corner)
       type(node_face), intent(in) :: row
       type(looking_point), intent(in) :: corner
@@ -106,8 +106,8 @@ contains
       end associate
     end function is_at_joint
 
-    !> Shared by the nodes of the slave's side as its shape functions say. At a joint what counts for the node
-    !! itself is what its row says of the master: the rest is taken off.
+    !> Weights are the shape function values of the slave edge. At a joint, the weight of the node itself is
+    !! corrected for its row from the master side.
     pure function rows_of_tips() result(row)
       type(mortar_row) :: row(size(tips))
       integer :: i, joint
@@ -128,10 +128,10 @@ contains
     end function rows_of_tips
   end subroutine add_pairs
 
-  !> Pairs behind those that count so far. In their rows of N node B has weight 1, the others have theirs,
-  !! less than zero; of these the largest is A.
+  !> Append pairs after the present ones. In their rows of N, node B has weight 1, and the other weights
+  !! are negative; node A has the largest of these.
   subroutine append_pairs(b, row, model)
-    type(node_face), intent(in) :: b(:)      !! and what it faces [rows]
+    type(node_face), intent(in) :: b(:)      !! node and projection [rows]
     type(mortar_row), intent(in) :: row(:)
     type(model_type), intent(inout) :: model
     integer :: entries, i, k, pairs
@@ -140,7 +140,7 @@ contains
     entries = model%contact%row_start(model%contact%pairs + 1) - 1 + &
       sum([(size(row(i)%node) + 1, i=1, size(b))])
     if (pairs > size(model%contact%pair_id) .or. entries > size(model%contact%row_node)) &
-      call set_room(model, 2*pairs, 2*entries)   ! or many contacts would copy all before them
+      call set_room(model, 2*pairs, 2*entries)   ! doubled, so that many contacts do not copy all pairs each
     do i = 1, size(b)
       k = model%contact%pairs + i
       associate (first => model%contact%row_start(k), node => row(i)%node)
@@ -159,9 +159,9 @@ contains
     model%contact%pairs = pairs
   end subroutine append_pairs
 
-  !> How many nodes of a list are not in another.
+  !> Number of nodes of a list that are not in another.
   pure integer function count_others(node, known) result(many)
-    integer, intent(in) :: node(:), known(:)   !! each once or more
+    integer, intent(in) :: node(:), known(:)   !! may repeat nodes
     logical :: counts(minval([node, known]):maxval([node, known]))
 
     counts = .false.
@@ -170,14 +170,14 @@ contains
     many = count(counts)
   end function count_others
 
-  !> When the last pairs have been added: no room is left behind them.
+  !> Cut unused space after the last pair.
   subroutine end_pairs(model)
-    type(model_type), intent(inout) :: model   !! the scene
+    type(model_type), intent(inout) :: model   !! the model
 
     call set_room(model, model%contact%pairs, model%contact%row_start(model%contact%pairs + 1) - 1)
   end subroutine end_pairs
 
-  !> Room for so many pairs, and entries of their rows of N.
+  !> Reserve space for pairs and for entries of their rows of N.
   subroutine set_room(model, pairs, entries)
     type(model_type), intent(inout) :: model
     integer, intent(in) :: pairs, entries

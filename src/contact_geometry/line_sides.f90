@@ -1,5 +1,5 @@
-!> Boundary lines: from the nodes that are given to sides of the bodies' outlines, end to end; and the
-!> boundary of all bodies as contact takes it, those sides with normals and corners.
+!> Boundary lines: edges of the outlines from the nodes of a line, end to end; and the
+!> boundary of all bodies for contact: these edges with normals and corners.
 module epcont_contact_geometry_line_sides
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of
@@ -13,14 +13,14 @@ module epcont_contact_geometry_line_sides
 
 contains
 
-  !> The sides of all lines; one that is not sound has none. Where there were errors before there are no
-  !! outlines, and nodes alone are looked at.
+  !> Find the edges of all lines; a line with errors has none. If there have been errors, there are no
+  !! outlines, and only nodes are checked.
   subroutine find_line_sides(model, found)
-    type(model_type), intent(inout) :: model   !! the scene
-    type(findings), intent(inout) :: found   !! what is wrong with it is added
-    integer, allocatable :: starting(:)       ! the last side of the outline that starts at each node
+    type(model_type), intent(inout) :: model   !! the model
+    type(findings), intent(inout) :: found   !! errors are added
+    integer, allocatable :: starting(:)       ! last edge of the outline that starts at each node
     integer :: i, passed
-    logical :: sound                          ! the elements are, and the outlines known
+    logical :: sound                          ! elements are correct, and outlines known
 
     if (size(model%contact%line) == 0) return
     sound = found%errors == 0
@@ -47,8 +47,8 @@ contains
 
   contains
 
-    !> The sides between consecutive nodes, none where one is missing; a middle node between two corners may
-    !! be listed or left out.
+    !> Find the edges between consecutive nodes; zero if one is missing. Mid-side nodes may be listed or left
+    !! out.
     subroutine walk(node)
       integer, intent(in) :: node(:)
       integer, allocatable :: element(:), over(:)
@@ -84,8 +84,8 @@ contains
                                            maxval(model%mesh%x(:, node), dim=2)], [2, 2])
     end subroutine walk
 
-    !> Elements that have a side between two corners, and its nodes as the first of them turns; 0: there is
-    !! none.
+    !> Elements that have an edge between two corners, and its nodes in the order of the first element; 0 if
+    !! there is no such edge.
     subroutine find_between(a, b, element, edge)
       integer, intent(in) :: a, b
       integer, allocatable, intent(out) :: element(:)
@@ -96,20 +96,20 @@ contains
       if (size(element) > 0) edge = model%mesh%edge_between(element(1), a, b)
     end subroutine find_between
 
-    !> The side of the outline that an element has, walked with the body to the left.
+    !> Edge of the outline that an element has, with the body to the left.
     pure integer function side_of_outline(element, edge) result(k)
       integer, intent(in) :: element, edge(3)
 
       k = starting(edge(1))
       associate (line => model%contact%boundary)
         do while (line%element(k) /= element .or. any(line%segment(:, k) /= edge))
-          k = k - 1   ! the only one, but where boundaries meet in a node
+          k = k - 1   ! usually the only one, except if boundaries meet in a node
         end do
       end associate
     end function side_of_outline
   end subroutine find_line_sides
 
-  !> Where a line comes to a node that it has passed; 0: nowhere. But a closed line ends with its first
+  !> First position at which a line repeats a node; 0 if absent. A closed line may end with its first
   !! node.
   pure integer function first_passed_twice(node) result(k)
     integer, intent(in) :: node(:)
@@ -123,11 +123,11 @@ contains
     k = 0
   end function first_passed_twice
 
-  !> No side, or no free one, between the k-th and the next node of a line.
+  !> Report that there is no edge, or no free edge, between the k-th and the next node of a line.
   subroutine add_no_side(model, i, element, k, node, found)
     type(model_type), intent(in) :: model
     integer, intent(in) :: i, k, node(2)
-    integer, intent(in) :: element(:)    !! that have a side there
+    integer, intent(in) :: element(:)    !! elements that have this edge
     type(findings), intent(inout) :: found
     character(len=:), allocatable :: ends
 
@@ -143,10 +143,10 @@ contains
     end if
   end subroutine add_no_side
 
-  !> All sides of the bodies, numbered as those of the outlines.
+  !> Find all edges of the bodies, numbered as those of the outlines.
   type(boundary_line) function find_boundary(model) result(line)
     type(model_type), intent(in) :: model
-    integer :: held(2, model%mesh%body_outline%sides)   ! the direction: 0 none, 3 both
+    integer :: held(2, model%mesh%body_outline%sides)   ! fixed direction: 0 if no direction, 3 if both
     integer :: i
 
     associate (outline => model%mesh%body_outline, sides => model%mesh%body_outline%sides)

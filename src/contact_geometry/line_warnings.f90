@@ -13,27 +13,27 @@ module epcont_contact_geometry_line_warnings
   public :: warn_of_both_ways, warn_of_contact
 
   real(wp), parameter :: &
-    !> Slave sides shorter than the others by more than this factor: beyond it pressures were seen to be off
-    !! by 3 % and more.
+    !> Slave edges that are shorter than the master edges by more than this factor: pressures were found to be
+    !! wrong by 3 % and more.
     finer = 1.3_wp, &
-    !> Sides so many times longer than those of the slave cannot follow it: where little of them touches,
-    !! approaches are off as well.
+    !> Master edges that are longer by this factor cannot follow the slave: if few of them are in contact,
+    !! approaches are wrong as well.
     far_coarser = 4.0_wp, &
-    !> Gaps of curves over sides that are chords are exact to this part of how high the curves rise above
-    !! them; and coordinates have so many digits where a card has eight columns.
+    !> Gaps between curves with chords as edges are exact to this fraction of the height of the curves above
+    !! the chords; and cards with eight columns have about this many digits.
     curve_error = 0.01_wp, digits = 1.0e-7_wp, &
-    !> Normals of two contacts at a node are of one face within 45 degrees; less than so much of a row says
-    !! nothing of a node.
+    !> Two contacts at a node are on one face if their normals differ by at most 45 degrees; smaller weights
+    !! in a row do not count for a node.
     one_face = sqrt(0.5_wp), least_weight = 1.0e-3_wp
 
 contains
 
-  !> What is not as it seems of one contact.
+  !> Warn of errors in one contact.
   subroutine warn_of_contact(model, contact, faces, found)
-    type(model_type), intent(in) :: model        !! the scene
+    type(model_type), intent(in) :: model        !! the model
     type(line_contact), intent(in) :: contact    !! the contact of lines
-    type(faces_type), intent(in) :: faces        !! what the slave's nodes face
-    type(findings), intent(inout) :: found       !! what is wrong with it is added
+    type(faces_type), intent(in) :: faces        !! projections of the slave nodes
+    type(findings), intent(inout) :: found       !! errors are added
 
     call warn_of_overlap()
     call warn_of_finer_slave()
@@ -41,8 +41,8 @@ contains
 
   contains
 
-    !> One warning for all overlaps: shrink fits have many. What curves over chords, and cards of eight
-    !! columns, leave is none.
+    !> Give one warning for all overlaps: shrink fits have many. Overlaps that may come from chords of curves
+    !! or from cards with eight columns do not count.
     subroutine warn_of_overlap()
       character(len=:), allocatable :: others
       integer :: deepest, overlaps
@@ -61,8 +61,8 @@ contains
                              'gaps of 0.0 or more, unless a fit is meant')
     end subroutine warn_of_overlap
 
-    !> Pressures are carried by the slave's nodes. Where these are closer than the nodes of the master, whose
-    !! sides bend at nodes alone, they show its facets.
+    !> Warn of a finer slave. Slave nodes carry the pressure. If they are closer than the master nodes, they
+    !! show the facets of the master, whose edges bend at nodes only.
     subroutine warn_of_finer_slave()
       character(len=:), allocatable :: advice, text
       real(wp) :: sides(2)
@@ -81,9 +81,9 @@ contains
                              ' times shorter than those that they face: '//text, advice)
     end subroutine warn_of_finer_slave
 
-    !> Lengths, from node to node, of the slave's sides and of those that they face, summed up where the lines
-    !! are nearest to each other. A side whose ends are held, or move as one, does not bend at all, and does
-    !! not count.
+    !> Lengths, from node to node, of the slave edges and of their opposite edges, summed where the lines are
+    !! nearest. An edge whose ends are fixed, or move together, does not bend and is
+    !! not counted.
     pure function facing_sides() result(length)
       real(wp) :: length(2), nearest
       integer :: k, s
@@ -103,7 +103,7 @@ contains
       end do
     end function facing_sides
 
-    !> Pressures are forces by the area of the slave, which a thinner master does not cover.
+    !> Warn of a thicker slave. Pressure is force per area of the slave; a thinner master does not cover it.
     subroutine warn_of_thicker_slave()
       real(wp) :: thickness(2)
 
@@ -118,7 +118,7 @@ contains
     end subroutine warn_of_thicker_slave
   end subroutine warn_of_contact
 
-  !> From one node of a side to the next [length].
+  !> Distance between consecutive nodes of an edge [length].
   pure real(wp) function node_distance(line, side)
     type(boundary_line), intent(in) :: line
     integer, intent(in) :: side
@@ -126,7 +126,7 @@ contains
     node_distance = line%chord_length(side)/merge(2, 1, line%segment(3, side) > 0)
   end function node_distance
 
-  !> How high the curves over a line's sides rise above its chords, at most [length].
+  !> Largest height of the curves over a line's edges above the chords [length].
   pure real(wp) function largest_rise(line)
     type(boundary_line), intent(in) :: line
     integer :: i
@@ -135,12 +135,12 @@ contains
                             i=1, size(line%element))])/8.0_wp
   end function largest_rise
 
-  !> A node that is slave in one contact and master in another, on the same face: neither knows of the sides
-  !! that the other has beside it, whose pressures are shared by chance.
+  !> Warn of a node that is slave in one contact and master in another, on the same face: neither contact
+  !! uses the edges of the other, so that the distribution of pressures is arbitrary.
   subroutine warn_of_both_ways(model, found)
-    type(model_type), intent(in) :: model   !! the scene
-    type(findings), intent(inout) :: found   !! what is wrong with it is added
-    !> Of each pair, 0: given alone; the pair of each node as slave, 0: none
+    type(model_type), intent(in) :: model   !! the model
+    type(findings), intent(inout) :: found   !! errors are added
+    !> Contact of each pair (0: CGAP); pair of each node as slave, 0 if absent
     integer :: contact(model%contact%pairs), slave(model%mesh%nodes)
     logical :: told(size(model%contact%line_contact))
     integer :: c, i, other, pair
@@ -172,7 +172,7 @@ contains
 
   contains
 
-    !> Where the rows of N have the first such node of the master of contact c; 0: nowhere.
+    !> Position in the rows of N of the first such node of the master of contact c; 0 if absent.
     pure integer function first_both_ways() result(i)
       integer :: k
 

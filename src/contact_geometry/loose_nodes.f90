@@ -1,7 +1,7 @@
-!> Nodes that lie where something else of the scene does, as drawn, and are not joined with it: on a side of
-!> an element of their own body, whose ends elements share (meshes of unlike fineness, or six-node elements
-!> beside others, put together), or at a node of another body or in it, with neither a pair nor RBE2 (a
-!> contact, or a common node, that was forgotten).
+!> Nodes at the same point as another part of the undeformed model without a connection to it: on an edge of
+!> an element of their own body (non-matching meshes, or six-node elements beside linear
+!> ones), or at a node of another body or inside it, without a pair or RBE2 (a
+!> forgotten contact or common node).
 module epcont_contact_geometry_loose_nodes
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
@@ -16,17 +16,17 @@ module epcont_contact_geometry_loose_nodes
   private
   public :: warn_of_hanging_nodes, warn_of_lying_together
 
-  !> An overlap of less than this part of a side may be that of a curve with its chord.
+  !> An overlap of less than this fraction of an edge may come from chords of a curve.
   real(wp), parameter :: deep = 0.1_wp
 
 contains
 
-  !> One warning, at the first of the nodes that hang on a side.
+  !> Give one warning, for the first hanging node.
   subroutine warn_of_hanging_nodes(model, drawn, found)
-    type(model_type), intent(in) :: model       !! the scene
+    type(model_type), intent(in) :: model       !! the model
     type(outline_shape), intent(in) :: drawn    !! its outlines
-    type(findings), intent(inout) :: found      !! what is wrong with it is added
-    ! Where each node hangs: the ends of the side and its element; 0: nowhere
+    type(findings), intent(inout) :: found      !! errors are added
+    ! Edge of each hanging node: its ends and its element; 0 if absent
     integer :: edge(3, model%mesh%nodes)
     integer :: first
 
@@ -46,8 +46,8 @@ contains
 
   contains
 
-    !> Middles of sides that an element with another middle, or none, has too. A middle of two elements hangs
-    !! nowhere.
+    !> Find mid-side nodes of edges that another element has without this node. A node between two elements
+    !! with the same mid-side node does not hang.
     subroutine find_middles()
       integer, allocatable :: near(:)
       integer :: i, s, side(3)
@@ -68,9 +68,9 @@ contains
       end do
     end subroutine find_middles
 
-    !> Sides of the outline that go back along a longer one, from its end to its start.
+    !> Find edges of the outline that go back along a longer one, from its end to its start.
     subroutine find_chains()
-      type(incidence) :: beginning   ! the sides that begin at each node
+      type(incidence) :: beginning   ! edges that begin at each node
       integer, allocatable :: beside(:)
       integer :: k, s
 
@@ -85,7 +85,7 @@ contains
       end associate
     end subroutine find_chains
 
-    !> Is a side shorter than the one at whose end it begins, of another element, and leads back along it?
+    !> Is an edge shorter than the one at whose end it begins, of another element, and leads back along it?
     pure logical function goes_back(side, beside)
       integer, intent(in) :: side, beside
 
@@ -96,8 +96,8 @@ contains
       end associate
     end function goes_back
 
-    !> From the end of a side back to its start: what lies on it between hangs; so does its own middle, where
-    !! the other sides have that for an end.
+    !> Go from the end of an edge back to its start: nodes between hang; so does its mid-side node, if
+    !! the other edges end there.
     subroutine follow(side, from)
       integer, intent(in) :: side, from
       type(near_place) :: place
@@ -124,17 +124,17 @@ contains
     end subroutine follow
   end subroutine warn_of_hanging_nodes
 
-  !> One warning for each two bodies with nodes at one place: those of sides that lie against each other from
-  !! end to end, and single ones that are in no pair at all. Of two the one of the earlier body is named. And
-  !! one warning of the node that lies deepest in another body.
+  !> Give one warning for each two bodies with nodes at the same points: nodes of edges that coincide from
+  !! end to end, and single nodes without any pair. The node of the earlier body is named. Give
+  !! one warning of the node with the deepest penetration into another body.
   subroutine warn_of_lying_together(model, drawn, found)
-    type(model_type), intent(in) :: model       !! the scene
+    type(model_type), intent(in) :: model       !! the model
     type(outline_shape), intent(in) :: drawn    !! its outlines
-    type(findings), intent(inout) :: found      !! what is wrong with it is added
-    !> Of one body with each later one: how many nodes lie together, and the first of them
+    type(findings), intent(inout) :: found      !! errors are added
+    !> For one body and each later one: number of coinciding nodes, and the first of them
     integer :: twins(model%mesh%body_outline%parts), first(2, model%mesh%body_outline%parts)
     integer, allocatable :: mate(:), met(:), near(:)
-    type(near_place) :: deepest   ! of the nodes that lie in another body
+    type(near_place) :: deepest   ! of the nodes inside another body
     integer :: at, i, part, side, twin
 
     if (model%mesh%body_outline%parts < 2) return
@@ -172,11 +172,11 @@ contains
     end do
     if (at > 0) call found%add_warning(of_node, at, 1, ': lies '//short_real(deepest%distance)// &
       ' deep in the body of '//model%name_of(of_element, model%mesh%body_outline%element(deepest%side))// &
-      ', with no pair there', 'bodies side by side, or a contact between them')
+      ', with no pair there', 'move the bodies apart, or define a contact between them')
 
   contains
 
-    !> Keep the node where a side begins, if it lies deepest in a part as drawn, and no pair is to close that.
+    !> Keep the node at which an edge begins, if it is deepest in an undeformed part, without a pair to it.
     subroutine look_inside(part)
       integer, intent(in) :: part
       type(near_place) :: place
@@ -191,8 +191,8 @@ contains
       at = node(1)
     end subroutine look_inside
 
-    !> The twin, in another part, of the node where a side begins: neither is in a pair, or the side that
-    !! begins or the one that ends there lies against that part, its other end a twin too. 0: none.
+    !> Node of another part at the start of an edge, if both have no pairs, or if the edge that
+    !! begins or the one that ends there coincides with that part, with its other end. 0 if absent.
     pure integer function twin_that_counts(side, part) result(twin)
       integer, intent(in) :: side, part
 
@@ -206,7 +206,7 @@ contains
       twin = 0
     end function twin_that_counts
 
-    !> Goes the outline of a part the other way along a side?
+    !> Does the outline of a part have an edge in the opposite direction?
     pure logical function lies_against(side, part)
       integer, intent(in) :: side, part
       type(near_place) :: place
@@ -216,8 +216,8 @@ contains
                      dot_product(drawn%tangent(place%side, place%s), drawn%tangent(side, 0.5_wp)) < 0.0_wp
     end function lies_against
 
-    !> The node of a part at the place of one at the end of a side, if nothing joins the two; 0: there is
-    !! none.
+    !> Node of a part at the end of an edge, if nothing connects the two; 0 if
+    !! absent.
     pure integer function loose_twin(node, side, part) result(twin)
       integer, intent(in) :: node, side, part
       type(near_place) :: place

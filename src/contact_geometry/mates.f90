@@ -1,4 +1,4 @@
-!> Which nodes pairs join with another body.
+!> Nodes that pairs connect with another body.
 module epcont_contact_geometry_mates
   use epcont_model_model, only: model_type
   implicit none
@@ -9,9 +9,9 @@ module epcont_contact_geometry_mates
 
 contains
 
-  !> The part of the outline with which pairs join each node; 0: none [nodes].
+  !> Part of the outline that pairs connect each node with, 0 if absent [nodes].
   pure function find_mates(model) result(mate)
-    type(model_type), intent(in) :: model   !! the scene
+    type(model_type), intent(in) :: model   !! the model
     integer, allocatable :: mate(:)
     integer :: i, k, other
 
@@ -30,9 +30,9 @@ contains
     end do
   end function find_mates
 
-  !> Is one of these nodes joined with a part?
+  !> Is one of these nodes connected with a part?
   pure logical function is_mate(mate, node, part)
-    integer, intent(in) :: mate(:), node(:), part   !! mates of all nodes; these nodes, 0 is none; the part
+    integer, intent(in) :: mate(:), node(:), part   !! mates of all nodes; these nodes, or 0; the part
 
     associate (own => mate(pack(node, node > 0)))
       is_mate = any(own == part .or. own == several)

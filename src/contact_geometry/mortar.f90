@@ -1,11 +1,11 @@
-!> How the nodes of a master line share in the gaps of the slave nodes: a dual mortar.
+!> Mortar weights: weights of the master nodes in the gaps of the slave nodes, by a dual mortar method.
 !>
-!> The pressure of slave node i is spread by the dual function psi_i of its shape functions N, which gives
-!> nothing to the other slave nodes: integral of psi_i N_j = d_ij integral of N_i. Its gap is then that of the
-!> node, less the master line's displacement averaged with psi_i: weights (integral of psi_i
-!> N_master)/(integral of N_i). A uniform pressure passes exactly between lines that do not match, and where
-!> they do match each node is against its twin alone. (Wohlmuth, A mortar finite element method using dual
-!> spaces for the Lagrange multiplier, SIAM J. Numer. Anal. 38, 2000.) The sides of the slave are cut into
+!> The pressure of slave node i is distributed by the dual function psi_i of its shape functions N, which is
+!> orthogonal to the other slave nodes: integral of psi_i N_j = d_ij integral of N_i. Its gap is that of the
+!> node, minus the master displacement averaged with psi_i: weights (integral of psi_i
+!> N_master)/(integral of N_i). A uniform pressure passes exactly between non-matching lines; on matching ones
+!> each node has its opposite node only. (Wohlmuth, A mortar finite element method using dual
+!> spaces for the Lagrange multiplier, SIAM J. Numer. Anal. 38, 2000.) The slave edges are cut into
 !> pieces by epcont_contact_geometry_mortar_sides.
 module epcont_contact_geometry_mortar
   use epcont_base_kinds, only: wp
@@ -27,15 +27,15 @@ module epcont_contact_geometry_mortar
 
 contains
 
-  !> Rows of master nodes and weights, one for each slave node that has a pair, then those of joints. Rows of
-  !! no side count at their own places.
+  !> Find rows of master nodes and weights, one for each slave node with a pair, then those of joints. Rows
+  !! without a covered edge use the projection of their node.
   subroutine find_mortar_rows(model, contact, faces, rows, covered, ends)
-    type(model_type), intent(in) :: model          !! the scene, without these pairs
+    type(model_type), intent(in) :: model          !! the model, without these pairs
     type(line_contact), intent(in) :: contact      !! the contact of lines
-    type(faces_type), intent(in) :: faces          !! what the slave's nodes face
+    type(faces_type), intent(in) :: faces          !! projections of the slave nodes
     type(mortar_row), allocatable, intent(out) :: rows(:)   !! [rows]
-    logical, intent(out) :: covered(:)             !! sides that face the master all along [sides]
-    integer, allocatable, intent(out) :: ends(:)   !! nodes of the master that the rows of joints are for
+    logical, intent(out) :: covered(:)             !! edges that are fully opposite the master [edges]
+    integer, allocatable, intent(out) :: ends(:)   !! master nodes at joints that have rows
     type(side_points), allocatable :: points(:)
     real(wp), allocatable :: area(:)               ! [rows]
     logical, allocatable :: alone(:)               ! [rows]
@@ -64,7 +64,7 @@ contains
 
   contains
 
-    !> Add what a side makes of the rows of its nodes: one that is covered by its points, others at the nodes.
+    !> Add the contribution of an edge to the rows of its nodes: by its points if covered, else at the nodes.
     subroutine add_side(own)
       type(side_points), intent(in) :: own
       integer :: k, p
@@ -82,7 +82,7 @@ contains
       end do
     end subroutine add_side
 
-    !> Add a weight to the row: it is shared by the nodes of the side that is faced.
+    !> Add a weight to the gap row, distributed over the nodes of the opposite edge.
     subroutine add(facing, weight)
       type(facing_type), intent(in) :: facing
       real(wp), intent(in) :: weight
@@ -104,7 +104,7 @@ contains
     end subroutine add
   end subroutine find_mortar_rows
 
-  !> Integrals of the shape functions of a side's nodes, and where it is covered the dual functions.
+  !> Integrals of the shape functions of an edge's nodes, and if it is covered, the dual functions.
   pure subroutine set_integrals(own)
     type(side_points), intent(inout) :: own
     real(wp) :: dual(3, 3), mass(3, 3)
@@ -124,7 +124,7 @@ contains
     end associate
   end subroutine set_integrals
 
-  !> By cofactors.
+  !> Invert by cofactors.
   pure function inverse(a) result(b)
     real(wp), intent(in) :: a(3, 3)
     real(wp) :: b(3, 3)

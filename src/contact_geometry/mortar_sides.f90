@@ -1,8 +1,8 @@
-!> Sides of a slave line, cut into pieces that face one side of the master, with their integration points.
+!> Slave edges, cut into pieces that project onto one master edge each, with their integration points.
 !>
-!> A side whose nodes do not all face the master, or not all along, counts at its nodes' own points. At a
-!> joint of the master, where ends of two bodies lie flush, a side is two: the ends may step, or the line bend
-!> there, so each has a gap row.
+!> If not all of an edge projects onto the master, only the projections of its nodes count. At a
+!> joint of the master, where ends of two bodies are flush, an edge is split in two: the ends may step, or the
+!> line bend there, so each part has a gap row.
 module epcont_contact_geometry_mortar_sides
   use epcont_base_kinds, only: wp
   use epcont_contact_geometry_faces, only: faces_type
@@ -16,47 +16,47 @@ module epcont_contact_geometry_mortar_sides
   private
   public :: cut_sides, side_points
 
-  !> Gauss points of each piece of a side: exact for the product of two quadratics on a straight one.
+  !> Gauss points of each piece of an edge: exact for the product of two quadratics on a straight edge.
   integer, parameter :: gauss_points = 3
   real(wp), parameter :: &
     gauss_place(3) = 0.5_wp + 0.5_wp*[-sqrt(0.6_wp), 0.0_wp, sqrt(0.6_wp)], &
     gauss_weight(3) = [5.0_wp, 8.0_wp, 5.0_wp]/18.0_wp, &
-    !> What values there count at the piece's end, in the parabola through them.
+    !> Weights that extrapolate their values to the end of the piece, by a parabola.
     at_end(3) = [1.0_wp - sqrt(0.6_wp), -0.8_wp, 1.0_wp + sqrt(0.6_wp)]/1.2_wp, &
-    !> Normals that differ by less (cosine) along a side may be those of one curve: 35 degrees.
+    !> Cosine of the largest angle between normals along an edge on one curve: 35 degrees.
     one_curve = 0.816_wp, &
 
-    !> Where gaps jump by more than this part of a side there is a step in the other line.
+    !> Jump of the gap, as a fraction of an edge, above which the other line has a step.
     step = 0.01_wp, &
-    !> Only sides that are nearly parallel, by this cosine, can touch all along: 20 degrees.
+    !> Cosine of the largest angle between edges that can be fully in contact: 20 degrees.
     parallel = 0.94_wp, &
-    !> Normals whose cosine is less, on either side of a node, meet at a corner there: more than 9 degrees.
+    !> Cosine of normals on both sides of a node, below which it is a corner: more than 9 degrees.
     smooth = 0.988_wp
 
-  !> A side of the slave, or what of it is between joints, with the integration points of its pieces, one
-  !> piece behind the other.
+  !> A slave edge, or its part between joints, with the integration points of its pieces, piece
+  !> by piece.
   type :: side_points
-    logical :: covered = .true.                !! it faces the other line all along
-    integer :: row(3) = 0                      !! of its nodes, or of its ends at joints; 0: none
-    real(wp), allocatable :: along(:)          !! place on the side, from 0 to 1 [points]
+    logical :: covered = .true.                !! it is fully opposite the other line
+    integer :: row(3) = 0                      !! rows of its nodes, or of its ends at joints, 0 if absent
+    real(wp), allocatable :: along(:)          !! position on the edge, from 0 to 1 [points]
     real(wp), allocatable :: share(:, :)       !! shape functions of its nodes [3, points]
-    real(wp), allocatable :: weight(:)         !! length, in rings times radius [points]
+    real(wp), allocatable :: weight(:)         !! length, times radius if axisymmetric [points]
     type(facing_type), allocatable :: facing(:)
     real(wp) :: integral(3) = 0.0_wp           !! of the shape functions, or dual functions, of the nodes
-    real(wp), allocatable :: dual(:, :)        !! dual functions times weight, where it is covered [3, points]
+    real(wp), allocatable :: dual(:, :)        !! dual functions times weight, if it is covered [3, points]
   end type side_points
 
 contains
 
-  !> Cut the sides of the slave, where they face another side of the master than before, and at joints of the
+  !> Cut the slave edges where the opposite edge changes, and at joints of the
   !! master.
   subroutine cut_sides(model, contact, faces, points, covered, ends)
-    type(model_type), intent(in) :: model          !! the scene, without these pairs
+    type(model_type), intent(in) :: model          !! the model, without these pairs
     type(line_contact), intent(in) :: contact      !! the contact of lines
-    type(faces_type), intent(in) :: faces          !! what the slave's nodes face
-    type(side_points), allocatable, intent(out) :: points(:)   !! of the sides, and of their parts at joints
-    logical, intent(out) :: covered(:)             !! sides that face the master all along [sides]
-    integer, allocatable, intent(out) :: ends(:)   !! nodes of the master that the rows of joints are for
+    type(faces_type), intent(in) :: faces          !! projections of the slave nodes
+    type(side_points), allocatable, intent(out) :: points(:)   !! of the edges, and of their parts at joints
+    logical, intent(out) :: covered(:)             !! edges that are fully opposite the master [edges]
+    integer, allocatable, intent(out) :: ends(:)   !! master nodes at joints that have rows
     integer :: s
 
     allocate (points(size(covered)))
@@ -68,8 +68,8 @@ contains
     call cut_at_joints(model, contact, faces, ends, points)
   end subroutine cut_sides
 
-  !> Integration points of a side, cut where it faces another side of the other line than before. (Nodes of
-  !! that line that stand behind what it faces cut nothing.)
+  !> Integration points of an edge, cut where the opposite edge changes. (Nodes of the other line that lie
+  !! behind the projection cut nothing.)
   pure type(side_points) function cut_side(model, contact, faces, s) result(points)
     type(model_type), intent(in) :: model
     type(line_contact), intent(in) :: contact
@@ -77,11 +77,11 @@ contains
     integer, intent(in) :: s
     real(wp), allocatable :: cut(:), starts(:), ends(:)
     integer, allocatable :: faced(:, :)
-    logical, allocatable :: first(:)   ! the piece before faces another side, or there is none
+    logical, allocatable :: first(:)   ! the opposite edge differs from that of the piece before
     integer :: i
 
     cut = cuts_of_side(contact, faces, s)
-    associate (wide => cut(2:) - cut(:size(cut) - 1) > beyond)   ! what lies beyond an end by less is not
+    associate (wide => cut(2:) - cut(:size(cut) - 1) > beyond)   ! smaller pieces beyond an end are skipped
       starts = pack(cut(:size(wide)), wide)
       ends = pack(cut(2:), wide)
     end associate
@@ -92,8 +92,8 @@ contains
                                              pack(ends, [first(2:), .true.]))
   end function cut_side
 
-  !> Integration points of the pieces of a side. It may be covered where all of them face the other line,
-  !! nearly parallel.
+  !> Integration points of the pieces of an edge. It may be covered if all of them project onto the other
+  !! line, nearly parallel.
   pure type(side_points) function points_of(model, contact, s, starts, ends) result(points)
     type(model_type), intent(in) :: model
     type(line_contact), intent(in) :: contact
@@ -124,8 +124,8 @@ contains
     end do
   end function points_of
 
-  !> Places along a side, from 0 to 1, at which the ends of the other line's sides face it, not farther away
-  !! than the part of that line lies that it faces: twice as far as its ends say, or its length.
+  !> Positions along an edge, from 0 to 1, of the projected ends of the other line's edges, within a distance
+  !! of twice that of its own projections, or its length.
   pure function cuts_of_side(contact, faces, s) result(cut)
     type(line_contact), intent(in) :: contact
     type(faces_type), intent(in) :: faces
@@ -148,7 +148,7 @@ contains
       do i = 1, size(near)
         do k = 1, 2
           if (k == 2 .and. i < size(near)) then
-            if (near(i + 1) == master%neighbour(2, near(i))) cycle   ! the start of the next
+            if (near(i + 1) == master%neighbour(2, near(i))) cycle   ! it is also the start of the next edge
           end if
           place = slave%face(s, master%x(:, k, near(i)))
           if (.not. place%found .or. abs(place%gap) > reach*(1.0_wp + beyond)) cycle
@@ -159,7 +159,7 @@ contains
     end associate
   end function cuts_of_side
 
-  !> Do the points of a side face the same face of the other line as its nodes, without a step or a corner?
+  !> Do the points of an edge project onto the same face as its nodes, without a step or a corner?
   pure logical function is_even(model, contact, faces, side, s)
     type(model_type), intent(in) :: model
     type(line_contact), intent(in) :: contact
@@ -177,12 +177,12 @@ contains
       end do
       most = step*contact%slave%chord_length(s)
       before = faces%row(row(1))%gap
-      do p = 1, size(facing), gauss_points   ! piece by piece
+      do p = 1, size(facing), gauss_points   ! for each piece
         is_even = is_even .and. abs(dot_product(at_end, facing(p + 2:p:-1)%gap) - before) <= most
         before = dot_product(at_end, facing(p:p + 2)%gap)
         if (p == 1) cycle
         is_even = is_even .and. facing(p - 1)%cosine(facing(p)) > smooth
-        ! At a joint only chords are cut.
+        ! At a joint, only straight edges are cut.
         if (contact%slave%segment(3, s) > 0) is_even = is_even .and. goes_on(model, contact, facing(p - 1), &
                                                                              facing(p))
       end do
@@ -190,8 +190,8 @@ contains
     end associate
   end function is_even
 
-  !> Are two places on one side of the other line, or on sides that join? If not, there is a joint between,
-  !! unless its ends cannot but move alike.
+  !> Are two points on one edge of the other line, or on edges that are connected? If not, there is a joint
+  !! between them, unless its ends must move together.
   pure logical function goes_on(model, contact, one, other)
     type(model_type), intent(in) :: model
     type(line_contact), intent(in) :: contact
@@ -210,7 +210,7 @@ contains
     end do
   end function goes_on
 
-  !> The end of the other line's side that a place is nearer to.
+  !> End of the other line's edge that is nearer to a point.
   pure integer function end_at(contact, place) result(node)
     type(line_contact), intent(in) :: contact
     type(facing_type), intent(in) :: place
@@ -218,7 +218,7 @@ contains
     node = contact%master%segment(maxloc(place%share(:2), dim=1), place%segment)
   end function end_at
 
-  !> Cut sides at joints, and give each stretch the rows of its ends.
+  !> Cut edges at joints, and give each part the rows of its ends.
   subroutine cut_at_joints(model, contact, faces, ends, points)
     type(model_type), intent(in) :: model
     type(line_contact), intent(in) :: contact
@@ -252,7 +252,7 @@ contains
       joints_within = count([(has_joint(side, p), p=gauss_points, size(side%along) - 1, gauss_points)])
     end function joints_within
 
-    !> Is there a joint behind a point, the last of a piece?
+    !> Is there a joint after a point, the last of a piece?
     pure logical function has_joint(side, p)
       type(side_points), intent(in) :: side
       integer, intent(in) :: p
@@ -261,7 +261,7 @@ contains
       if (has_joint) has_joint = .not. goes_on(model, contact, side%facing(p), side%facing(p + 1))
     end function has_joint
 
-    !> The part of side s from its point `first` to its point `last`.
+    !> Part of edge s from its point `first` to its point `last`.
     type(side_points) function stretch(side, first, last) result(part)
       type(side_points), intent(in) :: side
       integer, intent(in) :: first, last
@@ -283,11 +283,11 @@ contains
       call give_row(part%row(2), part%facing(size(part%facing)), last < size(side%along))
     end function stretch
 
-    !> The row of the end of a stretch: of its node, if that faces the same end of the joint; else a new one.
+    !> Set the row of the end of a part: that of its node, if on the same side of the joint; else a new one.
     subroutine give_row(row, facing, cut)
       integer, intent(inout) :: row
-      type(facing_type), intent(in) :: facing   !! of the point next to it
-      logical, intent(in) :: cut                !! a joint is there
+      type(facing_type), intent(in) :: facing   !! projection of the nearest point
+      logical, intent(in) :: cut                !! there is a joint
 
       if (.not. cut) then
         if (goes_on(model, contact, faces%row(row)%facing_type, facing)) return

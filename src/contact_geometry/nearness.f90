@@ -1,7 +1,7 @@
-!> Nodes of lines in contact that have no pair, but came so near as loads moved them that they pass through
-!> the other line.
+!> Nodes of contact lines that have no pair, but penetrate the other line after the displacements of the
+!> loads.
 !>
-!> Gaps are those of the undeformed shape, opened by displacements, as those of pairs are: small
+!> Gaps are those of the undeformed shape, opened by displacements, as for pairs: small
 !> displacements.
 module epcont_contact_geometry_nearness
   use epcont_base_kinds, only: wp
@@ -18,38 +18,38 @@ module epcont_contact_geometry_nearness
   private
   public :: find_nodes_that_came_near, pair_nodes_that_came_near
 
-  !> What displacements do to the elements.
+  !> Displaced bodies.
   type :: moved_bodies
     real(wp) :: extent, travel                    !! size, largest displacement [length]
     real(wp), allocatable :: displacement(:, :)   !! [length] [2, nodes]
-    logical, allocatable :: holds(:)              !! nodes that stand on the other line [0:nodes]; 0 is none
+    logical, allocatable :: holds(:)              !! nodes in contact with the other line [0:nodes]
   end type moved_bodies
 
   real(wp), parameter :: &
-    !> A node between those of the other line that stand on its own may pass through by so many times what
-    !! chords of curves and of bent sides make.
+    !> A master node between the nodes of a slave edge may penetrate by this multiple of the error of
+    !! chords of curves and of bent edges.
     allowance = 3.0_wp, &
-    !> But not by more than this part of the largest displacement: that is no end of contact, but contact
-    !! missed.
+    !> But not by more than this fraction of the largest displacement: that is missed contact, not the end
+    !! of one.
     most = 0.5_wp, &
-    !> The two lines, not quite parallel, tell gaps by normals of their own: what these make of nodes that
-    !! slide, and of gaps that close, differs by this much at most.
+    !> The two lines, not quite parallel, measure gaps along their own normals: for sliding nodes and closing
+    !! gaps, the results differ at most by this factor.
     askew = 1.5_wp, &
-    !> Search beyond what came near.
+    !> New search distance over the distance of a node that came near.
     further = 1.5_wp
 
 contains
 
-  !> Find the nodes that came near: they need pairs. Without displacements (what moves was held by nothing)
-  !! all that may be faced, however far, needs its pair.
+  !> Find the nodes that came near: they need pairs. Without displacements (bodies were unconstrained),
+  !! all nodes with a projection at any distance need a pair.
   subroutine find_nodes_that_came_near(model, displacement, touching, contacts, found)
-    type(model_type), intent(in) :: model                     !! the scene
+    type(model_type), intent(in) :: model                     !! the model
     real(wp), allocatable, intent(in) :: displacement(:, :)   !! [length] [2, nodes]
     logical, allocatable, intent(in) :: touching(:)           !! [pairs]
-    type(line_contact), allocatable, intent(out) :: contacts(:)   !! those of the model, with these nodes
+    type(line_contact), allocatable, intent(out) :: contacts(:)   !! contacts of the model, with these nodes
     logical, intent(out) :: found                             !! are there some?
     type(moved_bodies) :: moved
-    integer, allocatable :: node(:)        ! of the elements
+    integer, allocatable :: node(:)        ! nodes of the elements
     type(line_contact) :: contact
     integer :: c
 
@@ -72,8 +72,8 @@ contains
 
   contains
 
-    !> What a contact's nodes want: a wider search for those of the slave, or to be entered, as nodes of the
-    !! master.
+    !> Check the nodes of a contact: slave nodes may need a wider search, master nodes may need a
+    !! pair.
     subroutine look_at_contact()
       real(wp) :: search
       integer :: i, which
@@ -85,7 +85,7 @@ contains
       if (contact%search > search) then
         contact%is_wider = .true.
         found = .true.
-      else if (allocated(displacement)) then   ! what the slave's nodes will hold off is not the master's
+      else if (allocated(displacement)) then   ! slave nodes with a new pair come first
         do i = 1, size(contact%master%element)
           do which = 1, 3
             call look_from_master(i, which)
@@ -94,8 +94,8 @@ contains
       end if
     end subroutine look_at_contact
 
-    !> Search farther where a node of the slave, left out so far, passes through the master, or stands beside
-    !! one that touches: what the nodes of a side share is known only where all of them have pairs.
+    !> Widen the search if a slave node without a pair penetrates the master, or is beside one in contact:
+    !! mortar weights of an edge need pairs at all of its nodes.
     subroutine look_from_slave(side, which)
       integer, intent(in) :: side, which
       type(facing_type) :: face(2)
@@ -115,8 +115,8 @@ contains
       end associate
     end subroutine look_from_slave
 
-    !> Enter a node of the master that passes through a side of the slave by more than is left open between
-    !! the slave's nodes.
+    !> Add a master node that penetrates a slave edge by more than the gap that is allowed between
+    !! slave nodes.
     subroutine look_from_master(side, which)
       integer, intent(in) :: side, which
       type(facing_type) :: face(2)
@@ -139,8 +139,8 @@ contains
     end subroutine look_from_master
   end subroutine find_nodes_that_came_near
 
-  !> How far a straight line, as long as a side or as `over` if that is more, is from the curve into which
-  !! the boundary bends from that side on [length].
+  !> Distance between a straight line, as long as an edge or as `over` if longer, and the curve of the
+  !! bent boundary that begins at this edge [length].
   pure real(wp) function bend(displacement, line, side, over)
     real(wp), intent(in) :: displacement(:, :), over
     type(boundary_line), intent(in) :: line
@@ -166,7 +166,7 @@ contains
 
   contains
 
-    !> By how much displacements turn a side.
+    !> Rotation of an edge by displacements.
     pure real(wp) function rotation(line, side)
       type(boundary_line), intent(in) :: line
       integer, intent(in) :: side
@@ -177,12 +177,12 @@ contains
     end function rotation
   end function bend
 
-  !> How far sides are, at most, from the curve that their boundary means: as the undeformed curve rises
-  !! above them, and as it bends [length].
+  !> Largest distance of edges from the curve of their boundary: height of the undeformed curve, and
+  !! bending [length].
   pure real(wp) function openness(displacement, line, sides, over)
     real(wp), intent(in) :: displacement(:, :), over
     type(boundary_line), intent(in) :: line
-    integer, intent(in) :: sides(:)   !! 0: none
+    integer, intent(in) :: sides(:)   !! 0 if absent
     real(wp) :: rise
     integer :: end, k
 
@@ -197,8 +197,8 @@ contains
     end do
   end function openness
 
-  !> The gap that displacements have made of that between a node and what it faces of a line, and how far
-  !! the node has slid along the line [length].
+  !> Gap between a node and its projection on a line after displacements, and the relative tangential
+  !! displacement [length].
   pure function gap_and_slip(displacement, node, line, face)
     real(wp), intent(in) :: displacement(:, :)
     integer, intent(in) :: node
@@ -215,13 +215,13 @@ contains
     gap_and_slip = [face%gap + dot_product(face%normal, apart), abs(cross_product(face%normal, apart))]
   end function gap_and_slip
 
-  !> How far a node of the master may pass through a side of the slave [length].
+  !> Allowed penetration of a master node into a slave edge [length].
   pure real(wp) function left_open(moved, contact, side, which, face, slip)
     type(moved_bodies), intent(in) :: moved
     type(line_contact), intent(in) :: contact
-    integer, intent(in) :: side, which       !! the node of the master
-    type(facing_type), intent(in) :: face    !! and what it faces
-    real(wp), intent(in) :: slip             !! how far it has slid there [length]
+    integer, intent(in) :: side, which       !! the master node
+    type(facing_type), intent(in) :: face    !! its projection
+    real(wp), intent(in) :: slip             !! relative tangential displacement there [length]
     logical :: smooth
     real(wp) :: angle
     integer :: beside
@@ -230,10 +230,10 @@ contains
     associate (slave => contact%slave, master => contact%master, s => face%segment)
       smooth = which == 3 .or. .not. master%corner(min(which, 2), side)
       if (smooth .and. all(moved%holds(slave%segment(:, s)) .or. slave%segment(:, s) == 0)) then
-        ! It is where the mesh has it; a pair of its own would be one too many.
+        ! The slave node is at this point already; a second pair would be redundant.
         left_open = most*moved%travel
       else if (is_held_off(moved, contact, s)) then
-        ! Over a side of the slave gaps are closed in the mean, however short the master's are.
+        ! Over a slave edge, gaps are closed on average, however short the master's edges are.
         beside = 0
         if (which < 3) beside = master%neighbour(which, side)
         left_open = left_open + allowance*(openness(moved%displacement, slave, [s], 0.0_wp) + &
@@ -249,8 +249,8 @@ contains
     left_open = min(left_open, most*moved%travel)
   end function left_open
 
-  !> Does a node of a side of the slave, or of those beside it, stand on the other line? Then contact ends
-  !! near by, between nodes.
+  !> Is a node of a slave edge, or of its neighbours, in contact? Then the end of contact is near, between
+  !! nodes.
   pure logical function is_held_off(moved, contact, side)
     type(moved_bodies), intent(in) :: moved
     type(line_contact), intent(in) :: contact
@@ -263,7 +263,7 @@ contains
 
   !> Give pairs to the nodes that came near.
   subroutine pair_nodes_that_came_near(model, contacts, paired)
-    type(model_type), intent(inout) :: model      !! the scene
+    type(model_type), intent(inout) :: model      !! the model
     type(line_contact), intent(in) :: contacts(:) !! its contacts with these nodes
     logical, intent(out) :: paired                !! are there more pairs now?
     type(line_contact) :: contact

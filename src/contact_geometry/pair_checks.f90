@@ -1,4 +1,4 @@
-!> Pairs that cannot do what pairs are for: found before solving, and warned of, or refused.
+!> Checks pairs before solving: errors and warnings.
 module epcont_contact_geometry_pair_checks
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
@@ -13,24 +13,24 @@ module epcont_contact_geometry_pair_checks
   public :: check_pairs
 
   real(wp), parameter :: &
-    !> A normal within 60 degrees of a boundary's own goes its way.
+    !> Cosine between normals of the same sense: at most 60 degrees.
     same_way = 0.5_wp, &
-    !> Normals of two CGAPs are one within 2.5 degrees: in a groove, whose walls stand at a larger angle, each
-    !! has its force.
+    !> Cosine between equal normals of two CGAPs: at most 2.5 degrees. The walls of a groove have a larger
+    !! angle, and each has its force.
     parallel = 0.999_wp, &
-    !> The normal of a CGAP is that of a line, which bends from node to node, within 45 degrees.
+    !> Cosine between the normals of a CGAP and a line, which bends from node to node: at most 45 degrees.
     one_face = sqrt(0.5_wp)
 
 contains
 
-  !> Refuse pairs at one place, and warn of those that point the wrong way, that do not lie opposite each
-  !! other, that can neither open nor close, and of six-node sides with half of them.
+  !> Report pairs at the same point as errors; warn of pairs with a wrong sense, of nodes not opposite each
+  !! other, of pairs that can neither open nor close, and of six-node edges with incomplete pairs.
   subroutine check_pairs(model, found)
-    type(model_type), intent(in) :: model   !! the scene
-    type(findings), intent(inout) :: found   !! what is wrong with it is added
+    type(model_type), intent(in) :: model   !! the model
+    type(findings), intent(inout) :: found   !! errors are added
     type(incidence) :: around          ! CGAPs at each node
     logical :: on_line(0:model%mesh%nodes)  ! nodes of lines in contact
-    !> Of each node: the longest side there [length]; outward normal of the boundary, zero where there is none
+    !> At each node: longest edge [length]; outward normal of the boundary, zero if there is no boundary
     real(wp) :: longest(model%mesh%nodes), outward(2, model%mesh%nodes)
     integer :: c, cgaps
 
@@ -55,10 +55,10 @@ contains
 
   contains
 
-    !> Normals that go into the body of node A, or out of that of node B; but not where the other node says
-    !! that they are right.
+    !> Warn of normals that point into the body of node A, or out of that of node B, unless the other node
+    !! shows that they are right.
     subroutine warn_of_wrong_ways()
-      real(wp) :: along(2)   ! the normal, along those of the two boundaries
+      real(wp) :: along(2)   ! cosines with the two boundary normals
       integer :: i, k
 
       do k = 1, cgaps
@@ -67,12 +67,12 @@ contains
         if (along(1) <= -same_way .or. along(2) >= same_way) &
           call found%add_warning(of_pair, k, 1, ': its normal points the wrong way: into the body of GA, '// &
                                  'or out of that of GB', &
-                                 'GA and GB exchanged, or the x-axis of CID turned round')
+                                 'GA and GB exchanged, or the x-axis of CID reversed')
       end do
     end subroutine warn_of_wrong_ways
 
-    !> One warning for all CGAPs whose two nodes, both of bodies, lie farther apart across the normal than a
-    !! side there is long.
+    !> Give one warning for all CGAPs whose nodes, both on bodies, are farther apart across the normal than
+    !! the longest edge there.
     subroutine warn_of_sideways()
       real(wp) :: sideways(cgaps)
       integer :: far, k
@@ -94,16 +94,16 @@ contains
     end subroutine warn_of_sideways
   end subroutine check_pairs
 
-  !> Of two pairs at one place each would bear a part of the force, and the pressure would be that of a
-  !! part: CGAPs at the place of another, and at the place of a pair of lines.
+  !> Report CGAPs at the same point as another CGAP or a pair of lines: each would carry a part of the force,
+  !! and the pressure would be too small.
   subroutine refuse_pairs_twice(model, around, cgaps, found)
     type(model_type), intent(in) :: model
     type(incidence), intent(in) :: around
     integer, intent(in) :: cgaps
     type(findings), intent(inout) :: found
     integer :: c, k
-    type(incidence) :: lines   ! pairs of lines in which each node stands on sides
-    integer, dimension(cgaps) :: cgap, line   ! like each pair; 0: none
+    type(incidence) :: lines   ! pairs of lines of each node that is projected
+    integer, dimension(cgaps) :: cgap, line   ! equal pair, 0 if absent
 
     lines = new_incidence(reshape(model%contact%row_node(model%contact%row_start(cgaps + &
       1:model%contact%pairs)), &
@@ -123,7 +123,7 @@ contains
                          ' joins along the same normal'//like_this(line), 'either CGAPs or a BCONP')
   end subroutine refuse_pairs_twice
 
-  !> The first CGAP before pair k that is between its nodes, along its normal, with its gap; 0: none.
+  !> First CGAP before pair k with the same nodes, normal and gap, 0 if absent.
   pure integer function cgap_like(model, around, k) result(other)
     type(model_type), intent(in) :: model
     type(incidence), intent(in) :: around
@@ -133,7 +133,7 @@ contains
 
     associate (a => model%contact%pair_node(1, k), b => model%contact%pair_node(2, k))
       apart = norm2(model%mesh%x(:, b) - model%mesh%x(:, a)) + abs(model%contact%initial_gap(k))
-      ! At a node of the ground there may be thousands.
+      ! A node of the ground may have thousands.
       node = merge(a, b, around%start(a + 1) - around%start(a) < around%start(b + 1) - around%start(b))
       do i = around%start(node), around%start(node + 1) - 1
         other = around%group(i)
@@ -148,7 +148,7 @@ contains
     other = 0
   end function cgap_like
 
-  !> The first pair of lines that joins the nodes of CGAP k along its normal; 0: none.
+  !> First pair of lines between the nodes of CGAP k, with the same normal, 0 if absent.
   pure integer function line_pair_like(model, cgaps, lines, k) result(pair)
     type(model_type), intent(in) :: model
     integer, intent(in) :: cgaps, k
@@ -175,7 +175,7 @@ contains
   subroutine look_around_nodes(model, longest, outward)
     type(model_type), intent(in) :: model
     real(wp), intent(inout) :: longest(:), outward(:, :)
-    real(wp) :: chord(2), length(model%mesh%nodes)   ! of all sides around each node
+    real(wp) :: chord(2), length(model%mesh%nodes)   ! of all edges around each node
     integer :: k, s
 
     longest = 0.0_wp
@@ -191,18 +191,18 @@ contains
         end do
       end associate
     end do
-    do k = 1, model%mesh%nodes   ! sides all round a node cancel
+    do k = 1, model%mesh%nodes   ! edges all around a node cancel
       if (norm2(outward(:, k)) <= no_effect*length(k)) outward(:, k) = 0.0_wp
       outward(:, k) = unit(outward(:, k))
     end do
   end subroutine look_around_nodes
 
-  !> One warning for all pairs of a range whose nodes are held along the normal. A held overlap is no
-  !! warning: the run will end with it.
+  !> Give one warning for all pairs of a range whose nodes are fixed along the normal. A fixed overlap gives
+  !! no warning here: it ends the run with an error.
   subroutine warn_of_held(model, first, last, couple, found)
     type(model_type), intent(in) :: model
     integer, intent(in) :: first, last       !! the range
-    integer, intent(in) :: couple            !! of lines that the pairs are of; 0: given one by one
+    integer, intent(in) :: couple            !! couple of lines of the pairs; 0: CGAPs
     type(findings), intent(inout) :: found
     integer, allocatable :: held(:)
     character(len=:), allocatable :: which
@@ -218,7 +218,7 @@ contains
 
   contains
 
-    !> Are all nodes of a pair held along its normal, and do they not overlap?
+    !> Are all nodes of a pair fixed along its normal, without overlap?
     pure logical function is_held(pair)
       integer, intent(in) :: pair
       real(wp) :: gap
@@ -240,9 +240,9 @@ contains
     end function is_held
   end subroutine warn_of_held
 
-  !> A six-node side presses by its middle, with two thirds of the force, and its ends: where some of these
-  !! have no pair, the side passes through what the others touch. A middle alone may be a point of support;
-  !! two beside each other are none.
+  !> Warn of incomplete pairs of six-node edges. An edge carries two thirds of its force at the mid-side node
+  !! and the rest at its ends; it penetrates at a node without a pair. A mid-side pair alone may be
+  !! a point support, but not two of them on neighbouring edges.
   subroutine warn_of_half_sides(model, around, on_line, found)
     type(model_type), intent(in) :: model
     type(incidence), intent(in) :: around
@@ -269,8 +269,8 @@ contains
     end associate
   end subroutine warn_of_half_sides
 
-  !> Has a six-node side that can bend, of no line, pairs at its ends alone, or, beside another such side,
-  !! at its middle alone?
+  !> Has a flexible six-node edge, on no line, pairs only at its ends, or, beside another such edge,
+  !! only at its mid-side node?
   pure logical function is_half(model, around, on_line, side)
     type(model_type), intent(in) :: model
     type(incidence), intent(in) :: around
@@ -289,7 +289,7 @@ contains
     is_half = merge(beside(3) .and. .not. any(at(:2)), all(at(:2)), at(3))
   end function is_half
 
-  !> Have the nodes of a six-node side a CGAP that presses on it?
+  !> Have the nodes of a six-node edge a CGAP along its normal?
   pure function has_pair(model, around, node)
     type(model_type), intent(in) :: model
     type(incidence), intent(in) :: around
@@ -309,9 +309,9 @@ contains
     end do
   end function has_pair
 
-  !> Why a pair is refused, and how many more CGAPs there are with such a pair than the one that is named.
+  !> Name the equal pair, and the number of further CGAPs with an equal pair.
   pure function like_this(pair) result(text)
-    integer, intent(in) :: pair(:)   !! 0: there is none
+    integer, intent(in) :: pair(:)   !! 0 if absent
     character(len=:), allocatable :: text
 
     text = ': forces would be shared between the two'

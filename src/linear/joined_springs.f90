@@ -134,7 +134,7 @@ contains
       softest = minval(largest, mask=largest > 0.0_wp)
     end function stiffness_of_softest
 
-    !> Stiffness of the softer body at a pair, of those that deform at all; 0: none does.
+    !> Stiffness of the softer body at a pair, of those that deform at all, 0 if absent does.
     pure real(wp) function softer_side(pair) result(softer)
       integer, intent(in) :: pair
       real(wp) :: side
