@@ -1,15 +1,15 @@
-!> The contact equations for a given set S of pairs in contact, factored from F and A, and their solution.
+!> Contact equations for a given set S of pairs in contact, factored from F and A, and their solution.
 !>
 !>     F_SS R_S - A_S q = -h,   A_S' R_S = p
 !>
-!> F_SS may be singular though the forces are unique (a pair between held nodes is a row of zeros).
-!> F_g = F + A gamma A' is definite whenever they are unique, and since A'R = p it changes only the
-!> motion: q comes out larger by gamma p, gamma a diagonal matrix. So what is factored is
+!> F_SS may be singular even if the forces are unique (a pair between fixed nodes has a row of zeros).
+!> F_g = F + A gamma A' is definite whenever they are unique. Since A'R = p, it changes the rigid-body
+!> displacement only: q is larger by gamma p, with the diagonal matrix gamma. The factored matrix is
 !>
 !>     [ F_g,SS  -A_S ]
 !>     [ -A_S'    0   ]
 !>
-!> whose last pivots are negative where the pairs hold the motions.
+!> whose last pivots are negative if the pairs restrain all modes.
 module epcont_contact_basis
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: lost_digits
@@ -19,13 +19,13 @@ module epcont_contact_basis
   private
   public :: contact_basis, new_basis, renew_basis, move_basis, are_independent, respond
 
-  !> A set of pairs in contact whose forces are unique, and the factor that gives them.
+  !> A set of pairs in contact whose forces are unique, with the factor of its equations.
   type :: contact_basis
-    logical :: sound = .false.           !! the forces are unique, and the pairs hold every motion
+    logical :: sound = .false.           !! forces are unique, and the pairs restrain all modes
     integer, allocatable :: pairs(:)     !! S [s]
-    integer :: motions = 0               !! m
-    integer, allocatable :: kept(:)      !! which of the given motions these are [m]
-    real(wp), allocatable :: gamma(:)    !! weight of each motion in F_g [m]
+    integer :: motions = 0               !! m, number of modes
+    integer, allocatable :: kept(:)      !! indices of these among the given modes [m]
+    real(wp), allocatable :: gamma(:)    !! weight of each mode in F_g [m]
     real(wp) :: scale = 0.0_wp           !! of F
     real(wp), allocatable :: factor(:, :)   !! [s + m, s + m]
   end type contact_basis
@@ -36,20 +36,20 @@ contains
   type(contact_basis) function new_basis(scaled, chosen, held) result(basis)
     type(scaled_problem), intent(in) :: scaled   !! in its own units
     logical, intent(in) :: chosen(:)             !! [n]
-    logical, intent(in), optional :: held        !! all motions, at zero: F_g alone is factored
+    logical, intent(in), optional :: held        !! all modes are zero: only F_g is factored
     logical :: definite
 
     call begin(basis, scaled, chosen, held)
     call factor_basis(basis, scaled, lost_digits, definite)
     if (definite) return
-    ! The order of pivots, which takes longer, tells who depends on whom.
+    ! The pivot order takes longer, but shows the dependent pairs.
     call leave_out_dependent(basis, scaled)
     call factor_basis(basis, scaled, 0.0_wp, definite)
   end function new_basis
 
-  !> Factor the equations of the chosen pairs, if that is not what the basis has: then F must be the same.
+  !> Factor the equations of the chosen pairs, unless the basis has them; then F must be the same.
   subroutine renew_basis(basis, scaled, chosen)
-    type(contact_basis), intent(inout) :: basis   !! none, or of any set
+    type(contact_basis), intent(inout) :: basis   !! empty, or of any set
     type(scaled_problem), intent(in) :: scaled   !! in its own units
     logical, intent(in) :: chosen(:)             !! [n]
     logical :: same
@@ -64,10 +64,10 @@ contains
     basis = new_basis(scaled, chosen)
   end subroutine renew_basis
 
-  !> Hand a basis over; none is left.
+  !> Move a basis; the source is empty afterwards.
   subroutine move_basis(from, to)
-    type(contact_basis), intent(inout) :: from   !! may be none
-    type(contact_basis), intent(out) :: to       !! the same
+    type(contact_basis), intent(inout) :: from   !! may be empty
+    type(contact_basis), intent(out) :: to       !! the moved basis
     real(wp), allocatable :: factor(:, :)
 
     call move_alloc(from%factor, factor)
@@ -75,7 +75,7 @@ contains
     call move_alloc(factor, to%factor)
   end subroutine move_basis
 
-  !> Does clearly no force of the chosen pairs depend on others, whatever the motions are?
+  !> Are the forces of the chosen pairs clearly independent, for any rigid-body displacement?
   logical function are_independent(scaled, chosen) result(independent)
     type(scaled_problem), intent(in) :: scaled   !! in its own units
     logical, intent(in) :: chosen(:)             !! [n]
@@ -85,7 +85,7 @@ contains
     call factor_basis(basis, scaled, lost_digits, independent)
   end function are_independent
 
-  !> The chosen pairs and all motions, or none.
+  !> Begin with the chosen pairs and all modes, or no modes.
   pure subroutine begin(basis, scaled, chosen, held)
     type(contact_basis), intent(out) :: basis
     type(scaled_problem), intent(in) :: scaled
@@ -105,8 +105,8 @@ contains
   subroutine factor_basis(basis, scaled, least, definite)
     type(contact_basis), intent(inout) :: basis
     type(scaled_problem), intent(in) :: scaled
-    real(wp), intent(in) :: least       !! of pivots of forces that are unique, over their softness
-    logical, intent(out) :: definite    !! all are
+    real(wp), intent(in) :: least       !! least pivot of a unique force, over its softness
+    logical, intent(out) :: definite    !! all pivots are above `least`
     real(wp), allocatable :: closing(:, :)   ! A_S
     integer :: info, k, n
 
@@ -122,11 +122,11 @@ contains
     call factor_saddle(n + basis%motions, basis%factor, n, info)
     definite = (info == 0 .or. info > n) .and. &
                all([(basis%factor(k, k)**2, k=1, n)] >= least*scaled%softness(basis%pairs))
-    ! Fewer pairs than motions do not hold these, whatever rounding makes of the last pivot.
+    ! Fewer pairs than modes do not restrain these, whatever the rounding of the last pivot.
     basis%sound = definite .and. info == 0 .and. n >= basis%motions
   end subroutine factor_basis
 
-  !> The lower triangle of F_g,SS.
+  !> Compute the lower triangle of F_g,SS.
   pure subroutine add_pairs(scaled, pairs, closing, f)
     type(scaled_problem), intent(in) :: scaled
     integer, intent(in) :: pairs(:)
@@ -143,7 +143,7 @@ contains
     end do
   end subroutine add_pairs
 
-  !> Pairs in the order of their pivots, without those whose pivots are zero but for rounding.
+  !> Order the pairs by their pivots, without those whose pivots are zero up to rounding.
   subroutine leave_out_dependent(basis, scaled)
     type(contact_basis), intent(inout) :: basis
     type(scaled_problem), intent(in) :: scaled
@@ -161,14 +161,14 @@ contains
     basis%pairs = basis%pairs(order(:rank))
   end subroutine leave_out_dependent
 
-  !> Forces and motions for right-hand sides h and p; call only if the basis is sound.
+  !> Compute forces and modes for right-hand sides h and p; the basis must be sound.
   pure subroutine respond(basis, opening, load, force, approach)
-    type(contact_basis), intent(in) :: basis   !! a sound one
+    type(contact_basis), intent(in) :: basis   !! sound
     real(wp), intent(in) :: opening(:, :)      !! h, gaps of the pairs without forces [s, k]
     real(wp), intent(in) :: load(:, :)         !! p [m, k]
     real(wp), allocatable, intent(out) :: force(:, :)      !! R_S [s, k]
     real(wp), allocatable, intent(out) :: approach(:, :)   !! q [m, k]
-    real(wp), allocatable :: x(:, :)     ! forces and motions
+    real(wp), allocatable :: x(:, :)     ! forces and modes
 
     associate (n => size(basis%pairs))
       allocate (x(n + basis%motions, size(opening, 2)))

@@ -1,7 +1,7 @@
-!> Block principal pivoting: of a set of contacts all pairs whose force is beyond a bound take that, and of
-!> the others all whose gap has the wrong sign close, at once (Kostreva 1978; Judice and Pires 1994). It
-!> decides where rounding hides the set from the simplex, whose path it does not follow: each set is solved by
-!> a factor of its own.
+!> Block principal pivoting: all pairs in contact whose force is beyond a bound take this bound, and all other
+!> pairs whose gap has the wrong sign close, in one step (Kostreva 1978; Judice and Pires 1994). It is used if
+!> rounding misleads the simplex, as it does not follow a path: each active set is solved with its own
+!> factor.
 module epcont_contact_block_pivoting
   use epcont_base_kinds, only: wp
   use epcont_contact_basis, only: new_basis
@@ -11,23 +11,23 @@ module epcont_contact_block_pivoting
   private
   public :: exchange_blocks
 
-  !> Part of the largest force by which forces and gaps may have the wrong sign while there is something to
-  !! gain; the test of the fresh solution decides.
+  !> Forces and gaps may have the wrong sign up to this fraction of the largest force while sets are
+  !! exchanged; the test of the fresh solution decides.
   real(wp), parameter :: exchange_tolerance = 1.0e-13_wp
-  !> Sets at most, and those without fewer wrong pairs before exchanges are given up.
+  !> Maximum number of sets, and of sets without fewer wrong pairs.
   integer, parameter :: step_limit = 100, patience_limit = 10
 
 contains
 
-  !> Exchange pairs until none is wrong, or that leads nowhere. The exchanges are counted.
+  !> Exchange pairs until no pair is wrong or there is no progress. Count the exchanges.
   subroutine exchange_blocks(scaled, set, exchanged)
     type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
-    type(active_set), intent(inout) :: set       !! the first, then the last
-    integer, intent(inout) :: exchanged          !! pairs so far
+    type(active_set), intent(inout) :: set       !! first set, then last set
+    integer, intent(inout) :: exchanged          !! number of pairs so far
     type(contact_state) :: trial
     logical :: wrong(size(set%closed))
-    integer :: fewest     ! wrong pairs, at best
-    integer :: patience   ! steps left to come below it
+    integer :: fewest     ! least number of wrong pairs
+    integer :: patience   ! steps left to find fewer
     integer :: step
 
     fewest = huge(fewest)
@@ -51,7 +51,7 @@ contains
     end do
   end subroutine exchange_blocks
 
-  !> Pairs of the set whose force is beyond a bound, and others whose gap has the wrong sign.
+  !> Find pairs of the set whose force is beyond a bound, and others whose gap has the wrong sign.
   pure function wrong_pairs(scaled, trial, closed) result(wrong)
     type(scaled_problem), intent(in) :: scaled
     type(contact_state), intent(in) :: trial

@@ -1,16 +1,16 @@
-!> The start: which pairs touch first if the bodies are rigid.
+!> Start of the contact solution: the pairs in contact first if the bodies are rigid.
 !>
-!> The ordinary two-phase simplex with bounded variables, with Dantzig's rule and, should that run in circles,
+!> Two-phase simplex with bounded variables, with Dantzig's rule and, if it cycles,
 !> Bland's, on
 !>
 !>     minimise g^'R   subject to   A'R = P,   0 <= R <= u
 !>
-!> The first phase finds forces that carry the load at all, or a motion along which nothing resists it;
-!> the second, bounded since g^ >= 0, the statically determinate set of pairs that closes first.
+!> The first phase finds forces that carry the load, or an unconstrained rigid-body mode;
+!> the second, bounded since g^ >= 0, finds the statically determinate set of pairs that closes first.
 !>
-!> There is no tableau, only the inverse of its basis, from which a column or a row of it is put together when
-!> it is asked for: of many bodies each has few pairs, so A has few entries. A row of the inverse often has
-!> few, too, far apart in memory: marks tell where they may be.
+!> There is no tableau, only the inverse of the basis, from which a column or a row is computed when
+!> needed: each of many bodies has few pairs, so A has few entries. A row of the inverse often has
+!> few entries, too, far apart in memory: marks show where they may be.
 module epcont_contact_equilibrium
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: dependent, negligible, null_component
@@ -19,36 +19,36 @@ module epcont_contact_equilibrium
   private
   public :: rigid_start, find_rigid_start, can_carry
 
-  !> What rigid bodies do under the load.
+  !> Result for rigid bodies under the load.
   type :: rigid_start
     logical :: balanced = .false.          !! some forces within their bounds carry P
-    logical, allocatable :: touching(:)    !! the pairs that touch first, one a kept motion [n]
+    logical, allocatable :: touching(:)    !! pairs in contact first, one for each kept mode [n]
     logical, allocatable :: at_upper(:)    !! others whose force is at its upper bound [n]
-    logical, allocatable :: redundant(:)   !! motions neither resisted nor loaded [m]
-    !> y with P'y > 0, along which no force can grow that resists it, if not balanced [m]
+    logical, allocatable :: redundant(:)   !! modes neither restrained nor loaded [m]
+    !> If not balanced: y with P'y > 0 that no contact force resists [m]
     real(wp), allocatable :: escape(:)
   end type rigid_start
 
-  !> Columns of the inverse that are marked at a time.
+  !> Columns of the inverse for each mark.
   integer, parameter :: at_once = 64
 
-  !> The simplex at a basis.
+  !> Simplex with its current basis.
   type :: rigid_simplex
     integer :: n = 0                        !! forces
     type(motion_matrix) :: motion           !! A
-    type(motion_matrix) :: of_pair          !! the equations that each force is in
-    real(wp), allocatable :: side(:)        !! signs of the equations, that make P >= 0 [m]
-    !> Which variable is basic in each equation: forces are 1..n, then one artificial force an equation. In
-    !! phase 1 these carry all of the load and cost one a unit [m]
+    type(motion_matrix) :: of_pair          !! equations of each force
+    real(wp), allocatable :: side(:)        !! signs of the equations that make P >= 0 [m]
+    !> Basic variable of each equation: forces are 1..n, then one artificial force for each equation. In
+    !! phase 1 the artificial forces carry all of the load, with unit cost [m]
     integer, allocatable :: basic(:)
     real(wp), allocatable :: value(:)       !! basic variables [m]
-    real(wp), allocatable :: upper(:)       !! bounds of forces, then artificial ones [n + m]
-    logical, allocatable :: at_upper(:)     !! not basic, and there; else at zero [n + m]
+    real(wp), allocatable :: upper(:)       !! bounds of forces, then of artificial forces [n + m]
+    logical, allocatable :: at_upper(:)     !! nonbasic at the upper bound; else at zero [n + m]
     real(wp), allocatable :: inverse(:, :)  !! of the basis [m, m]
-    !> Its rows that have entries in so many columns at a time [m, m/at_once]
+    !> Rows of the inverse that have entries in each group of columns [m, m/at_once]
     logical, allocatable :: filled(:, :)
-    real(wp), allocatable :: cost(:)        !! of a unit of each force [n]
-    real(wp), allocatable :: price(:)       !! what a unit of load costs by the basic variables [m]
+    real(wp), allocatable :: cost(:)        !! cost of each unit force [n]
+    real(wp), allocatable :: price(:)       !! cost of each unit load, carried by the basic variables [m]
   contains
     procedure :: begin
     procedure :: minimise
@@ -71,15 +71,15 @@ contains
     carried = start%balanced
   end function can_carry
 
-  !> Which pairs touch first if the bodies are rigid, or the motion along which nothing resists the load.
+  !> Find the pairs in contact first if the bodies are rigid, or an unconstrained mode.
   subroutine find_rigid_start(motion, resultant, gap, start, upper)
     type(motion_matrix), intent(in) :: motion   !! A, largest entry about one [n, m]
     real(wp), intent(in) :: resultant(:)    !! P [m]
     real(wp), intent(in) :: gap(:)          !! g^, >= 0 [n]
-    type(rigid_start), intent(out) :: start   !! which pairs touch first, or the motion that nothing resists
-    real(wp), intent(in), optional :: upper(:)   !! bounds of the forces; not given: none [n]
+    type(rigid_start), intent(out) :: start   !! the result
+    real(wp), intent(in), optional :: upper(:)   !! bounds of the forces; absent: infinite [n]
     type(rigid_simplex) :: simplex
-    logical :: is_basic(size(gap) + size(resultant))   ! forces, then artificial ones
+    logical :: is_basic(size(gap) + size(resultant))   ! forces, then artificial forces
     integer :: i
 
     call simplex%begin(motion, resultant, upper)
@@ -91,7 +91,7 @@ contains
         return
       end if
       call simplex%expel_artificials()
-      ! Phase 2: forces cost their gaps; what is left of the artificials is zero and costs nothing.
+      ! Phase 2: forces cost their gaps; the remaining artificial forces are zero and cost nothing.
       simplex%cost = gap
       associate (of_all => [gap, 0.0_wp*resultant])
         simplex%price = [(dot_product(of_all(basic), simplex%inverse(:, i)), i=1, size(basic))]
@@ -105,7 +105,7 @@ contains
     end associate
   end subroutine find_rigid_start
 
-  !> Artificial forces carry all of the load.
+  !> Begin with artificial forces that carry all of the load.
   subroutine begin(self, motion, resultant, upper)
     class(rigid_simplex), intent(inout) :: self
     type(motion_matrix), intent(in) :: motion
@@ -139,14 +139,14 @@ contains
     self%price = spread(1.0_wp, 1, m)
   end subroutine begin
 
-  !> Exchange until no force lowers the cost. The force that lowers it most enters (Dantzig; of ties the
-  !! first), so that the basis keeps clear of pairs that all but depend on each other: two opposite ones
-  !! would have to carry a load across them by wedging. That may run in circles among ties; Bland's rule
-  !! ends. The limit guards against rounding, and a set that is not quite the best serves as well, since the
+  !> Exchange until no force lowers the cost. The force with the largest gain enters (Dantzig; the first if
+  !! equal), so that the basis avoids nearly dependent pairs: two opposite pairs
+  !! would have to carry a load across them by wedging. This may cycle among ties; Bland's rule
+  !! does not. The limit guards against rounding; a set that is not quite optimal is sufficient, since the
   !! contact simplex lifts its start.
   subroutine minimise(self)
     class(rigid_simplex), intent(inout) :: self
-    real(wp) :: gain(self%n)   ! by a unit of each force, towards its other bound
+    real(wp) :: gain(self%n)   ! of a unit of each force, towards its other bound
     real(wp), dimension(size(self%basic)) :: pivot, resolved
     integer :: column, count, row
     logical :: by_index
@@ -165,7 +165,7 @@ contains
       pivot = self%column_of(column)
       row = self%find_event(column, pivot, by_index)
       if (row < 0) exit
-      if (row == 0) then   ! all the way to the other bound
+      if (row == 0) then   ! up to the other bound
         associate (growth => merge(-1.0_wp, 1.0_wp, self%at_upper(column))*self%upper(column))
           self%value = within(self%value - growth*pivot, self%upper(self%basic))
         end associate
@@ -178,7 +178,7 @@ contains
     end do
   end subroutine minimise
 
-  !> What a combination of the equations has of each force.
+  !> Row of the constraint matrix for a combination of equations.
   pure function row_of(self, combination) result(row)
     class(rigid_simplex), intent(in) :: self
     real(wp), intent(in) :: combination(:)   !! weights of the equations [m]
@@ -187,7 +187,7 @@ contains
     row = self%motion%times(self%side*combination)
   end function row_of
 
-  !> How far each basic variable falls as a force grows.
+  !> Decrease of each basic variable for a unit of a force.
   pure function column_of(self, pair) result(pivot)
     class(rigid_simplex), intent(in) :: self
     integer, intent(in) :: pair
@@ -205,9 +205,9 @@ contains
     end do
   end function column_of
 
-  !> The row of the basic variable that comes to a bound first; of ties, the first of the largest pivots, or
-  !! the variable of least index (Bland). 0: the entering force comes to its other bound before; negative:
-  !! nothing comes to any.
+  !> Row of the basic variable that reaches a bound first; if equal, the first of the largest pivots, or
+  !! the variable of least index (Bland). 0: the entering force reaches its other bound before; negative:
+  !! no variable reaches a bound.
   pure integer function find_event(self, column, pivot, by_index) result(row)
     class(rigid_simplex), intent(in) :: self
     integer, intent(in) :: column      !! the entering force
@@ -241,14 +241,14 @@ contains
     if (self%upper(column) < least) row = 0
   end function find_event
 
-  !> A force becomes basic in a row of the inverse. The variable that leaves is at the bound that it was near.
+  !> Make a force basic in a row of the inverse. The variable that leaves is at its nearer bound.
   subroutine exchange(self, row, column, pivot, resolved)
     class(rigid_simplex), intent(inout) :: self
     integer, intent(in) :: row, column   !! column: the force
     real(wp), intent(in) :: pivot(:)     !! its column
-    real(wp), intent(out) :: resolved(:)   !! that row, then
-    integer, allocatable :: falling(:)   ! the others that it changes
-    real(wp) :: growth                   ! of the force
+    real(wp), intent(out) :: resolved(:)   !! the new row
+    integer, allocatable :: falling(:)   ! other rows that change
+    real(wp) :: growth                   ! of the entering force
     integer :: equation, i, many
 
     falling = pack([(i, i=1, size(pivot))], pivot /= 0.0_wp .and. [(i /= row, i=1, size(pivot))])
@@ -277,8 +277,8 @@ contains
     end do
   end subroutine exchange
 
-  !> Replace each artificial force that is basic at zero by a true one; where none can, the equation is
-  !! redundant and the artificial stays to mark it.
+  !> Replace each artificial force that is basic at zero by a contact force. If that is impossible, the
+  !! equation is redundant and the artificial force marks it.
   subroutine expel_artificials(self)
     class(rigid_simplex), intent(inout) :: self
     real(wp) :: resolved(size(self%basic)), row(self%n)
@@ -297,22 +297,22 @@ contains
     end do
   end subroutine expel_artificials
 
-  !> A value, or the bound that it has passed.
+  !> Clip a value to its bounds.
   elemental real(wp) function within(value, upper)
     real(wp), intent(in) :: value, upper
 
     within = min(max(value, 0.0_wp), upper)
   end function within
 
-  !> The first of those that are the largest but for rounding, so that it is the same on every processor; 0:
-  !! none is above `least`.
+  !> First of the values that are largest up to rounding, so that it is the same on every processor; 0
+  !! if no value is above `least`.
   pure integer function first_largest(values, least) result(at)
     real(wp), intent(in) :: values(:)
     real(wp), intent(in) :: least     !! > 0
     real(wp) :: largest
 
     at = 0
-    largest = max(maxval(values), least)   ! -huge of no values
+    largest = max(maxval(values), least)   ! `least` if there are no values
     if (largest > least) &
       at = findloc(values > max(largest - negligible*maxval(abs(values)), least), .true., dim=1)
   end function first_largest

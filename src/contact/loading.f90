@@ -1,23 +1,23 @@
-!> The simplex on the load not carried yet: follow the contact as the load factor t grows from 0 to 1.
+!> Simplex along the load: follow the contact as the load factor t grows from 0 to 1.
 !>
 !> The tableau has each basic variable as a linear function of the nonbasic ones:
 !>
 !>     basic(i) = value(i) + sum over j of entry(i, j) nonbasic(j)
 !>
 !> A variable is an integer: k is the force R_k, -k the gap w_k, 0 the load factor t; so -v is the partner
-!> of v. Nonbasic variables are zero, hence `value` is where the simplex stands. The motions q are free
-!> in sign: they are always basic, never block, and no other row needs theirs; so they have no rows.
+!> of v. Nonbasic variables are zero, so `value` is the current solution. Rigid-body modes q are free
+!> in sign: they are always basic, never block, and no other row depends on theirs; so they have no rows.
 !>
 !>            partners 1..n      t                         n columns + 1
 !>          +---------------+--------+
 !>     R, w |     entry     |  x - c |  row k: the basic one of R_k, w_k, at first
 !>          +---------------+--------+
 !>
-!> A force at its upper bound u is nonbasic, too: R_k then stands for u - R_k, and w_k for -w_k, so that a
-!> variable that leaves is always zero (upper bounding). Row and column of the pair change their signs.
+!> A force at its upper bound u is nonbasic, too: R_k then means u - R_k, and w_k means -w_k, so that a
+!> variable that leaves is always zero (upper bounding). Row and column of the pair change sign.
 !>
-!> A pivot adds a column times a row to the entries. These are kept apart until there are `panel` of them, and
-!> then added by one dgemm; a column or a row of the tableau is put together when it is asked for: entry =
+!> A pivot adds a column times a row to the entries. These are kept separate until there are `panel` of them,
+!> and then added by one dgemm; a column or a row of the tableau is computed when needed: entry =
 !> settled + pivot_columns pivot_rows.
 module epcont_contact_loading
   use epcont_base_kinds, only: wp
@@ -31,34 +31,34 @@ module epcont_contact_loading
   private
   public :: follow_load
 
-  !> Pivots allowed for each unknown before rounding is taken to have broken the path; sound ones were seen to
-  !! take up to 2.
+  !> Pivots for each unknown after which rounding is assumed to have broken the path; sound paths took
+  !! up to 2.
   integer, parameter :: pivots_per_unknown = 4
-  !> The variable that carries the load from 0 to 1.
+  !> Variable that carries the load from 0 to 1.
   integer, parameter :: load_factor = 0
-  !> Pivots whose products are added together.
+  !> Number of pivots whose products are added together.
   integer, parameter :: panel = 16
 
   type :: load_tableau
     integer :: n = 0                                    !! pairs
-    real(wp), allocatable :: settled(:, :)              !! the entries but for the last pivots [n, n + 1]
-    integer :: pending = 0                              !! so many are these
+    real(wp), allocatable :: settled(:, :)              !! entries without the last pivots [n, n + 1]
+    integer :: pending = 0                              !! number of these
     real(wp), allocatable :: pivot_columns(:, :), pivot_rows(:, :)   !! [n, panel], [panel, n + 1]
     real(wp), allocatable :: value(:)                   !! basic variables [n]
-    !> Variable of each row, now and at the start; those are perturbed against ties [n]
+    !> Variable of each row, now and at the start; the first ones are perturbed against ties [n]
     integer, allocatable :: basic(:), first_basic(:)
-    !> Place of each variable: its row, or minus its column [-n:n]
+    !> Position of each variable: its row, or minus its column [-n:n]
     integer, allocatable :: place(:)
     real(wp), allocatable :: upper(:)                   !! bounds of the forces [n]
     logical :: bounded = .false.                        !! some are finite
     !> Pairs whose force is measured from its upper bound, now and at the start [n]
     logical, allocatable :: turned(:), first_turned(:)
     integer :: entering = load_factor                   !! variable
-    integer :: column = 0                               !! of that
+    integer :: column = 0                               !! its column
     real(wp), allocatable :: slope(:)                   !! change of the basic variables with it [n]
     real(wp) :: load_rate = 1.0_wp                      !! and of the load factor
-    real(wp) :: ratio = 0.0_wp                          !! it grows by up to the next event
-    !> Row of the variable that leaves then, 0 if absent, or the entering one comes to its own bound
+    real(wp) :: ratio = 0.0_wp                          !! its increase up to the next event
+    !> Row of the variable that leaves then, 0 if absent or if the entering one reaches
     integer :: row = 0
   contains
     procedure :: begin
@@ -77,13 +77,13 @@ contains
   !! partner of the variable that left enters next (Conry and Seireg 1971).
   subroutine follow_load(scaled, state, start, solution, complete, set, ray)
     type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
-    type(contact_state), intent(in) :: state     !! a sound set at t = 1: its forces are basic at first
+    type(contact_state), intent(in) :: state     !! sound set at t = 1: its forces are basic first
     real(wp), intent(in) :: start(:)             !! basic variable of each pair at t = 0, all >= 0 [n]
     type(contact_solution), intent(inout) :: solution   !! pivots are counted and recorded here
-    !> All of the load is carried; else there is a ray, or rounding has broken the order of ties.
+    !> All of the load is carried; else there is a ray, or rounding has broken the order of ties
     logical, intent(out) :: complete
-    type(active_set), intent(out) :: set                !! pairs with a basic force at the end are closed
-    !> Growth of the forces where the load cannot grow and nothing deforms; else not allocated [n]
+    type(active_set), intent(out) :: set                !! pairs in contact: with a basic force at the end
+    !> Growth of the forces if the load cannot grow and nothing deforms; else not allocated [n]
     real(wp), allocatable, intent(out) :: ray(:)
     type(load_tableau) :: tableau
     integer :: count, i
@@ -104,13 +104,13 @@ contains
         if (entering > 0) ray(entering) = 1.0_wp
       end if
       set%closed = tableau%place(1:) > 0
-      ! The force on its way in at full load is positive; where it moved no load it stays out.
+      ! The force that enters at full load is positive, unless it carried no load.
       if (entering > 0 .and. tableau%load_rate > 0.0_wp) set%closed(entering) = .true.
     end associate
     set%at_upper = tableau%turned .and. .not. set%closed
   end subroutine follow_load
 
-  !> The tableau of the set, with the responses of the basic variables to unit nonbasic ones: gaps of the
+  !> Make the tableau of the set, with the responses of the basic variables to unit nonbasic ones: gaps of
   !! pairs in contact, forces of the others.
   subroutine begin(self, scaled, state, start)
     class(load_tableau), intent(inout) :: self
@@ -159,7 +159,7 @@ contains
     self%settled(:, n + 1) = basic_values(state) - start
   end subroutine begin
 
-  !> Measure the force of a pair from its other bound, and its gap the other way.
+  !> Measure the force of a pair from its other bound, and its gap in the opposite sense.
   subroutine turn(self, pair)
     class(load_tableau), intent(inout) :: self
     integer, intent(in) :: pair
@@ -182,8 +182,8 @@ contains
     end do
   end subroutine turn
 
-  !> How far the entering variable can grow, and the row of the basic one that comes to a bound first. 0: it
-  !! comes to its own before, or nothing comes to any (the ratio is huge).
+  !> Find the largest growth of the entering variable, and the row of the basic one that reaches a bound
+  !! first; 0 if it reaches its own bound before, or none is reached (then the ratio is huge).
   subroutine test_ratios(self)
     class(load_tableau), intent(inout) :: self
     logical :: blocking(self%n)
@@ -209,7 +209,7 @@ contains
 
   contains
 
-    !> Forces that grow come to their upper bounds.
+    !> Check the upper bounds of growing forces.
     subroutine test_bounds()
       integer :: i
 
@@ -223,10 +223,10 @@ contains
     end subroutine test_bounds
   end subroutine test_ratios
 
-  !> The one of the tied rows that would block first if the basic variables of the start were larger by e,
-  !! e^2, ... (lexicographic order). Without it ties could make the simplex go round in circles. Row i
-  !! changes with such a variable by 1 if it is basic in it, not at all if it is basic elsewhere, and else
-  !! by minus the entry of its column; the other way if the variable has been turned since.
+  !> Find the tied row that would block first if the basic variables of the start were larger by e,
+  !! e^2, ... (lexicographic order). Otherwise, ties could make the simplex cycle. Row i
+  !! changes with such a variable by 1 if it is basic in it, by 0 if it is basic elsewhere, and else
+  !! by minus the entry of its column; with opposite sign if the variable has been turned since.
   pure integer function least_row(self, tied) result(row)
     class(load_tableau), intent(in) :: self
     logical, intent(in) :: tied(:)     !! [n]
@@ -257,7 +257,7 @@ contains
     row = rows(1)
   end function least_row
 
-  !> Those of some rows in a column.
+  !> Entries of some rows in a column.
   pure function entries_of_rows(self, rows, column) result(entry)
     class(load_tableau), intent(in) :: self
     integer, intent(in) :: rows(:), column
@@ -282,8 +282,8 @@ contains
       max(1.0_wp - carried, 0.0_wp)/self%load_rate*(1.0_wp - solved_to) <= self%ratio
   end function is_complete
 
-  !> Go to the next event: a basic variable leaves, or the entering one comes to its other bound. The partner
-  !! of the variable that left enters next; of the first pivots, write down what happened.
+  !> Go to the next event: a basic variable leaves, or the entering one reaches its other bound. The partner
+  !! of the variable that left enters next. Record the first pivots.
   subroutine pivot(self, solution)
     class(load_tableau), intent(inout) :: self
     type(contact_solution), intent(inout) :: solution
@@ -302,7 +302,7 @@ contains
     solution%pivots = solution%pivots + 1
     if (solution%pivots <= history_limit) solution%history = &
       [solution%history, pivot_record(entered, leaving, self%value(self%place(load_factor)), self%ratio)]
-    ! (3-4), the contact entry rule: R_k for w_k and w_k for R_k, so that never are both basic
+    ! (3-4), the contact entry rule: R_k for w_k and w_k for R_k, so that they are never both basic
     self%entering = -leaving
   end subroutine pivot
 
@@ -315,8 +315,8 @@ contains
       call add_product(1.0_wp, self%pivot_columns, self%pivot_rows, self%settled)
       self%pending = 0
     end if
-    ! The entering row and the leaving column are replaced as a whole by the product; the others change by
-    ! it.
+    ! The entering row and the leaving column are replaced as a whole by the product; it changes
+    ! the others.
     associate (p => self%pending + 1, row => self%row, column => self%column)
       do j = 1, self%n + 1
         self%pivot_rows(p, j) = -(self%settled(row, j) &

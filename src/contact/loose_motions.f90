@@ -1,7 +1,7 @@
 !> Rigid-body modes that a set of pairs does not restrain: the x with A x = 0 in the rows of these pairs.
 !>
-!> Of many bodies A is large, and its singular values would take longer than all the rest. Modes that hang
-!> together through the pairs form a band in the order in which they are met from pair to pair.
+!> For many bodies A is large, and its singular values would take longer than everything else. Modes that
+!> are connected through pairs form a band in the order in which they are found from pair to pair.
 module epcont_contact_loose_motions
   use epcont_base_kinds, only: wp
   use epcont_flexibility_motion_matrix, only: motion_matrix
@@ -15,8 +15,8 @@ contains
   !> Find a basis of the modes that these pairs do not restrain, each of length one.
   function loose_motions(motion, pairs, tolerance) result(loose)
     type(motion_matrix), intent(in) :: motion   !! A, largest entry of each column one [n, m]
-    integer, intent(in) :: pairs(:)       !! each once
-    real(wp), intent(in) :: tolerance     !! a mode is not restrained if no more is left of it
+    integer, intent(in) :: pairs(:)       !! without repetition
+    real(wp), intent(in) :: tolerance     !! a mode with a smaller remainder is not restrained
     real(wp), allocatable :: loose(:, :)  !! [m, any]
     real(wp), allocatable :: more(:, :), own(:, :), r(:, :)
     integer, allocatable :: rows(:), together(:)   ! pairs, modes
@@ -45,7 +45,7 @@ contains
 
   contains
 
-    !> Modes that hang together with one, and their pairs, in the order in which they are met.
+    !> Find modes connected with one mode, and their pairs, in order.
     subroutine meet_all(first)
       integer, intent(in) :: first
       integer :: at, i, k, last
@@ -77,7 +77,7 @@ contains
       together = queue(:last)
     end subroutine meet_all
 
-    !> Rotate the rows of their pairs in, in that order: so each meets few of those before.
+    !> Rotate the rows of their pairs into r, in this order: then each row meets few others.
     subroutine rotate_all_in(r)
       real(wp), intent(inout) :: r(:, :)
       real(wp) :: row(band)

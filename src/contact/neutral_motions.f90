@@ -1,7 +1,7 @@
 !> Values of the rigid-body modes that contact leaves undetermined.
 !>
-!> The bodies are moved, with the pairs in contact closed, to where no gap is negative and their displacements
-!> are least (sum of squares): where equal springs would hold them. That is a contact problem of its own.
+!> The bodies move, with the pairs in contact closed, to the position without negative gaps and with the least
+!> displacements (sum of squares), as equal springs would do. That is a contact problem of its own.
 module epcont_contact_neutral_motions
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: cancelled, negligible
@@ -16,14 +16,14 @@ module epcont_contact_neutral_motions
 
 contains
 
-  !> Choose the values of the undetermined modes of a solution. Where that fails, it stays as it is.
+  !> Choose the values of the undetermined modes of a solution. If this fails, the solution stays.
   subroutine choose_neutral(problem, solution)
-    type(contact_problem), intent(in) :: problem        !! with the travel and the body of each mode
+    type(contact_problem), intent(in) :: problem        !! with displacements and body of each mode
     type(contact_solution), intent(inout) :: solution   !! its gaps and its approach are changed
     real(wp), allocatable :: loose(:, :), opening(:, :) ! undetermined modes, and the gaps that they open
     real(wp), allocatable :: moved(:, :), square(:, :)  ! displacements of these modes, and their products
     real(wp), allocatable :: change(:, :), given(:, :)  ! of the modes, in all and by a force at each gap
-    integer, allocatable :: pair(:)                     ! those whose gaps they open
+    integer, allocatable :: pair(:)                     ! pairs whose gaps they open
     real(wp), allocatable :: side(:)                    ! -1 if the gap must not be positive [these pairs]
     integer :: info
 
@@ -50,8 +50,8 @@ contains
     solution%gap(pair) = solution%gap(pair) + side*matmul(opening, change(:, 1))
   end subroutine choose_neutral
 
-  !> Add to a change of the modes what keeps all gaps open. Few of them would close: only those that did so
-  !! far are in the contact problem.
+  !> Correct a change of the modes so that all gaps stay open. Few of them would close: only those that did
+  !! are in the contact problem.
   subroutine keep_open(gap, opening, given, change, info)
     real(wp), intent(in) :: gap(:)           !! before the change [length] [pairs]
     real(wp), intent(in) :: opening(:, :)    !! by each mode [pairs, modes]
@@ -60,7 +60,7 @@ contains
     integer, intent(out) :: info             !! 0 if the gaps can be kept open
     real(wp), dimension(size(gap)) :: by_change, least, open
     real(wp) :: free(size(change))
-    logical, dimension(size(gap)) :: closes, closed   ! now, so far
+    logical, dimension(size(gap)) :: closes, closed   ! now, and so far
     integer :: k
 
     free = change
@@ -96,16 +96,16 @@ contains
     end subroutine hold
   end subroutine keep_open
 
-  !> Find modes that the pairs in contact do not restrain, and the gaps that they open. The displacement of
-  !! its body tells whether a mode closes a gap, not the other gaps that it closes: of a body on a flat that
-  !! leans by little against the axes, one mode is almost along the flat.
+  !> Find modes that the pairs in contact do not restrain, and the gaps that they open. Whether a mode closes
+  !! a gap is judged by the displacement of its body, not by the other gaps: for a body on a flat that is
+  !! inclined slightly to the axes, one mode is almost along the flat.
   subroutine find_neutral(problem, pressed, loose, pair, opening)
     type(contact_problem), intent(in) :: problem
     logical, intent(in) :: pressed(:)                    !! [pairs]
     real(wp), allocatable, intent(out) :: loose(:, :)    !! [all modes, any]
-    integer, allocatable, intent(out) :: pair(:)         !! those whose gaps they open
+    integer, allocatable, intent(out) :: pair(:)         !! pairs whose gaps they open
     real(wp), allocatable, intent(out) :: opening(:, :)  !! [these, any]
-    type(motion_matrix) :: closing                       ! A, by displacements
+    type(motion_matrix) :: closing                       ! A, divided by displacements
     integer :: k
 
     associate (length => lengths(problem))
@@ -120,7 +120,7 @@ contains
     end associate
   end subroutine find_neutral
 
-  !> How far each mode moves its body [length] [modes].
+  !> Displacement of the body of each mode [length] [modes].
   pure function lengths(problem)
     type(contact_problem), intent(in) :: problem
     real(wp), allocatable :: lengths(:)
@@ -129,7 +129,7 @@ contains
     if (allocated(problem%travel)) lengths = norm2(problem%travel, dim=1)
   end function lengths
 
-  !> How far modes move the bodies: each body's part below that of the body before [length] [any, any].
+  !> Displacements of the bodies by modes: the parts of all bodies, one below the other [length] [any, any].
   pure function displacements(problem, modes) result(moved)
     type(contact_problem), intent(in) :: problem
     real(wp), intent(in) :: modes(:, :)   !! [all modes, any]

@@ -1,7 +1,7 @@
-!> What is asked of the contact solver, and what it answers.
+!> Input and result of the contact solver.
 !>
-!> Of n candidate pairs and m free rigid motions of the bodies, find contact forces R, gaps w and
-!> motions q with (3-2)..(3-5), generalised:
+!> For n candidate pairs and m rigid-body modes of the bodies, find contact forces R, gaps w and
+!> rigid-body displacements q with (3-2)..(3-5), generalised:
 !>
 !>     w = g0 + gl + F R - A q,   A'R = P,   lower <= R <= upper
 !>     w >= 0 if R = lower,   w = 0 if R is between,   w <= 0 if R = upper
@@ -14,13 +14,13 @@ module epcont_contact_problem
   private
   public :: contact_problem, contact_solution, new_solution, pivot_record
 
-  !> What is true of the problem.
+  !> State of the solution.
   integer, parameter, public :: contact_solved = 0   !! forces, gaps and approach satisfy all conditions
   !> No R >= 0 carry P: the bodies are unconstrained along `escape`.
   integer, parameter, public :: contact_no_equilibrium = 1
   !> The pairs `overlapping` are too close and nothing deforms.
   integer, parameter, public :: contact_overlap = 2
-  !> No set of touching pairs passed the test: inconclusive because of rounding.
+  !> No active set passed the test: inconclusive because of rounding.
   integer, parameter, public :: contact_stalled = 3
 
   !> Number of pivots kept in `history`; all are counted.
@@ -28,17 +28,17 @@ module epcont_contact_problem
 
   type :: contact_problem
     real(wp), allocatable :: flexibility(:, :)  !! F, opening of pair i by a unit force at pair j [n, n]
-    type(motion_matrix) :: motion               !! A, closing of the gaps by unit rigid motions [n, m]
+    type(motion_matrix) :: motion               !! A, closing of the gaps by unit rigid-body modes [n, m]
     real(wp), allocatable :: initial_gap(:)     !! g0, negative: an overlap [length] [n]
     real(wp), allocatable :: load_gap(:)        !! gl, opening by the loads without contact [length] [n]
     real(wp), allocatable :: resultant(:)       !! P, load of the bodies along their rigid-body modes [m]
-    !> Forces about which those of the answer are found, and the gaps under loads and these, without motions:
-    !! F has a part in what is between the two alone. Not allocated: none [force], [length] [n]
+    !> Forces near the solution, and the gaps under loads and these forces, without modes:
+    !! F is applied to the difference of forces only. Not allocated: zero [force], [length] [n]
     real(wp), allocatable :: known_force(:), known_gap(:)
-    !> What the unit motions of each body take it by: of motions that nothing determines the least is chosen.
-    !! Not allocated: each by itself takes it by the largest gap that it closes [length] [any, m]
+    !> Displacements of the body by each unit mode: undetermined modes get the least displacements.
+    !! Not allocated: the largest gap that each mode closes [length] [any, m]
     real(wp), allocatable :: travel(:, :)
-    integer, allocatable :: body(:)             !! of each motion [m]
+    integer, allocatable :: body(:)             !! of each mode [m]
     !> Bounds of the forces; not allocated: zero and infinity, which is huge(1.0_wp) [force] [n]
     real(wp), allocatable :: lower(:), upper(:)
   contains
@@ -56,29 +56,29 @@ module epcont_contact_problem
   type :: contact_solution
     integer :: state = contact_stalled       !! one of the states above
     real(wp), allocatable :: force(:)        !! R [force] [n]
-    real(wp), allocatable :: change(:)       !! of these, more than the known forces [force] [n]
+    real(wp), allocatable :: change(:)       !! forces minus the known forces [force] [n]
     real(wp), allocatable :: gap(:)          !! w [length] [n]
     real(wp), allocatable :: approach(:)     !! q [m]
-    logical, allocatable :: touching(:)      !! closed pairs, pressed or not [n]
-    logical, allocatable :: at_upper(:)      !! their force is at its upper bound [n]
-    !> y with P'y > 0 and A y <= 0, if there is no equilibrium; if no set passed, with A y hardly more than
-    !! zero, where that is the cause [m]
+    logical, allocatable :: touching(:)      !! closed pairs, with or without force [n]
+    logical, allocatable :: at_upper(:)      !! the force is at its upper bound [n]
+    !> y with P'y > 0 and A y <= 0, if there is no equilibrium; if no set passed, with A y only slightly
+    !! positive, if that is the cause [m]
     real(wp), allocatable :: escape(:)
-    !> Pairs that overlap and cannot deform; or that alone resist such a y [n]
+    !> Pairs that overlap and cannot deform, or the only pairs that resist such a y [n]
     logical, allocatable :: overlapping(:)
     !> Pairs whose force is not unique: `force` is one choice of many [n]
     logical, allocatable :: indeterminate(:)
-    !> Motions that nothing determines; `approach` is one choice of many [m]
+    !> Undetermined modes; `approach` is one choice of many [m]
     logical, allocatable :: motion_free(:)
-    integer :: sets = 0                      !! active sets that RULE JOINED has tried; 0: CONRY found it
-    integer :: pivots = 0                    !! pairs exchanged by the rule that found the set
-    integer :: restarts = 0                  !! fresh starts, after a set failed the test at full load
+    integer :: sets = 0                      !! active sets that RULE JOINED has tried; 0 with CONRY
+    integer :: pivots = 0                    !! pairs exchanged by the contact solver that found the set
+    integer :: restarts = 0                  !! fresh starts after a set failed the test at full load
     type(pivot_record), allocatable :: history(:)  !! the first pivots of CONRY, at most `history_limit`
   end type contact_solution
 
 contains
 
-  !> Forces that are between their bounds [n].
+  !> Find forces between their bounds [n].
   pure function between(self, force)
     class(contact_problem), intent(in) :: self
     real(wp), intent(in) :: force(:)
@@ -88,7 +88,7 @@ contains
     if (allocated(self%lower)) between = force > self%lower .and. force < self%upper
   end function between
 
-  !> No contact at all, to be filled in.
+  !> Make a solution without contact.
   pure type(contact_solution) function new_solution(pairs, motions) result(solution)
     integer, intent(in) :: pairs, motions   !! n, m
 

@@ -1,14 +1,14 @@
-!> Units of the contact problem's own, so that the answer does not depend on the deck's.
+!> Units of the contact problem, which make the solution independent of the deck's units.
 !>
-!> Forces are measured in rho, gaps in omega, and each motion by the largest gap that it closes:
+!> The unit of forces is rho, of gaps omega, and of each mode the largest gap that it closes:
 !>
 !>     rho   = max(max(-g, |gl|) / max|F|, max_j |P_j| / max|A_j|),   g = g0 + gl
 !>     omega = rho max|F|
 !>
-!> so that what drives the contact is of size one, however far apart the other pairs are. Without load or
-!> overlap rho is max|g| / max|F|; without flexibility omega is max|g|. Motions are scaled one by one
-!> because translations and rotations have different units. F, which may be large, stays as it was given:
-!> its entries are scaled where they are used.
+!> so that the driving gaps and loads are of size one, even if other pairs are far apart. Without load or
+!> overlap, rho is max|g| / max|F|; without flexibility, omega is max|g|. Modes are scaled one by one
+!> because translations and rotations have different units. F, which may be large, is not copied:
+!> its entries are scaled when used.
 module epcont_contact_scaling
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: negligible
@@ -18,50 +18,50 @@ module epcont_contact_scaling
   private
   public :: active_set, scaled_problem, scale_problem, diagonal_of, drop_motions, gaps_by_forces
 
-  !> The state of each pair: closed, or its force at one of its bounds.
+  !> State of each pair: closed, or its force at one of its bounds.
   type :: active_set
     logical, allocatable :: closed(:)     !! the gap is zero [n]
     logical, allocatable :: at_upper(:)   !! the force is at its upper bound; else at the lower one [n]
   end type active_set
 
-  !> The problem in its own units, over the motions that are kept.
+  !> Scaled problem with the kept modes.
   type :: scaled_problem
     real(wp), pointer, contiguous :: flexibility(:, :) => null()   !! F, as given [n, n]
-    real(wp) :: flexibility_scale = 1.0_wp       !! rho/omega, by which entries of F are multiplied
+    real(wp) :: flexibility_scale = 1.0_wp       !! rho/omega, factor of the entries of F
     type(motion_matrix) :: motion               !! A [n, m]
     real(wp), allocatable :: gap(:)             !! g, gaps under load and known forces [n]
-    real(wp), allocatable :: known_force(:)     !! those, 0 where the problem has none [n]
-    !> All forces, the known ones too, are measured from their lower bounds: these, and the upper bounds [n]
+    real(wp), allocatable :: known_force(:)     !! known forces, 0 if the problem has none [n]
+    !> All forces, also the known ones, are measured from their lower bounds: these, and the upper bounds [n]
     real(wp), allocatable :: lower(:), upper(:)
-    real(wp), allocatable :: gap_terms(:)       !! what g is the sum of [n]
+    real(wp), allocatable :: gap_terms(:)       !! sum of magnitudes of the terms of g [n]
     real(wp), allocatable :: unloaded_gap(:)    !! g^, gaps of the start, >= 0 [n]
     real(wp), allocatable :: resultant(:)       !! P [m]
     real(wp) :: force_unit = 1.0_wp             !! rho
     real(wp) :: gap_unit = 1.0_wp               !! omega
     real(wp), allocatable :: motion_size(:)     !! largest entry of each column of the given A [all motions]
-    integer, allocatable :: kept(:)             !! which of the given motions these are [m]
-    !> gamma of each motion: F and the sum of gamma a a', of its columns of A, are of one size, and their sum
-    !! F_g is definite wherever forces are unique [m]
+    integer, allocatable :: kept(:)             !! indices of these among the given modes [m]
+    !> gamma of each mode: F and the sum of gamma a a', over the columns a of A, have the same size, and their
+    !! sum F_g is definite whenever forces are unique [m]
     real(wp), allocatable :: gamma(:)
-    !> Of each pair the flexibility that its pivots are measured by: max F_kk, 1 if nothing is flexible; of
-    !! pairs that are far stiffer what F_g itself has there [n]
+    !> Flexibility by which the pivots of each pair are measured: max F_kk, 1 if nothing is flexible; for
+    !! much stiffer pairs the entry of F_g itself [n]
     real(wp), allocatable :: softness(:)
-    !> A pivot of F_g up to this part of that is rounding: a hundredth of a negligible one, or that of n sums.
+    !> Pivots of F_g below this fraction are rounding: a hundredth of a negligible one, or that of n sums
     real(wp) :: rank_tolerance = 0.0_wp
-    type(active_set) :: first                   !! that of rigid bodies: its closed pairs hold every motion
+    type(active_set) :: first                   !! set of rigid bodies: its closed pairs restrain all modes
     logical, allocatable :: guess(:)   !! of the pairs in contact; not allocated: no guess [n]
   end type scaled_problem
 
-  !> Pairs whose flexibility is below this part of the softest's are measured by themselves: of bodies a
-  !! billion times stiffer than others forces are as unique.
+  !> Pairs whose flexibility is below this fraction of the largest are measured by themselves: forces on
+  !! bodies a billion times stiffer than others are unique as well.
   real(wp), parameter :: far_stiffer = 1.0e-4_wp
 
 contains
 
-  !> The problem in units of its own, with all of its motions.
+  !> Scale the problem, with all of its modes.
   type(scaled_problem) function scale_problem(problem) result(scaled)
     type(contact_problem), intent(in), target :: problem   !! in the deck's units; it must remain
-    real(wp) :: driving   !! largest gap that asks for forces
+    real(wp) :: driving   !! largest gap that causes forces
     real(wp) :: largest   !! max|F|: on the diagonal, as F is semidefinite
     integer :: j
 
@@ -99,7 +99,7 @@ contains
 
   contains
 
-    !> Forces from their lower bounds on, which carry a part of the load.
+    !> Measure forces from their lower bounds, which carry a part of the load.
     pure subroutine take_bounds()
       scaled%lower = 0*scaled%gap
       scaled%upper = spread(huge(1.0_wp), 1, size(scaled%gap))
@@ -111,7 +111,7 @@ contains
       scaled%resultant = scaled%resultant - scaled%motion%carried(scaled%lower)
     end subroutine take_bounds
 
-    !> Force that opens a gap; 0 where nothing deforms.
+    !> Force that opens a gap; 0 if nothing deforms.
     pure real(wp) function force_over(gap) result(force)
       real(wp), intent(in) :: gap
 
@@ -120,14 +120,14 @@ contains
     end function force_over
   end function scale_problem
 
-  !> A size, or another one if it is zero.
+  !> Use a value, or another one if it is zero.
   elemental real(wp) function or_else(size, other) result(chosen)
     real(wp), intent(in) :: size, other
 
     chosen = merge(other, size, size <= 0.0_wp)
   end function or_else
 
-  !> Hold the motions in `dropped` at zero: they leave the problem.
+  !> Remove the modes in `dropped`: they are zero.
   pure subroutine drop_motions(scaled, dropped)
     type(scaled_problem), intent(inout) :: scaled   !! the problem in its own units
     logical, intent(in) :: dropped(:)   !! [m]
@@ -141,10 +141,10 @@ contains
     call measure(scaled)
   end subroutine drop_motions
 
-  !> What is large and what is rounding, of flexibilities and motions as they now are.
+  !> Find the sizes of flexibilities and modes, and their rounding.
   pure subroutine measure(scaled)
     type(scaled_problem), intent(inout) :: scaled   !! the problem in its own units
-    real(wp), dimension(size(scaled%gap)) :: own, squares   ! F_kk, and of what the motions close of each gap
+    real(wp), dimension(size(scaled%gap)) :: own, squares   ! F_kk, and closing of each gap by the modes
     real(wp) :: softest
     integer :: i, j
 
@@ -172,18 +172,18 @@ contains
     scaled%rank_tolerance = max(negligible/100, 4*size(squares)*epsilon(1.0_wp))
   end subroutine measure
 
-  !> A flexibility, if it is one and far below the softest; else that.
+  !> A flexibility, if it is not zero and far below the largest; else the largest.
   elemental real(wp) function measured_by(own, softest)
     real(wp), intent(in) :: own, softest
 
     measured_by = merge(own, softest, own > 0.0_wp .and. own < far_stiffer*softest)
   end function measured_by
 
-  !> F R, or |F| |R|, what it is the sum of.
+  !> F R, or the sum of magnitudes |F| |R|.
   pure function gaps_by_forces(scaled, force, magnitudes) result(gap)
     type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
     real(wp), intent(in) :: force(:)              !! R [n]
-    logical, intent(in), optional :: magnitudes   !! true: of F and R
+    logical, intent(in), optional :: magnitudes   !! sum of magnitudes
     real(wp) :: gap(size(force))
     integer :: k
     logical :: absolute
@@ -208,7 +208,7 @@ contains
     diagonal = [(matrix(k, k), k=1, size(diagonal))]
   end function diagonal_of
 
-  !> Largest absolute value; 0 of none.
+  !> Largest absolute value; 0 if there are no values.
   pure real(wp) function largest_of(values)
     real(wp), intent(in) :: values(:)
 

@@ -1,12 +1,12 @@
-!> RULE CONRY: the simplex with a contact entry rule, from rigid bodies to the certified set of contacts.
+!> RULE CONRY: simplex with a contact entry rule, from rigid bodies to the tested active set.
 !>
-!> The set found is never trusted: forces and gaps are solved afresh from F and A, and if one of them
-!> has the wrong sign the simplex goes on from there. A guessed set is treated in the same way.
+!> The resulting set is always tested: forces and gaps are computed again from F and A, and if one of them
+!> has the wrong sign, the simplex continues from there. A guessed set is treated in the same way.
 !>
-!> On smooth, badly conditioned flexibilities (1e10) pairs close and open again many times while the load
-!> grows: the path takes some n**2/20 pivots, and the tableau's entries, which go up to the condition number
-!> and back, lose as many digits on it. Such a path is not followed to its end: block pivoting decides, which
-!> solves each set by a factor of its own.
+!> On smooth, badly conditioned flexibilities (1e10), pairs close and open many times while the load
+!> grows: the path takes some n**2/20 pivots, and the tableau's entries, which grow to the condition number
+!> and fall again, lose as many digits. Such a path is abandoned: block pivoting decides, which
+!> solves each set with its own factor.
 module epcont_contact_simplex
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: cancelled, negligible, null_component, solved_to
@@ -20,16 +20,16 @@ module epcont_contact_simplex
   private
   public :: find_contacts
 
-  !> Fresh starts before the problem is given up.
+  !> Maximum number of fresh starts.
   integer, parameter :: restart_limit = 10
 
 contains
 
-  !> Follow the load from one set of contacts to the next until a fresh solution passes the test of signs.
+  !> Follow the load from one active set to the next until a fresh solution passes the sign test.
   subroutine find_contacts(scaled, solution, state, ray)
     type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
     type(contact_solution), intent(inout) :: solution   !! state, and the record of the pivots
-    type(contact_state), intent(inout) :: state   !! with any basis; the set found, fresh
+    type(contact_state), intent(inout) :: state   !! with any basis; then the set found, solved again
     real(wp), allocatable, intent(out) :: ray(:)        !! if the state is overlap [n]
     real(wp), allocatable :: lifted(:)   ! basic variable of each pair at t = 0 [n]
     type(active_set) :: set
@@ -41,7 +41,7 @@ contains
     call take_set(set)
     if (state%sound .and. .not. allocated(scaled%guess)) lifted = unloaded_values()
     do attempt = 0, restart_limit
-      if (.not. state%sound) exit   ! the motions are held too badly to be computed
+      if (.not. state%sound) exit   ! the modes are too badly restrained
       solution%state = contact_solved
       if (has_right_signs(scaled, state, merge(guess_tolerance, solved_to, attempt == 0))) return
       solution%restarts = attempt
@@ -57,7 +57,7 @@ contains
         if (has_right_signs(scaled, state, solved_to)) return
       else
         call take_set(scaled%first)
-        ! By values that are all apart from each other, against ties that rounding decides wrongly.
+        ! Use distinct values, against ties that rounding decides wrongly.
         lifted = lifted + [(1.0_wp + real(k, wp)/size(lifted), k=1, size(lifted))]/2.0_wp**attempt
         lifted(state%pairs) = min(lifted(state%pairs), scaled%upper(state%pairs))
       end if
@@ -69,7 +69,7 @@ contains
 
   contains
 
-    !> Go on from a set, without what is beyond bounds in its solution.
+    !> Continue from a set, without pairs that are beyond bounds in its solution.
     subroutine take_set(set)
       type(active_set), intent(in) :: set
 
@@ -77,7 +77,7 @@ contains
       lifted = bounded_values(state)
     end subroutine take_set
 
-    !> The basic variables of a state, between their bounds.
+    !> Basic variables of a state, clipped to their bounds.
     pure function bounded_values(state) result(values)
       type(contact_state), intent(in) :: state
       real(wp) :: values(size(scaled%gap))
@@ -86,7 +86,7 @@ contains
       values(state%pairs) = min(values(state%pairs), scaled%upper(state%pairs))
     end function bounded_values
 
-    !> The same before the load: rigid bodies that just touch, with gaps g^.
+    !> Basic variables before the load: rigid bodies in contact without force, with gaps g^.
     pure function unloaded_values() result(values)
       real(wp) :: values(size(scaled%gap))
       type(contact_state) :: rest
@@ -98,7 +98,7 @@ contains
       values = bounded_values(rest)
     end function unloaded_values
 
-    !> Block pivoting from the first set.
+    !> Run block pivoting from the first set.
     subroutine exchange_afresh(found)
       logical, intent(out) :: found
       type(contact_state) :: better
@@ -116,16 +116,16 @@ contains
       state = better
     end subroutine exchange_afresh
 
-    !> Is z really a proof that no solution exists: F z = 0, A'z = 0, z >= 0 and g'z < 0?
+    !> Does z prove that there is no solution: F z = 0, A'z = 0, z >= 0 and g'z < 0?
     pure logical function is_overlap(z) result(overlap)
       real(wp), intent(in) :: z(:)
-      real(wp) :: nothing(size(z))   !! what of F z may be rounding [n]
+      real(wp) :: nothing(size(z))   !! rounding of F z [n]
       real(wp) :: largest
 
       largest = maxval([abs(z), 0.0_wp])
       overlap = largest > 0.0_wp .and. all(z >= -null_component*largest)
       if (.not. overlap) return
-      ! A little flexibility is some, too, where it is no rounding.
+      ! A small flexibility counts, too, if it is above rounding.
       nothing = max(null_component*gaps_by_forces(scaled, z, magnitudes=.true.), cancelled*largest)
       overlap = all(abs(gaps_by_forces(scaled, z)) <= nothing) &
                 .and. all(abs(scaled%motion%carried(z)) <= null_component*largest) &

@@ -1,4 +1,4 @@
-!> From a contact problem to its answer: scaling, rigid start, the set of contacts by the simplex, units.
+!> Solution of a contact problem: scaling, rigid start, active set by the simplex, units.
 module epcont_contact_solver
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: cancelled, lost_digits, negligible, null_component, &
@@ -20,19 +20,19 @@ module epcont_contact_solver
 
 contains
 
-  !> Find forces, gaps and motions of a contact problem, or why it has no answer. The cause may be
-  !! that pairs hold a motion by so little that rounding of the loads along it is too large a force.
+  !> Find forces, gaps and modes of a contact problem, or the reason why there is no solution. A reason may be
+  !! that pairs hardly restrain a mode, so that rounding of the loads along it causes a large force.
   subroutine solve_contact(problem, solution, start, basis, any_forces)
     type(contact_problem), intent(in), target :: problem   !! in the deck's units
-    type(contact_solution), intent(out) :: solution   !! its state says whether there is one
+    type(contact_solution), intent(out) :: solution   !! its state says if there is a solution
     logical, intent(in), optional :: start(:)   !! guess of the pairs in contact [n]
-    !> Of the last answer with this F, or none; then of this one
+    !> Of the last solution with this F, or empty; then of this one
     type(contact_basis), intent(inout), optional :: basis
-    logical, intent(in), optional :: any_forces   !! true: it is not asked whether there are other forces
+    logical, intent(in), optional :: any_forces   !! true: do not check if there are other forces
     type(scaled_problem) :: scaled
     type(rigid_start) :: rigid
     type(contact_state) :: state
-    type(motion_matrix) :: motion   ! A of all motions, scaled [n, m]
+    type(motion_matrix) :: motion   ! A of all modes, scaled [n, m]
     real(wp), allocatable :: loose(:, :), ray(:)
 
     scaled = scale_problem(problem)
@@ -70,16 +70,16 @@ contains
     end select
   end subroutine solve_contact
 
-  !> The answer in the deck's units, and what the conditions leave open in it.
+  !> Convert the solution to the deck's units, and find its undetermined forces and modes.
   subroutine settle(scaled, motion, state, solution, asks_for_others)
     type(scaled_problem), intent(in) :: scaled
-    type(motion_matrix), intent(in) :: motion       !! A of all motions, scaled
+    type(motion_matrix), intent(in) :: motion       !! A of all modes, scaled
     type(contact_state), intent(inout) :: state
     type(contact_solution), intent(inout) :: solution
-    logical, intent(in) :: asks_for_others          !! whether there are other forces
-    !> What gaps are the sum of; the motions have the rounding of those that hold them [n]
+    logical, intent(in) :: asks_for_others          !! check if there are other forces
+    !> Sum of magnitudes of the terms of gaps; modes have the rounding of the restraining gaps [n]
     real(wp), allocatable :: terms(:)
-    real(wp) :: zero                    ! force that rounding leaves of none
+    real(wp) :: zero                    ! force that is only rounding
 
     zero = negligible*maxval([state%force, 1.0_wp])
     call cut_rounding(scaled, state, terms)
@@ -106,7 +106,7 @@ contains
     solution%approach = solution%approach*scaled%gap_unit/scaled%motion_size
   end subroutine settle
 
-  !> Set the force of some pairs to the bound that is nearer.
+  !> Set the force of some pairs to the nearer bound.
   pure subroutine take_bounds(scaled, state, chosen)
     type(scaled_problem), intent(in) :: scaled
     type(contact_state), intent(inout) :: state
@@ -119,8 +119,8 @@ contains
     end where
   end subroutine take_bounds
 
-  !> Close what forces that were taken from pairs leave of the gaps of others: in a slender body that is
-  !! much. Pairs of the basis hold the motions, those without force as well.
+  !> Close the gaps that appear if forces are removed from other pairs: in a slender body they are
+  !! large. Pairs of the basis restrain the modes, also those without force.
   pure subroutine close_by_motions(scaled, state)
     type(scaled_problem), intent(in) :: scaled
     type(contact_state), intent(inout) :: state
@@ -143,7 +143,7 @@ contains
   pure subroutine find_touching(scaled, state, terms, touching)
     type(scaled_problem), intent(in) :: scaled
     type(contact_state), intent(inout) :: state
-    real(wp), intent(in) :: terms(:)        !! what gaps are the sum of [n]
+    real(wp), intent(in) :: terms(:)        !! sum of magnitudes of the terms of gaps [n]
     logical, intent(out) :: touching(:)     !! [n]
 
     where (inner_forces(scaled, state%force, 0.0_wp)) state%gap = 0.0_wp
@@ -151,13 +151,13 @@ contains
     where (touching) state%gap = 0.0_wp
   end subroutine find_touching
 
-  !> Forces and motions without what rounding has left of none. A force that is cut off may have been less
-  !! than none: its pair need not be closed. Where rigid stops take the load, gaps may be far below the size
-  !! that they are measured in, and that force may have held other pairs closed: those are solved for again.
+  !> Set forces and modes to zero if they are only rounding. A force that is cut off may have been
+  !! negative: its pair need not be closed. If rigid stops take the load, gaps may be far below the gap
+  !! unit, and this force may have kept other pairs closed: then the set is solved again.
   subroutine cut_rounding(scaled, state, terms)
     type(scaled_problem), intent(in) :: scaled
     type(contact_state), intent(inout) :: state
-    real(wp), allocatable, intent(out) :: terms(:)   !! what gaps are the sum of [n]
+    real(wp), allocatable, intent(out) :: terms(:)   !! sum of magnitudes of the terms of gaps [n]
     type(contact_state) :: fewer
     logical, allocatable :: moving(:), pressed(:)
 
@@ -173,7 +173,7 @@ contains
       if (all(abs(state%gap) <= negligible*terms .or. .not. pressed) .or. &
           all(pressed(state%pairs))) return
       fewer%contact_basis = new_basis(scaled, pressed)
-      if (.not. fewer%sound) return   ! a motion is held by rounding
+      if (.not. fewer%sound) return   ! a mode is restrained by rounding
       fewer%at_upper = state%at_upper
       call solve_set(fewer, scaled, scaled%gap, scaled%resultant, refinements=1)
       call move_basis(fewer%contact_basis, state%contact_basis)

@@ -1,4 +1,4 @@
-!> The solution of the contact equations for a set of pairs in contact, the forces of the others being at one
+!> Solution of the contact equations for a set of pairs in contact, with the forces of the others at one
 !> of their bounds, and the test of its signs.
 module epcont_contact_state
   use epcont_base_kinds, only: wp
@@ -10,27 +10,27 @@ module epcont_contact_state
   public :: contact_state, renew_state, solve_set, basic_values, gaps_under, has_right_signs, inner_forces, &
     signed_gaps, terms_of_gaps
 
-  !> Part of the largest force by which forces and gaps may have the wrong sign, in scaled units: all that can
-  !! be asked where the flexibility is badly conditioned (1e10: tests/contact/hard_problem), and what is asked
+  !> Fraction of the largest force by which forces and gaps may have the wrong sign, in scaled units: the best
+  !! that is possible for badly conditioned flexibilities (1e10: tests/contact/hard_problem), and required
   !! of a guess, from which better sets may be found.
   real(wp), parameter, public :: guess_tolerance = 1.0e-12_wp
 
-  !> A set with its solution at full load; without forces where the basis is not sound.
+  !> A set with its solution at full load; without forces if the basis is not sound.
   type, extends(contact_basis) :: contact_state
     logical, allocatable :: at_upper(:)         !! forces outside the basis at their upper bounds [n]
-    real(wp), allocatable :: force(:)           !! at one of its bounds outside the basis [n]
-    !> What they are more than the known ones: where these are large, no digits of it are left in the sum [n]
+    real(wp), allocatable :: force(:)           !! outside the basis at one of its bounds [n]
+    !> Forces minus the known forces: if these are large, the sum loses all digits of it [n]
     real(wp), allocatable :: change(:)
-    real(wp), allocatable :: gap(:)             !! zero up to rounding in the basis [n]
+    real(wp), allocatable :: gap(:)             !! in the basis zero up to rounding [n]
     real(wp), allocatable :: approach(:)        !! [m]
   end type contact_state
 
 contains
 
-  !> Forces, gaps and motions of a set of contacts, with the pairs that touch first should they not hold every
-  !! motion.
+  !> Find forces, gaps and modes of an active set; if it does not restrain all modes, add the pairs in contact
+  !! first.
   subroutine renew_state(state, scaled, set)
-    type(contact_state), intent(inout) :: state   !! its basis, if it is of that set, is taken as it is
+    type(contact_state), intent(inout) :: state   !! its basis is kept if it is of this set
     type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
     type(active_set), intent(in) :: set
 
@@ -41,15 +41,15 @@ contains
     call solve_set(state, scaled, scaled%gap, scaled%resultant, refinements=1)
   end subroutine renew_state
 
-  !> Forces, gaps and motions with the pairs of the basis closed and the forces of the others at their bounds.
+  !> Solve with the pairs of the basis closed and the forces of the others at their bounds.
   pure subroutine solve_set(state, scaled, opening, load, refinements)
-    type(contact_state), intent(inout) :: state   !! its basis is solved with
+    type(contact_state), intent(inout) :: state   !! has the basis
     type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
     real(wp), intent(in) :: opening(:)            !! gaps under the known forces [n]
     real(wp), intent(in) :: load(:)               !! [m]
-    integer, intent(in) :: refinements            !! steps that follow the solution
+    integer, intent(in) :: refinements            !! steps of iterative refinement
     real(wp), allocatable :: change(:, :), approach(:, :)
-    real(wp) :: unbalanced(size(load), 1)         ! what is not carried yet
+    real(wp) :: unbalanced(size(load), 1)         ! load not carried yet
     integer :: step
 
     state%change = merge(scaled%upper, 0.0_wp, state%at_upper) - scaled%known_force
@@ -73,7 +73,7 @@ contains
     end associate
   end subroutine solve_set
 
-  !> w = g + F R - A q, R without the known forces, which g has in it.
+  !> w = g + F R - A q, with R minus the known forces, which are included in g.
   pure function gaps_under(scaled, opening, change, approach) result(gap)
     type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
     real(wp), intent(in) :: opening(:)            !! g [n]
@@ -84,7 +84,7 @@ contains
     gap = opening - scaled%motion%times(approach) + gaps_by_forces(scaled, change)
   end function gaps_under
 
-  !> The basic variable of each pair: force where it is in the basis, gap elsewhere.
+  !> Basic variable of each pair: force if it is in the basis, else gap.
   pure function basic_values(state) result(values)
     type(contact_state), intent(in) :: state   !! set and solution
     real(wp), allocatable :: values(:)
@@ -93,7 +93,7 @@ contains
     values(state%pairs) = state%force(state%pairs)
   end function basic_values
 
-  !> The gaps, the other way if the force is at its upper bound: those that must not be negative [n].
+  !> Gaps, with opposite sign if the force is at its upper bound: they must not be negative [n].
   pure function signed_gaps(state) result(gap)
     type(contact_state), intent(in) :: state
     real(wp) :: gap(size(state%gap))
@@ -101,7 +101,7 @@ contains
     gap = merge(-state%gap, state%gap, state%at_upper)
   end function signed_gaps
 
-  !> Pairs whose force is between its bounds, and further from them than a part of the force unit [n].
+  !> Find forces between their bounds, farther from them than a fraction of the force unit [n].
   pure function inner_forces(scaled, force, away) result(inner)
     type(scaled_problem), intent(in) :: scaled
     real(wp), intent(in) :: force(:), away
@@ -110,7 +110,7 @@ contains
     inner = force > away .and. scaled%upper - force > away
   end function inner_forces
 
-  !> The test of the fresh solution: its pairs hold every motion; 0 <= R <= u and w of the right sign, to the
+  !> Test the fresh solution: its pairs restrain all modes; 0 <= R <= u and w has the right sign, up to the
   !! rounding of the largest force and gap.
   pure logical function has_right_signs(scaled, state, tolerance) result(right)
     type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
@@ -124,17 +124,17 @@ contains
     right = state%sound .and. all(state%force >= -force_tolerance) .and. &
             all(state%force - scaled%upper <= force_tolerance)
     if (.not. right) return
-    ! At pairs that hardly deform a gap far below the others' tells of a force that is off.
+    ! At pairs that hardly deform, a gap far below the others is a sign of a wrong force.
     terms = terms_of_gaps(scaled, state)
     widest = force_tolerance + gap_noise
     gap = signed_gaps(state)
     right = all(gap >= -max(scaled%softness*widest, min(widest, cancelled*terms)))
     if (.not. right .or. maxval([state%force, 0.0_wp]) <= 1.0_wp) return
-    ! The largest force, at a stop that hardly deforms, says nothing of gaps that it has no part in.
+    ! The largest force, at a rigid stop, does not count for gaps that it does not affect.
     right = all(gap >= -(tolerance*max(terms, 1.0_wp) + gap_noise))
   end function has_right_signs
 
-  !> The sum of the magnitudes that each gap is the sum of.
+  !> Sum of magnitudes of the terms of each gap.
   pure function terms_of_gaps(scaled, state) result(terms)
     type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
     type(contact_state), intent(in) :: state   !! set and solution

@@ -1,4 +1,4 @@
-!> What the contact conditions leave open: forces that can be shared in many ways, motions that nothing holds.
+!> Indeterminate forces and undetermined modes of a contact solution.
 module epcont_contact_uniqueness
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: negligible, null_component
@@ -12,29 +12,29 @@ module epcont_contact_uniqueness
   private
   public :: find_indeterminate_forces, share_equally, find_undetermined_motions
 
-  !> Rounding in the Schur complement exceeds that in F_g by the condition of the pressed pairs: this is
-  !! allowed for.
+  !> Rounding in the Schur complement exceeds that in F_g by the condition of the pressed pairs: this factor
+  !! allows for it.
   real(wp), parameter :: amplification = 100.0_wp
 
 contains
 
-  !> Pairs whose force can change without any gap or resultant changing: z with F z = 0, A'z = 0, and z >= 0
-  !> where there is no force yet, z <= 0 where it is at its upper bound.
+  !> Find pairs whose force can change without changing any gap or resultant: z with F z = 0, A'z = 0, and
+  !> z >= 0 if there is no force yet, z <= 0 if it is at its upper bound.
   !>
-  !> With the gaps of the pressed pairs held closed, an idle touching pair j feels the forces z of the idle
-  !> ones through the Schur complement M of F_g, and M z = 0 is asked of z.
+  !> With the gaps of the pressed pairs kept closed, the Schur complement M of F_g relates idle pairs in
+  !> contact to the forces z on them, and z must satisfy M z = 0.
   function find_indeterminate_forces(problem, touching, pressed, at_upper) result(indeterminate)
     type(scaled_problem), intent(in) :: problem   !! in its own units
     logical, intent(in) :: touching(:)      !! gap zero [n]
-    logical, intent(in) :: pressed(:)       !! force beyond rounding; of a basis, so unique by themselves [n]
+    logical, intent(in) :: pressed(:)       !! force above rounding; pairs of a basis, so it is unique [n]
     logical, intent(in) :: at_upper(:)      !! force at its upper bound [n]
     logical, allocatable :: indeterminate(:)
     type(contact_basis) :: basis
-    !> M [idle, idle], and what z makes of the forces of the pressed pairs
+    !> M [idle, idle], and the change of the pressed pairs' forces by z
     real(wp), allocatable, dimension(:, :) :: coupling, answer, change, loose, motion
-    real(wp), allocatable :: unit(:)   !! M is over these, and z times them [idle]
+    real(wp), allocatable :: unit(:)   !! units of M and z [idle]
     integer, allocatable :: growing(:), idle(:)
-    real(wp) :: zero   !! part of M that is rounding
+    real(wp) :: zero   !! entries of M below it are rounding
     integer :: k
 
     allocate (indeterminate(size(touching)), source=.false.)
@@ -59,7 +59,7 @@ contains
 
   contains
 
-    !> The j for which some z >= 0 with M z = 0 has z_j > 0.
+    !> Find all j for which some z >= 0 with M z = 0 has z_j > 0.
     function forces_that_can_grow() result(growing)
       integer, allocatable :: growing(:), order(:)
       real(wp), allocatable :: factor(:, :), rows(:, :)
@@ -79,7 +79,7 @@ contains
     end function forces_that_can_grow
   end function find_indeterminate_forces
 
-  !> A block of F_g = F + A gamma A'.
+  !> Block of F_g = F + A gamma A'.
   pure function regular_flexibility(scaled, rows, columns) result(block)
     type(scaled_problem), intent(in) :: scaled   !! in its own units
     integer, intent(in) :: rows(:), columns(:)   !! pairs
@@ -92,7 +92,7 @@ contains
     call add_product(1.0_wp, closing, transpose(other), block)
   end function regular_flexibility
 
-  !> Pairs with equal rows in F and A, and equal bounds, share their force equally.
+  !> Distribute the force of pairs with equal rows in F and A, and equal bounds, equally.
   pure subroutine share_equally(problem, indeterminate, force)
     type(scaled_problem), intent(in) :: problem   !! in its own units
     logical, intent(in) :: indeterminate(:)    !! [n]
@@ -109,7 +109,7 @@ contains
 
   contains
 
-    !> Have two pairs the same flexibility and the same motion?
+    !> Have two pairs the same flexibility and the same entries of modes?
     pure logical function are_alike(i, k) result(alike)
       integer, intent(in) :: i, k
       alike = all(abs(problem%motion%rows([i]) - problem%motion%rows([k])) <= negligible)
@@ -121,12 +121,12 @@ contains
     end function are_alike
   end subroutine share_equally
 
-  !> Motions that the pressed pairs do not hold, and that idle touching pairs do not block in both directions:
-  !! they do where their forces, none of them a pull, would carry a load along the motion either way.
+  !> Find modes that the pressed pairs do not restrain, and that idle pairs in contact do not block in both
+  !! directions: they do if their forces, all compressive, can carry a load along the mode in both directions.
   function find_undetermined_motions(motion, touching, pressed, at_upper) result(free)
     type(motion_matrix), intent(in) :: motion   !! A, largest entry of each column one [n, m]
     logical, intent(in) :: touching(:), pressed(:)   !! [n]
-    logical, intent(in), optional :: at_upper(:)     !! forces that can only fall; not given: none [n]
+    logical, intent(in), optional :: at_upper(:)     !! forces that can only fall; absent: no pairs [n]
     logical, allocatable :: free(:)                  !! [m]
     type(motion_matrix) :: closing
     real(wp), allocatable :: loose(:, :)
@@ -151,10 +151,10 @@ contains
 
   contains
 
-    !> Where nothing resists a load, all that moves along the way that it takes is free: of a pile that no
-    !! load presses one way moves most.
+    !> If nothing resists a load, all modes in its displacement are undetermined: of a pile that no
+    !! load presses together, most bodies move.
     subroutine give_way(load)
-      real(wp), intent(in) :: load(:)   !! along the loose motions
+      real(wp), intent(in) :: load(:)   !! along the loose modes
       type(rigid_start) :: start
 
       call find_rigid_start(closing, load, spread(0.0_wp, 1, closing%pairs), start)
