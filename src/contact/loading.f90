@@ -58,7 +58,7 @@ module epcont_contact_loading
     real(wp), allocatable :: slope(:)                   !! change of the basic variables with it [n]
     real(wp) :: load_rate = 1.0_wp                      !! and of the load factor
     real(wp) :: ratio = 0.0_wp                          !! its increase up to the next event
-    !> Row of the variable that leaves then, 0 if absent or if the entering one reaches
+    !> Row of the variable that leaves then, 0 if absent or if the entering one reaches its own bound
     integer :: row = 0
   contains
     procedure :: begin
