@@ -1,38 +1,38 @@
-!> What is tried if a solve of a model leads to no answer, or to one that can be better: the only list of it.
-!> `solution` makes the attempts; `messages/attempt_text.f90` says which were made.
+!> Attempts after a solve without a result, or with one that can be improved: the only list of them.
+!> `solution` makes the attempts; `messages/attempt_text.f90` describes them.
 module epcont_attempts
   implicit none
   private
   public :: attempt_list, attempt_type
 
-  !> Attempts, in the order in which they are looked at: the first that has a reason is made.
+  !> Attempts, in order of priority: the first one with a reason is made.
   integer, parameter, public :: &
     more_steps = 1, &     !! more load steps
     other_rule = 2, &     !! the other contact rule
     refinement = 3, &     !! iterative refinement of the answer, in some steps
-    more_pairs = 4        !! pairs of the nodes that came near
+    more_pairs = 4        !! pairs of nodes that came near
   integer, parameter, public :: attempts = 4
-  !> How often each is made; those that change the model's plan in all, the others for each plan.
+  !> Maximum number of each; in total if they change the model's plan, else for each plan.
   integer, parameter :: most(attempts) = [1, 2, 1, 7]
   logical, parameter :: plans_again(attempts) = [.false., .true., .false., .true.]
 
   !> Reasons; 0: no reason.
   integer, parameter, public :: &
-    because_not_converged = 1, &   !! neither an answer nor a limit load was found
-    because_no_contact = 2, &      !! no active set was found
-    because_not_unique = 3, &      !! the rule cannot say which contact forces are not unique
+    because_not_converged = 1, &   !! no convergence, and no limit load found
+    because_no_contact = 2, &      !! no active set found
+    because_not_unique = 3, &      !! the contact solver does not show which contact forces are not unique
     because_singular = 4, &        !! or why the stiffness is singular
-    because_refused = 5, &         !! the certificate refuses the answer
-    because_unbalanced = 6, &      !! forces, gaps or the energy are out of balance, or a pivot lost digits
+    because_refused = 5, &         !! the certificate rejects the result
+    because_unbalanced = 6, &      !! forces, gaps or energy have a residual, or a pivot lost digits
     because_near = 7               !! nodes without a pair penetrate
 
   type :: attempt_type
     integer :: what = 0     !! one of the attempts
-    integer :: why = 0      !! one of the reasons, of the attempt before
+    integer :: why = 0      !! one of the reasons, from the solve before
     integer :: many = 0     !! load steps or steps of refinement taken, or pairs added
   end type attempt_type
 
-  !> Those that were made after the first solve.
+  !> Attempts after the first solve.
   type :: attempt_list
     type(attempt_type), allocatable :: made(:)
   contains
@@ -44,7 +44,7 @@ module epcont_attempts
 
 contains
 
-  !> A first solve, before any of them.
+  !> Begin with the first solve, without attempts.
   pure subroutine begin(self)
     class(attempt_list), intent(inout) :: self
 
@@ -52,7 +52,7 @@ contains
     allocate (self%made(0))
   end subroutine begin
 
-  !> How often an attempt was made.
+  !> Number of times that an attempt was made.
   pure integer function count_of(self, what)
     class(attempt_list), intent(in) :: self
     integer, intent(in) :: what
@@ -67,7 +67,7 @@ contains
     count_of = count(self%made(first:)%what == what)
   end function count_of
 
-  !> May it be made once more?
+  !> Is the maximum not reached?
   pure logical function has_left(self, what)
     class(attempt_list), intent(in) :: self
     integer, intent(in) :: what
@@ -75,7 +75,7 @@ contains
     has_left = self%count_of(what) < most(what)
   end function has_left
 
-  !> An attempt is made.
+  !> Add an attempt.
   pure subroutine add(self, what, why, many)
     class(attempt_list), intent(inout) :: self
     integer, intent(in) :: what, why, many

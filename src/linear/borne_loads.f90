@@ -1,5 +1,5 @@
-!> Loads that bodies have been solved for: load cases with as many times the same need no solve of their own.
-!> Of bodies that cannot yield what loads do is linear, but for what prescribed displacements add.
+!> Loads that have been solved for: load cases that are a multiple of them need no solve of their own.
+!> The response of elastic bodies is linear in the loads, except for prescribed displacements.
 module epcont_linear_borne_loads
   use epcont_assembly_bodies, only: factored_bodies, half_solved_body
   use epcont_base_kinds, only: wp
@@ -11,10 +11,10 @@ module epcont_linear_borne_loads
   public :: borne_loads
 
   type :: borne_loads
-    logical :: keeps = .false.                         !! the bodies cannot yield, and a load case may follow
-    real(wp), allocatable :: force(:, :)               !! not allocated: none [force] [directions, nodes]
-    type(half_solved_body), allocatable :: half(:)     !! what is halfway solved with them [bodies]
-    real(wp), allocatable :: opening(:)                !! of gaps, by them alone [length] [pairs]
+    logical :: keeps = .false.                         !! all bodies are elastic, and a load case may follow
+    real(wp), allocatable :: force(:, :)               !! not allocated: zero [force] [directions, nodes]
+    type(half_solved_body), allocatable :: half(:)     !! their forward substitution [bodies]
+    real(wp), allocatable :: opening(:)                !! of gaps, by these forces alone [length] [pairs]
   contains
     procedure :: bear
     procedure, private :: give
@@ -22,16 +22,16 @@ module epcont_linear_borne_loads
 
 contains
 
-  !> Half of the solve for loads, and what gaps they open.
+  !> Forward substitution for loads, and the gaps that they open.
   subroutine bear(self, scene, bodies, force, load_factor, half, opening)
     class(borne_loads), intent(inout) :: self
     type(planned_model), intent(in) :: scene
     class(factored_bodies), intent(in) :: bodies                     !! factored
     real(wp), intent(in) :: force(:, :)                              !! [force] [directions, nodes]
-    real(wp), intent(in) :: load_factor                              !! of the prescribed displacements
+    real(wp), intent(in) :: load_factor                              !! factor of the prescribed displacements
     type(half_solved_body), allocatable, intent(out) :: half(:)      !! [bodies]
     real(wp), allocatable, intent(out) :: opening(:)                 !! [length] [pairs]
-    logical :: moved   ! supports
+    logical :: moved   ! supports have displacements
 
     moved = any(scene%model%loads%beyond_travel /= 0.0_wp)
     if (.not. moved) call self%give(force, half, opening)
@@ -44,7 +44,7 @@ contains
     self%opening = opening
   end subroutine bear
 
-  !> What follows of loads, where they are a multiple of these; else it is left unallocated.
+  !> Return the results for loads that are a multiple of these; else leave them unallocated.
   pure subroutine give(self, force, half, opening)
     class(borne_loads), intent(in) :: self
     real(wp), intent(in) :: force(:, :)                              !! [force] [directions, nodes]

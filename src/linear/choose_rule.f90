@@ -1,4 +1,4 @@
-!> The contact rule that the plan has chosen.
+!> The contact solver that the plan has chosen.
 module epcont_linear_choose_rule
   use epcont_base_kinds, only: wp
   use epcont_linear_contact_rule, only: contact_rule
@@ -12,10 +12,10 @@ module epcont_linear_choose_rule
 
 contains
 
-  !> Make the rule, with all that does not change with the law.
+  !> Make the contact solver, with all that does not depend on the material law.
   subroutine choose_rule(scene, plan, rule)
     type(planned_model), intent(in) :: scene
-    type(iteration_plan), intent(in) :: plan   !! it may differ from the model's
+    type(iteration_plan), intent(in) :: plan   !! may differ from that of the model
     class(contact_rule), allocatable, intent(out) :: rule
 
     if (plan%joined) allocate (joined_rule :: rule)

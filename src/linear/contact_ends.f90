@@ -1,29 +1,29 @@
-!> Where contact ends, told from sets of pairs where it does not.
+!> Estimated ends of contact, from active sets with wrong ends.
 !>
-!> Near an end pressure is the root of the distance from it. Where contact is taken to end a distance d
-!> further out, pressure there is (s - d/2)/sqrt(s) times the same, s being the distance from the end that is
-!> taken: half of the pairs too many pull. Where it is taken to end as much too early, the pairs beyond come
-!> together up to s = 3 d/2. So sets that follow what is found halve the error; these do not leave much of it.
+!> Near an end, pressure is the root of the distance from it. If contact is assumed to end a distance d
+!> too far out, pressure changes by the factor (s - d/2)/sqrt(s), with the distance s from the assumed
+!> end: half of the excess pairs are in tension. If it is assumed to end too early by d, the pairs beyond
+!> overlap up to s = 3 d/2. Sets that follow only these signs halve the error; the estimate removes most.
 module epcont_linear_contact_ends
   use epcont_base_kinds, only: wp
   implicit none
   private
   public :: reach_ends
 
-  !> What becomes of a pair.
+  !> Change of a pair.
   integer, parameter :: stays_open = 0, stays_closed = 1, leaves = 2, comes = 3
-  !> Of the pairs that come together at an end those that will not press.
+  !> Fraction of the overlapping pairs at an end that will not be in contact.
   real(wp), parameter :: too_many = 1.0_wp/3.0_wp
 
 contains
 
-  !> Move ends of contact to where they are likely: twice as many pairs leave there as pull, but at most half
-  !! of those that press beside them, and a third fewer come than are found together. Pairs that are numbered
-  !! along a line are looked at so.
+  !> Move ends of contact to their estimated positions: twice as many pairs leave as are in tension, but at
+  !! most half of those in contact beside them, and a third fewer enter than overlap. Pairs must be numbered
+  !! along the line.
   subroutine reach_ends(closed, wanted)
     logical, intent(in) :: closed(:)      !! pairs in contact so far
-    logical, intent(inout) :: wanted(:)   !! pairs that press, or overlap; then those of the next set
-    integer :: becomes(0:size(closed) + 1), begin(size(closed) + 1)   ! of each run of like pairs
+    logical, intent(inout) :: wanted(:)   !! pairs in compression, or overlapping; then those of the next set
+    integer :: becomes(0:size(closed) + 1), begin(size(closed) + 1)   ! of each run of equal changes
     integer :: k, r, runs
 
     becomes = stays_open
@@ -42,7 +42,7 @@ contains
 
   contains
 
-    !> Where a run has pairs that press on one side alone.
+    !> Move the end of a run that has pairs in contact on one side only.
     subroutine move_end(r)
       integer, intent(in) :: r
       integer :: beside, m

@@ -1,5 +1,5 @@
-!> A contact rule: how the contact of bodies with a linear law is found. The plan chooses one
-!> (`linear/choose_rule.f90`); the others call it without asking which one it is.
+!> Contact solver for bodies with a linear material law. The plan chooses one
+!> (`linear/choose_rule.f90`); callers do not depend on which one it is.
 module epcont_linear_contact_rule
   use epcont_assembly_bodies, only: factored_bodies
   use epcont_base_kinds, only: wp
@@ -12,40 +12,40 @@ module epcont_linear_contact_rule
   private
   public :: contact_loads, contact_rule, contact_sensitivity
 
-  !> A unit load along each of some rigid-body modes, then gaps that shrink by the share of each pair in a sum
-  !> of forces. Pairs in contact stay so, the others open.
+  !> Unit loads along some rigid-body modes, then gaps that shrink by the weight of each pair in a sum
+  !> of forces. Pairs in contact stay closed, the others open.
   type :: contact_loads
     integer, allocatable :: motion(:)      !! the modes [assessed modes]
-    real(wp), allocatable :: share(:, :)   !! of each pair in each sum [pairs, sums]
+    real(wp), allocatable :: share(:, :)   !! weight of each pair in each sum [pairs, sums]
     logical :: sound = .false.             !! the forces below are unique
     real(wp), allocatable :: force(:, :)   !! at each pair under each load [force] [pairs, loads]
-    !> Largest force under each load; 0: nothing is asked of it [force] [loads]
+    !> Largest force under each load; 0: the load is not needed [force] [loads]
     real(wp), allocatable :: unit(:)
     !> Change of each sum by a unit load along each mode of the model [modes, sums]
     real(wp), allocatable :: shared(:, :)
-    !> Under each load; not allocated if the rule finds no displacements with the forces [length]
+    !> Under each load; not allocated if the contact solver computes only the forces [length]
     !> [directions, loads, nodes]
     real(wp), allocatable :: displacement(:, :, :)
   contains
     procedure :: ask_for
   end type contact_loads
 
-  !> What errors of the stiffness and of the gaps do to the contact forces.
+  !> Sensitivity of the contact forces to errors of the stiffness and of the gaps.
   type :: contact_sensitivity
     logical :: known = .false.
-    !> Relative error of the forces / relative error of the flexibility, at most
+    !> Upper bound of relative error of the forces / relative error of the flexibility
     real(wp) :: amplification = 0.0_wp
-    real(wp) :: rounding = 0.0_wp        !! what rounding may leave in a force, of the largest
+    real(wp) :: rounding = 0.0_wp        !! upper bound of rounding in a force, over the largest
   end type contact_sensitivity
 
   type, abstract :: contact_rule
-    type(contact_problem) :: problem   !! its gaps and motions; F if the rule has one
+    type(contact_problem) :: problem   !! its gaps and modes; F if the contact solver has one
     real(wp), allocatable :: travel_gap(:)   !! opened by prescribed rigid-body displacements [length] [pairs]
-    real(wp), allocatable :: resultant(:)    !! of all loads along the rigid-body modes [motions]
-    integer :: threads = 1             !! that share the work
-    logical :: keeps = .false.         !! the bodies cannot yield, and a load case may follow
-    logical :: explains = .true.       !! it can say why there is no answer, and which forces are not unique
-    logical :: failed = .false.        !! to find a contact in this load case
+    real(wp), allocatable :: resultant(:)    !! of all loads along the rigid-body modes [modes]
+    integer :: threads = 1             !! number of threads
+    logical :: keeps = .false.         !! all bodies are elastic, and a load case may follow
+    logical :: explains = .true.       !! it reports why there is no solution, and which forces are not unique
+    logical :: failed = .false.        !! no contact found in this load case
   contains
     procedure, non_overridable :: see_case
     procedure(take_case), deferred :: take_case
@@ -59,7 +59,7 @@ module epcont_linear_contact_rule
   end type contact_rule
 
   abstract interface
-    !> Another load case, seen before, with the factors of the case before.
+    !> Take another known load case, with the factors of the case before.
     subroutine take_case(self, scene, bodies)
       import :: contact_rule, factored_bodies, planned_model
       class(contact_rule), intent(inout) :: self
@@ -67,49 +67,49 @@ module epcont_linear_contact_rule
       class(factored_bodies), intent(inout) :: bodies
     end subroutine take_case
 
-    !> Factor the bodies as far as their law has changed, and prepare the contact.
+    !> Factor the bodies whose law has changed, and prepare the contact.
     subroutine factor(self, scene, bodies, failed_body, watch)
       import :: contact_rule, factored_bodies, planned_model, stopwatch
       class(contact_rule), intent(inout) :: self
       type(planned_model), intent(in) :: scene
       class(factored_bodies), intent(inout) :: bodies
-      integer, intent(out) :: failed_body            !! first body that could not be factored; 0: all could
-      class(stopwatch), intent(inout) :: watch       !! takes the time
+      integer, intent(out) :: failed_body            !! first body that could not be factored, 0 if absent
+      class(stopwatch), intent(inout) :: watch       !! measures the time
     end subroutine factor
 
-    !> Find contact, deformation and strains under a part of the loads, or why there is no contact.
+    !> Find contact, deformation and strains under a fraction of the loads, or why there is no contact.
     subroutine solve(self, scene, bodies, load_factor, start, state, watch)
       import :: contact_rule, factored_bodies, planned_model, solved_state, stopwatch, wp
       class(contact_rule), intent(inout) :: self
       type(planned_model), intent(in) :: scene
       class(factored_bodies), intent(inout) :: bodies
-      real(wp), intent(in) :: load_factor            !! of the loads
+      real(wp), intent(in) :: load_factor            !! factor of the loads
       logical, allocatable, intent(in) :: start(:)   !! guess of the pairs in contact, if allocated [pairs]
       type(solved_state), intent(inout) :: state
       class(stopwatch), intent(inout) :: watch
     end subroutine solve
 
-    !> Find forces under unit loads, and what the sensitivity depends on. The pairs in contact stay so.
+    !> Find forces under unit loads, and the data of the sensitivity. The pairs in contact stay closed.
     subroutine respond(self, scene, bodies, state, loads, known)
       import :: contact_loads, contact_rule, factored_bodies, planned_model, solved_state
       class(contact_rule), intent(inout), target :: self
       type(planned_model), intent(in) :: scene
-      class(factored_bodies), intent(inout) :: bodies   !! as the last solve left them
-      class(solved_state), intent(in) :: state          !! the answer, with some contact
-      type(contact_loads), intent(inout) :: loads       !! with motions and shares
-      logical, intent(in) :: known   !! the forces, since the last load case had the same contacts
+      class(factored_bodies), intent(inout) :: bodies   !! as after the last solve
+      class(solved_state), intent(in) :: state          !! the solution, with some contact
+      type(contact_loads), intent(inout) :: loads       !! with modes and weights
+      logical, intent(in) :: known   !! the forces are known from a load case with the same contacts
     end subroutine respond
 
-    !> How much errors of the stiffness and of the gaps change the contact forces, after `respond`.
+    !> Compute the sensitivity of the contact forces to errors of the stiffness and gaps, after `respond`.
     function sensitivity(self, state, condition) result(found)
       import :: contact_rule, contact_sensitivity, solved_state, wp
       class(contact_rule), intent(inout), target :: self
-      class(solved_state), intent(in) :: state      !! the answer
+      class(solved_state), intent(in) :: state      !! the solution
       real(wp), intent(in) :: condition             !! of the stiffness
       type(contact_sensitivity) :: found
     end function sensitivity
 
-    !> Opening of each pair by a unit force of its own, about [length/force] [pairs].
+    !> Opening of each pair by a unit force on it, approximately [length/force] [pairs].
     pure function compliance(self)
       import :: contact_rule, wp
       class(contact_rule), intent(in) :: self
@@ -119,7 +119,7 @@ module epcont_linear_contact_rule
 
 contains
 
-  !> What loads and supports of the model's load case do to gaps and rigid-body modes.
+  !> Compute the effect of loads and supports of the load case on gaps and rigid-body modes.
   subroutine see_case(self, scene)
     class(contact_rule), intent(inout) :: self
     type(planned_model), intent(in) :: scene
@@ -128,20 +128,20 @@ contains
     call see_motions(scene%model, scene%motions, self%problem%motion, self%resultant)
   end subroutine see_case
 
-  !> Take one step of iterative refinement. A rule whose steps end where nothing changes gains nothing by it.
+  !> Take one step of iterative refinement, unless the solver's own iteration has already converged.
   subroutine refine(self, scene, bodies, load_factor, state, refined, watch)
     class(contact_rule), intent(inout) :: self
     type(planned_model), intent(in) :: scene
     class(factored_bodies), intent(in) :: bodies
     real(wp), intent(in) :: load_factor
     type(solved_state), intent(inout) :: state   !! contact, deformation and strain
-    logical, intent(out) :: refined              !! false: there is nothing to gain, or no contact
+    logical, intent(out) :: refined              !! false: no step was taken, or no contact found
     class(stopwatch), intent(inout) :: watch
 
     refined = .false.
   end subroutine refine
 
-  !> Are the contact forces the only ones? A rule that can say which ones are not unique need not know.
+  !> Are the contact forces unique? Not needed from a solver that reports which forces are not unique.
   logical function is_unique(self, scene, bodies)
     class(contact_rule), intent(inout) :: self
     type(planned_model), intent(in) :: scene
@@ -150,7 +150,7 @@ contains
     is_unique = .true.
   end function is_unique
 
-  !> Say which loads are asked for; loads without forces tell nothing.
+  !> Choose the loads that are needed; loads without forces give no information.
   pure subroutine ask_for(self, asked)
     class(contact_loads), intent(inout) :: self
     logical, intent(in) :: asked(:)   !! [loads]

@@ -1,12 +1,12 @@
-!> Interior path to the first set of contacts of joined bodies: all forces are between their bounds, and the
-!> products of their distances from these with gaps fall together, by Newton steps that are cut before one of
-!> them is zero. A pair has a gap for each finite bound, the second one open the other way; what opens the
-!> pair is their difference.
+!> Interior path to the first active set of joined bodies: all forces are between their bounds, and the
+!> products of their distances from these with the gaps decrease together, by Newton steps that are cut before
+!> one of them is zero. A pair has a gap for each finite bound, the second one with opposite sense; the
+!> opening of the pair is their difference.
 !>
-!> Each pair has a spring of stiffness force/gap in a step, so that every system has its solution, also while
-!> contacts open or bodies rock. The stiffest of these springs would cost digits of the factor: a pair that
-!> is firm has one of bounded stiffness, and its force is followed by as many steps as it takes. The path
-!> ends near the set, not at it.
+!> Each pair has a spring of stiffness force/gap in a step, so that every system has a solution, even if
+!> contacts open or bodies rock. The stiffest springs would cost digits of the factor: a firm pair
+!> has a spring of bounded stiffness, and its force converges in additional steps. The path
+!> ends near the active set, not at it.
 module epcont_linear_joined_path
   use epcont_assembly_bodies, only: factored_bodies, half_solved_body
   use epcont_base_kinds, only: wp
@@ -16,35 +16,35 @@ module epcont_linear_joined_path
   private
   public :: joined_path
 
-  !> Steps at most; 10 to 40 are seen.
+  !> Maximum number of steps; 10 to 40 are usual.
   integer, parameter :: step_limit = 40
-  !> Stiffness of the firmest springs, over those of pairs that Newton steps have.
+  !> Stiffness of the firmest springs, over that of Newton steps of the search.
   real(wp), parameter :: firmest = 100.0_wp
-  !> Part of the way to where the first force or gap is zero.
+  !> Fraction of the way to the first zero force or gap.
   real(wp), parameter :: to_the_wall = 0.95_wp
-  !> Part of the mean product that a step leaves, after long steps, short and very short ones.
+  !> Fraction of the mean product after a step: for long, short and very short steps.
   real(wp), parameter :: left(3) = [0.1_wp, 0.5_wp, 0.9_wp], short(2) = [0.3_wp, 0.05_wp]
-  !> The set is clear where each force, over what its gap would make at a half-plane, is beyond this or its
-  !! inverse; or the mean product is below these parts of the first, after a long step or any.
-  !! The gap of a firm pair, at least, over what the spring of a Newton step would have.
+  !> The set is clear if each force, over the force that its gap causes at a half-plane, is beyond this or its
+  !! inverse; or if the mean product is below these fractions of the first, after a long step or any step.
+  !! Least gap of a firm pair, over that of the spring of a Newton step.
   real(wp), parameter :: no_gap = 1.0e-6_wp
   real(wp), parameter :: clear = 1.0e3_wp, small = 1.0e-10_wp, smallest = 1.0e-20_wp
 
-  !> Where the path begins, and the set at its end.
+  !> Start of the path, and the set at its end.
   type :: joined_path
-    real(wp), allocatable :: gap(:)             !! without any step [length] [pairs]
+    real(wp), allocatable :: gap(:)             !! of the initial state [length] [pairs]
     real(wp), allocatable :: unbalanced(:, :)   !! forces on the nodes [force] [directions, nodes]
     real(wp), allocatable :: gamma(:)           !! springs of Newton steps [force/length] [pairs]
-    real(wp), allocatable :: compliance(:)      !! of a half-plane at each pair [length/force] [pairs]
+    real(wp), allocatable :: compliance(:)      !! of a half-plane, for each pair [length/force] [pairs]
     real(wp), allocatable :: lower(:), upper(:) !! bounds of the forces [force] [pairs]
     real(wp), allocatable :: force(:)           !! at the end [force] [pairs]
     logical, allocatable :: closed(:)           !! at the end [pairs]
-    integer :: steps = 0                        !! taken
-    logical, allocatable, private :: firm(:)    !! whose springs are bounded [pairs]
-    logical, allocatable, private :: two(:)     !! with an upper bound [pairs]
-    !> Distances from the lower and the upper bound, and the gaps that these are multiplied by [pairs, 2]
+    integer :: steps = 0                        !! number of steps taken
+    logical, allocatable, private :: firm(:)    !! pairs with bounded springs [pairs]
+    logical, allocatable, private :: two(:)     !! pairs with an upper bound [pairs]
+    !> Distances from the lower and the upper bound, and the corresponding gaps [pairs, 2]
     real(wp), allocatable, private :: inside(:, :), open(:, :)
-    !> What a step adds to the force and to the gaps [pairs], [pairs, 2]
+    !> Change of forces and gaps by a step [pairs], [pairs, 2]
     real(wp), allocatable, private :: force_step(:), open_step(:, :)
   contains
     procedure :: follow
@@ -56,17 +56,17 @@ module epcont_linear_joined_path
 
 contains
 
-  !> Follow the path, and tell the pairs closed at its end and their forces.
+  !> Follow the path, and return the pairs closed at its end and their forces.
   subroutine follow(self, scene, threads, bodies)
     class(joined_path), intent(inout) :: self
     type(planned_model), intent(in) :: scene           !! numbered as one system
-    integer, intent(in) :: threads                     !! that share the fronts
-    class(factored_bodies), intent(inout) :: bodies    !! factored with springs of the path then
+    integer, intent(in) :: threads                     !! number of threads
+    class(factored_bodies), intent(inout) :: bodies    !! afterwards factored with springs of the path
     real(wp) :: first, length, mean, over(size(self%gap), 2), part
     integer :: k, step
 
     call self%begin(scene%model%mesh%bodies)
-    if (all(self%inside(:, 1) == 0.0_wp)) then   ! nothing presses
+    if (all(self%inside(:, 1) == 0.0_wp)) then   ! no contact forces
       self%closed = self%gap < 0.0_wp
       return
     end if
@@ -98,10 +98,10 @@ contains
     where (.not. self%closed) self%force = merge(self%lower, self%upper, over(:, 1) <= over(:, 2))
   end subroutine follow
 
-  !> Forces, between their bounds, that would balance all others, and gaps that they make.
+  !> Set forces between their bounds that would balance all others, and the gaps that they cause.
   subroutine begin(self, bodies)
     class(joined_path), intent(inout) :: self
-    integer, intent(in) :: bodies     !! number
+    integer, intent(in) :: bodies     !! number of bodies
     integer :: n
 
     n = size(self%gap)
@@ -110,7 +110,7 @@ contains
     self%force = self%lower + self%inside(:, 1)
     self%open = spread(max(self%gap, self%compliance*self%inside(:, 1)), 2, 2)
     where (.not. self%two) self%open(:, 2) = 0.0_wp
-    where (self%two)   ! a width of zero would have no inside
+    where (self%two)   ! a pair of equal bounds needs a distance
       self%inside(:, 1) = max(0.5_wp*(self%upper - self%lower), no_gap*self%inside(:, 1))
       self%inside(:, 2) = self%inside(:, 1)
       self%force = 0.5_wp*(self%lower + self%upper)
@@ -119,7 +119,7 @@ contains
     end where
   end subroutine begin
 
-  !> The step to products of this size; gaps of firm pairs follow afterwards.
+  !> Solve for a step to this product; gaps of firm pairs are computed afterwards.
   subroutine solve_step(self, scene, threads, bodies, product)
     class(joined_path), intent(inout) :: self
     type(planned_model), intent(in) :: scene
@@ -153,7 +153,7 @@ contains
     end associate
   end subroutine solve_step
 
-  !> Part of a step that comes near the first bound or closed gap.
+  !> Fraction of a step that nearly reaches the first bound or closed gap.
   pure real(wp) function length_of_step(self) result(length)
     class(joined_path), intent(in) :: self
     real(wp) :: fastest
@@ -165,7 +165,7 @@ contains
     length = min(1.0_wp, to_the_wall/fastest)
   end function length_of_step
 
-  !> Distances from the bounds over what the gaps would make at a half-plane; infinite without a bound.
+  !> Distances from the bounds, over the force that gaps cause at a half-plane; infinite without a bound.
   pure function over(self)
     class(joined_path), intent(in) :: self
     real(wp) :: over(size(self%gap), 2)

@@ -1,5 +1,5 @@
-!> What joined bodies do with the set of contacts that was found: under unit loads, by solves with its factor,
-!> which these share; and whether the contact forces are the only ones.
+!> Response of joined bodies to unit loads with the final active set, solved with its factor,
+!> all in common solves; and a check that the contact forces are unique.
 module epcont_linear_joined_response
   use epcont_assembly_bodies, only: factored_bodies, force_fields, half_solved_body
   use epcont_base_kinds, only: wp
@@ -17,17 +17,17 @@ module epcont_linear_joined_response
   private
   public :: are_unique, respond_joined, sensitivity_probe
 
-  !> What a solve leaves of forces of size one, at most, where they open gaps.
+  !> Largest residual of a solve for unit forces that open gaps.
   real(wp), parameter :: most_left = 0.1_wp
-  !> Openings of gaps that motions explain but for this part of them make no forces: springs of SUPORT
-  !! DOFs leave that much.
+  !> Gap openings that modes explain up to this fraction cause no forces: springs of SUPORT
+  !! DOFs leave this much.
   real(wp), parameter :: as_motions = 1.0e-5_wp
-  !> Motions up to which that is asked of all of them.
+  !> Number of modes up to which all of them are used for this.
   integer, parameter :: few_motions = 40
 
-  !> What joined bodies do under some loads, the set of contacts frozen.
+  !> Response of joined bodies to some loads, with fixed active set.
   type :: frozen_response
-    real(wp), allocatable :: load(:, :)      !! along the motions [force] [motions, any]
+    real(wp), allocatable :: load(:, :)      !! along the modes [force] [modes, any]
     real(wp), allocatable :: opening(:, :)   !! of the gaps [length] [pairs, any]
     real(wp), allocatable :: force(:, :)     !! [force] [pairs, any]
     real(wp), allocatable :: displacement(:, :, :)   !! [length] [directions, any, nodes]
@@ -35,12 +35,12 @@ module epcont_linear_joined_response
     procedure :: solve
   end type frozen_response
 
-  !> Two columns that tell the 1-norms of D M (`simplex_response.f90`) by Higham and Tisseur: for D of what
-  !! the contact forces open gaps by, body by body, which is taken from the deformation, and of travels.
+  !> Two columns that estimate the 1-norms of D M (`simplex_response.f90`) by Higham and Tisseur: D is the sum
+  !! of magnitudes of gap contributions: by bodies, computed from the deformation, and by rigid displacements.
   type :: sensitivity_probe
-    !> What a first solve has for the two columns; not allocated: nothing is known [pairs, 2]
+    !> Result of a first solve for the two columns; not allocated before it [pairs, 2]
     real(wp), allocatable :: first(:, :)
-    !> What these sums change of a force, if they are as much off, of the largest
+    !> Relative change of the largest force by relative errors of these sums
     real(wp) :: change(2) = 0.0_wp
   contains
     procedure, private :: turn
@@ -49,17 +49,17 @@ module epcont_linear_joined_response
 
 contains
 
-  !> Find forces under unit loads along motions, then closing gaps, and under the columns of the probe behind
-  !! them. The second solve makes the loads better, and has the columns that the first has led to. If the
-  !! probe knows the first solve, the loads are known.
+  !> Find forces under unit loads along modes, then of closing gaps, and under the columns of the probe after
+  !! them. The second solve refines the loads, and has the columns that follow from the first. If the
+  !! probe has a first solve, the loads are known.
   subroutine respond_joined(springs, scene, bodies, problem, state, probe, loads)
     class(joined_springs), intent(in) :: springs
-    type(planned_model), intent(in) :: scene         !! that was solved
-    class(factored_bodies), intent(inout) :: bodies  !! factored with the set of contacts
+    type(planned_model), intent(in) :: scene         !! already solved
+    class(factored_bodies), intent(inout) :: bodies  !! factored with the active set
     type(contact_problem), intent(in) :: problem     !! its gaps and motions
-    class(solved_state), intent(in) :: state         !! with some contact
+    class(solved_state), intent(in) :: state         !! solution with some contact
     type(sensitivity_probe), intent(inout) :: probe
-    type(contact_loads), intent(inout) :: loads      !! motions and shares by which gaps close
+    type(contact_loads), intent(inout) :: loads      !! modes, and weights by which gaps close
     type(frozen_response) :: found
     integer, allocatable :: pressed(:)
     integer :: k, many
@@ -90,11 +90,11 @@ contains
     if (many > 0) call take_response(scene, problem%motion, pressed, found, loads)
   end subroutine respond_joined
 
-  !> The forces and displacements of the loads; none if motions close the gaps.
+  !> Take forces and displacements of the loads; zero forces if modes close the gaps.
   subroutine take_response(scene, motion, pressed, found, loads)
     type(planned_model), intent(in) :: scene
     type(motion_matrix), intent(in) :: motion        !! A
-    integer, intent(in) :: pressed(:)                !! pairs
+    integer, intent(in) :: pressed(:)                !! pairs with a force
     type(frozen_response), intent(inout) :: found
     type(contact_loads), intent(inout) :: loads
     integer :: j, many, motions
@@ -113,14 +113,14 @@ contains
     loads%sound = .true.
   end subroutine take_response
 
-  !> Find forces and displacements under loads and openings in one solve; of what is wrong of forces as far as
-  !! known it leaves a thousandth or less. Springs at SUPORT DOFs carry what known displacements say.
+  !> Find forces and displacements under loads and openings in one solve; it reduces the error of known forces
+  !! to a thousandth or less. Springs at SUPORT DOFs carry the forces of known displacements.
   subroutine solve(found, springs, scene, bodies, at_contact)
     class(frozen_response), intent(inout) :: found
     class(joined_springs), intent(in) :: springs
     type(planned_model), intent(in) :: scene
-    class(factored_bodies), intent(inout) :: bodies !! factored with the set of contacts
-    logical, intent(in) :: at_contact               !! only displacements that gaps depend on are wanted
+    class(factored_bodies), intent(inout) :: bodies !! factored with the active set
+    logical, intent(in) :: at_contact               !! compute only displacements that gaps depend on
     type(force_fields) :: loads
     integer :: k
 
@@ -133,7 +133,7 @@ contains
         call add_suport_forces(scene, found%load(:, k) + springs%hold*suport_values(scene, u(:, k, :)), &
                                loads%force(:, k, :))
       end do
-      ! Angles come from the nodes of their RBE2.
+      ! Rotations come from the nodes of their RBE2.
       call bodies%body_displacements(scene, 1, loads, loads%node, u, &
                                      at_contact .and. all(scene%motions%component /= angle))
       do k = 1, size(force, 2)
@@ -142,9 +142,9 @@ contains
     end associate
   end subroutine solve
 
-  !> Equal parts, and the alternating column that finds what they cancel [pairs, 2].
+  !> Equal entries, and an alternating column for the parts that cancel in these [pairs, 2].
   pure function first_columns(pressed, pairs) result(x)
-    integer, intent(in) :: pressed(:), pairs   !! those with a force, and how many there are in all
+    integer, intent(in) :: pressed(:), pairs   !! pairs with a force; number of pairs
     real(wp) :: x(pairs, 2)
     integer :: k
 
@@ -154,15 +154,15 @@ contains
     x(:, 2) = x(:, 2)/sum(abs(x(:, 2)))
   end function first_columns
 
-  !> What the first solve says of the norms, and for each of them the column that is next: of M'D the
-  !! largest entry is a bound, too.
+  !> Compute the norms from the first solve, and the next column for each: the largest
+  !! entry of M'D is a bound, too.
   subroutine turn(self, scene, problem, state, x)
     class(sensitivity_probe), intent(inout) :: self
     type(planned_model), intent(in) :: scene
     type(contact_problem), intent(in) :: problem
     class(solved_state), intent(in) :: state
     real(wp), intent(out) :: x(:, :)
-    !> Sums that the gaps come from, of deformations and of travels [length]
+    !> Sums of magnitudes of gap contributions, by deformations and by rigid displacements [length]
     real(wp) :: sums(scene%model%contact%pairs, 2)
     real(wp) :: of_column(2, 2)   ! by sums and columns
     integer :: k
@@ -179,12 +179,12 @@ contains
     end do
   end subroutine turn
 
-  !> How much errors change the forces. What the last step of the contact has not changed is right, but for
-  !! the sums that gaps come from.
+  !> Compute the sensitivity of the forces. Their error is the change in the last step of the contact, plus
+  !! that of the gap contributions.
   pure type(contact_sensitivity) function found(self, condition, correction)
     class(sensitivity_probe), intent(in) :: self
     real(wp), intent(in) :: condition    !! of the stiffness
-    real(wp), intent(in) :: correction   !! of forces by the last step, of the largest
+    real(wp), intent(in) :: correction   !! of forces in the last step, over the largest
 
     associate (off => epsilon(1.0_wp)*self%change)
       found = contact_sensitivity(.true., self%change(1), &
@@ -192,9 +192,9 @@ contains
     end associate
   end function found
 
-  !> Do motions open the gaps of the pressed pairs so? Then no forces come of it. Of many motions those that
-  !! the solve has led to are looked at; of few their part is taken off by Gram and Schmidt's way, twice,
-  !! against rounding.
+  !> Do modes open the gaps of the pressed pairs in the same way? Then there are no forces. If there are many
+  !! modes, only those of the solve are used; if few, their part is removed by Gram-Schmidt, twice
+  !! because of rounding.
   logical function gives_way(motion, pressed, opening, q)
     type(motion_matrix), intent(in) :: motion          !! A
     integer, intent(in) :: pressed(:)                  !! pairs
@@ -222,12 +222,12 @@ contains
     gives_way = norm2(rest) <= solved_to*norm2(opening(pressed))
   end function gives_way
 
-  !> Are the contact forces the only ones? Forces that open no gaps are what a solve leaves of any; of two
-  !! that are given no one is likely to have none of these.
+  !> Are the contact forces unique? Forces that open no gaps remain after a solve for arbitrary forces; two
+  !! given forces are unlikely both to be free of them.
   logical function are_unique(springs, scene, bodies)
     class(joined_springs), intent(in) :: springs
     type(planned_model), intent(in) :: scene
-    class(factored_bodies), intent(in) :: bodies    !! factored with the set of contacts
+    class(factored_bodies), intent(in) :: bodies    !! factored with the active set
     type(half_solved_body), allocatable :: half(:)
     real(wp) :: force(scene%model%contact%pairs)
     integer :: j, k

@@ -1,5 +1,5 @@
-!> RULE JOINED: all bodies are one sparse system, and their contact is found without a flexibility matrix. Of
-!> many pairs that takes longest.
+!> RULE JOINED: all bodies are one sparse system, and contact is found without a flexibility matrix, which
+!> takes longest if there are many pairs.
 module epcont_linear_joined_rule
   use epcont_assembly_bodies, only: factored_bodies
   use epcont_base_kinds, only: wp
@@ -23,8 +23,8 @@ module epcont_linear_joined_rule
 
   type, extends(contact_rule) :: joined_rule
     type(joined_search), private :: search
-    type(load_line), private :: line          !! from whose states the next contact is sought
-    type(rigid_start), private :: rigid       !! whether rigid bodies can carry the loads
+    type(load_line), private :: line          !! predicts the start of the next contact
+    type(rigid_start), private :: rigid       !! shows if rigid bodies can carry the loads
     type(sensitivity_probe), private :: probe
   contains
     procedure :: take_case
@@ -39,11 +39,11 @@ module epcont_linear_joined_rule
 
 contains
 
-  !> A load case: whether rigid bodies can carry it, and the springs of motions that it does not need held.
+  !> Take a load case: check if rigid bodies can carry it, and set the springs of modes without load.
   subroutine take_case(self, scene, bodies)
     class(joined_rule), intent(inout) :: self
     type(planned_model), intent(in) :: scene           !! numbered as one system
-    class(factored_bodies), intent(inout) :: bodies    !! with a law; their springs are made
+    class(factored_bodies), intent(inout) :: bodies    !! with a law; gets the springs
     logical, allocatable :: redundant(:)               ! of the case before
 
     self%failed = .false.
@@ -66,8 +66,8 @@ contains
     call new_springs(scene, bodies, self%rigid%redundant, self%search%joined_springs)
   end subroutine take_case
 
-  !> Factor the bodies with the springs of the set of contacts, as far as law or springs have changed. The
-  !! contact may have another set factored.
+  !> Factor the bodies with the springs of the active set, if law or springs have changed. The
+  !! contact may factor them for another set.
   subroutine factor(self, scene, bodies, failed_body, watch)
     class(joined_rule), intent(inout) :: self
     type(planned_model), intent(in) :: scene
@@ -76,7 +76,7 @@ contains
     class(stopwatch), intent(inout) :: watch
     logical :: sound
 
-    if (bodies%factorizations == 0) call self%take_case(scene, bodies)   ! springs are those of the first law
+    if (bodies%factorizations == 0) call self%take_case(scene, bodies)   ! springs depend on the first law
     sound = .true.
     if (self%rigid%balanced) call self%search%factor(scene, bodies, self%threads, sound, watch)
     failed_body = merge(0, 1, sound)
@@ -122,12 +122,12 @@ contains
     call watch%lap(stage_contact)
   end subroutine solve
 
-  !> What follows from the forces and gaps that were found: which pairs touch, and which motions are free.
+  !> Complete the solution from forces and gaps: pairs in contact, and undetermined modes.
   subroutine settle(self, scene, state)
     class(joined_rule), intent(in) :: self
     type(planned_model), intent(in) :: scene
     type(solved_state), intent(inout) :: state
-    real(wp) :: terms(scene%model%contact%pairs)   ! what gaps are the sum of
+    real(wp) :: terms(scene%model%contact%pairs)   ! sum of magnitudes of the terms of gaps
 
     associate (contact => state%contact, motion => self%problem%motion)
       contact%at_upper = .false.
@@ -146,13 +146,13 @@ contains
     end associate
   end subroutine settle
 
-  !> Are the contact forces the only ones? If not, the solution cannot say which ones are indeterminate.
+  !> Are the contact forces unique? If not, the solution does not show which ones are indeterminate.
   logical function is_unique(self, scene, bodies)
     class(joined_rule), intent(inout) :: self
     type(planned_model), intent(in) :: scene
     class(factored_bodies), intent(in) :: bodies
 
-    ! Those of the load case before may have had the same factor.
+    ! The load case before may have had the same factor.
     if (.not. self%search%unique) self%search%unique = are_unique(self%search, scene, bodies)
     is_unique = self%search%unique
   end function is_unique
@@ -171,7 +171,7 @@ contains
     call respond_joined(self%search, scene, bodies, self%problem, state, self%probe, loads)
   end subroutine respond
 
-  !> How much errors of the stiffness and of the gaps change the contact forces.
+  !> Compute the sensitivity of the contact forces to errors of the stiffness and of the gaps.
   function sensitivity(self, state, condition) result(found)
     class(joined_rule), intent(inout), target :: self
     class(solved_state), intent(in) :: state
@@ -181,7 +181,7 @@ contains
     found = self%probe%found(condition, self%search%correction)
   end function sensitivity
 
-  !> What a half-plane deforms by at each pair.
+  !> Compliance of a half-plane at each pair.
   pure function compliance(self)
     class(joined_rule), intent(in) :: self
     real(wp), allocatable :: compliance(:)

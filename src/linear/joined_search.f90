@@ -1,17 +1,17 @@
-!> Search for the contact of bodies that are one system, without their flexibility.
+!> Contact search for bodies in one system, without a flexibility matrix.
 !>
-!> With forces lambda that are known, gaps g(u) and a spring of stiffness gamma at each pair,
+!> With known forces lambda, gaps g(u) and a spring of stiffness gamma at each pair,
 !>
 !>     K u = f + N'R,   R = max(lower, min(upper, lambda - gamma g(u)))
 !>
-!> has one solution, where a convex function of u is least; for lambda = R it is that of the contact. Newton
+!> has one solution, the minimum of a convex function of u; for lambda = R it is the contact solution. Newton
 !> steps have the springs of the pairs whose force is between its bounds, the active set (Hintermueller, Ito
-!> and Kunisch 2002). Where a step does not change the set, lambda follows R, and gaps that are left fall by
-!> gamma times the flexibility, thousands, with each step: of gamma nothing is left in the answer. SUPORT
-!> DOFs have springs, too, so weak that they matter where no pair holds a body yet; each step has them
-!> where it begins.
+!> and Kunisch 2002). If a step does not change the set, lambda is set to R, and the remaining gaps fall by
+!> gamma times the flexibility, thousands, in each step: the result does not depend on gamma. SUPORT
+!> DOFs have springs, too, so weak that they matter only if no pair restrains a body yet; in each step they
+!> act on the displacements of this step only.
 !>
-!> Lambda waits until the set stays: each step is one of that function, cut where full ones run in circles.
+!> Lambda is fixed until the set stays: each step minimises that function, and is cut if full steps cycle.
 module epcont_linear_joined_search
   use epcont_assembly_bodies, only: factored_bodies, half_solved_body, prescribe
   use epcont_base_kinds, only: wp
@@ -33,39 +33,39 @@ module epcont_linear_joined_search
   private
   public :: joined_search
 
-  !> Full steps; then an interior path leads to a set, which is held for some steps, and cut steps follow.
+  !> Full steps; then an interior path leads to a set, which is kept for some steps, and cut steps follow.
   !! Most models take 1 to 10 steps.
   integer, parameter :: full_steps = 12, held_steps = 4, step_limit = 200
-  !> Springs of pairs become firmer if a step leaves more than this part of what is wrong of forces.
+  !> Springs of pairs become firmer if a step leaves more than this fraction of the error of forces.
   real(wp), parameter :: slow = 0.1_wp
-  !> Forces that change by no more are good enough for displacements to follow: two steps are to come.
+  !> If forces change by at most this fraction, displacements are updated: two more steps follow.
   real(wp), parameter :: nearly = 1.0e-3_wp
 
-  !> While the set changes, only what pairs and SUPORT DOFs do is solved for; where it stays, all
-  !! displacements, from those of the state, whose rounding is all that the answer has.
+  !> While the set changes, only displacements of pairs and SUPORT DOFs are solved for; then all
+  !! displacements, relative to those of the state, whose rounding is the only one in the result.
   type, extends(joined_springs) :: joined_search
-    integer :: threads = 1                         !! that share the fronts
+    integer :: threads = 1                         !! number of threads
     type(motion_matrix) :: motion                  !! A, closing of the gaps by the rigid-body modes
     real(wp), allocatable :: lower(:), upper(:)    !! bounds of the forces [force] [pairs]
-    real(wp), allocatable, private :: bound(:)     !! the one that a pair which is not closed is at [pairs]
-    real(wp) :: load_factor = 0.0_wp               !! of the loads
+    real(wp), allocatable, private :: bound(:)     !! bound of the force of each open pair [pairs]
+    real(wp) :: load_factor = 0.0_wp               !! factor of the loads
     real(wp), allocatable :: fixed_gap(:)          !! initial gap and prescribed part of it [length] [pairs]
-    real(wp) :: correction = huge(1.0_wp)          !! of forces by the last step, of the largest
-    !> Forces in balance; gaps; a step adds to them [pairs]
+    real(wp) :: correction = huge(1.0_wp)          !! of forces in the last step, over the largest
+    !> Forces in balance; gaps; their change in a step [pairs]
     real(wp), allocatable, private :: borne(:), gap(:), opening(:)
     real(wp), allocatable, private :: pull(:)      !! lambda - gamma g [force] [pairs]
-    !> Forces that the springs of SUPORT DOFs carry, and what a step moves these by [motions]
+    !> Forces of the springs of SUPORT DOFs, and displacements of these in a step [modes]
     real(wp), allocatable, private :: held(:), moved(:)
     !> Residual at the displacements of the state, and a step from there [directions, nodes]
     real(wp), allocatable, private :: unbalanced(:, :), step(:, :)
-    logical, allocatable, private :: wanted(:)     !! the next set, closed [pairs]
-    real(wp), allocatable, private :: nearer(:)    !! and bounds of the others [pairs]
+    logical, allocatable, private :: wanted(:)     !! pairs closed in the next set [pairs]
+    real(wp), allocatable, private :: nearer(:)    !! bounds of the others [pairs]
     real(wp), private :: change(2)                 !! of forces and strains in this step
-    integer, private :: taken = 0                  !! steps
-    integer, private :: last_held = 0              !! steps until signs are judged again
-    logical, private :: stays = .false.            !! the set, and lambda follows
-    logical, private :: whole = .false.            !! the step is one of all displacements
-    !> It is from the state, all forces that are not in balance there being new
+    integer, private :: taken = 0                  !! number of steps
+    integer, private :: last_held = 0              !! step up to which signs are not checked
+    logical, private :: stays = .false.            !! the set stays, and lambda follows
+    logical, private :: whole = .false.            !! the step has all displacements
+    !> The step begins at the state, with its residual and all forces
     logical, private :: afresh = .false.
   contains
     procedure :: find_set
@@ -88,13 +88,13 @@ module epcont_linear_joined_search
 
 contains
 
-  !> Newton steps to the set of contacts and its forces.
+  !> Take Newton steps to the active set and its forces.
   subroutine find_set(self, scene, bodies, redundant, knows_set, state, watch)
     class(joined_search), intent(inout) :: self
     type(planned_model), intent(in) :: scene
     class(factored_bodies), intent(inout) :: bodies
-    logical, intent(in) :: redundant(:)           !! nothing resists the motion [motions]
-    logical, intent(in) :: knows_set              !! the state is near the answer
+    logical, intent(in) :: redundant(:)           !! nothing restrains the mode [modes]
+    logical, intent(in) :: knows_set              !! the state is near the solution
     type(solved_state), intent(inout) :: state
     class(stopwatch), intent(inout) :: watch
     real(wp) :: before(2), length
@@ -127,7 +127,7 @@ contains
     if (allocated(self%step)) deallocate (self%step)
   end subroutine find_set
 
-  !> The state that the search begins at, and the first set.
+  !> Set the initial state and the first set.
   subroutine begin(self, scene, bodies, redundant, knows_set, state)
     class(joined_search), intent(inout) :: self
     type(planned_model), intent(in) :: scene
@@ -151,8 +151,8 @@ contains
     if (.not. knows_set) call self%begin_set(redundant)
   end subroutine begin
 
-  !> The first set: pairs that are as near as contact may deform, and overlap, if they hold all motions;
-  !! else all pairs. Those that are far apart would bend bodies into each other.
+  !> Choose the first set: pairs that overlap or are as close as contact may deform, if they restrain all
+  !! modes; else all pairs. Distant pairs would bend bodies into each other.
   subroutine begin_set(self, redundant)
     class(joined_search), intent(inout) :: self
     logical, intent(in) :: redundant(:)
@@ -165,7 +165,7 @@ contains
     end associate
   end subroutine begin_set
 
-  !> The next step begins at the state.
+  !> Begin the next step at the state.
   subroutine begin_at_state(self, scene, state)
     class(joined_search), intent(inout) :: self
     type(planned_model), intent(in) :: scene
@@ -176,7 +176,7 @@ contains
     self%pull = state%contact%force - self%gamma*self%gap
   end subroutine begin_at_state
 
-  !> Nothing is known of the steps to come.
+  !> Reset the history of steps.
   subroutine begin_afresh(self)
     class(joined_search), intent(inout) :: self
 
@@ -187,7 +187,7 @@ contains
     self%held = 0.0_wp*self%hold
   end subroutine begin_afresh
 
-  !> The residual at the state.
+  !> Compute the residual at the state.
   subroutine balance(self, scene, bodies, state)
     class(joined_search), intent(inout) :: self
     type(planned_model), intent(in) :: scene
@@ -199,7 +199,7 @@ contains
                       spring_forces(scene%model, state%deformation)
   end subroutine balance
 
-  !> Full steps run in circles, as where contacts open or bodies rock: an interior path leads near the set.
+  !> If full steps cycle, as with opening contacts or rocking bodies, follow an interior path near the set.
   subroutine lead_to_set(self, scene, bodies, state)
     class(joined_search), intent(inout) :: self
     type(planned_model), intent(in) :: scene
@@ -220,10 +220,10 @@ contains
     self%pull = state%contact%force - self%gamma*self%gap
   end subroutine lead_to_set
 
-  !> The pairs whose force is between its bounds; if it is at one but for rounding, they keep their state.
+  !> Choose the pairs whose force is between its bounds; if it is at one up to rounding, keep their state.
   subroutine find_wanted(self, force)
     class(joined_search), intent(inout) :: self
-    real(wp), intent(in) :: force(:)     !! so far [pairs]
+    real(wp), intent(in) :: force(:)     !! present forces [pairs]
 
     self%wanted = self%pull > self%lower .and. self%pull < self%upper
     self%nearer = merge(self%upper, self%lower, self%pull - self%lower > self%upper - self%pull)
@@ -231,7 +231,7 @@ contains
       self%wanted = self%closed
   end subroutine find_wanted
 
-  !> Forces of the set: those of closed pairs follow their springs, the others are at their bounds.
+  !> Compute forces of the set: closed pairs have those of their springs, the others are at their bounds.
   pure function forces_of(self, pull) result(force)
     class(joined_search), intent(in) :: self
     real(wp), intent(in) :: pull(:)      !! of the springs [force] [pairs]
@@ -240,7 +240,7 @@ contains
     force = merge(pull, self%bound, self%closed)
   end function forces_of
 
-  !> Pairs whose force is between its bounds, and further from them than a part of the largest [pairs].
+  !> Find forces between their bounds, farther from them than a fraction of the largest [pairs].
   pure function between(self, force, part)
     class(joined_search), intent(in) :: self
     real(wp), intent(in) :: force(:), part
@@ -251,7 +251,7 @@ contains
     end associate
   end function between
 
-  !> The next set.
+  !> Choose the next set.
   subroutine choose_set(self, state)
     class(joined_search), intent(inout) :: self
     type(solved_state), intent(inout) :: state
@@ -261,7 +261,7 @@ contains
     self%bound = self%nearer
   end subroutine choose_set
 
-  !> What is out of balance is solved for: after a step that of pairs and moved SUPORT DOFs alone.
+  !> Solve for the residual: after a step, that of pairs and moved SUPORT DOFs only.
   subroutine find_step(self, scene, bodies)
     class(joined_search), intent(inout) :: self
     type(planned_model), intent(in) :: scene
@@ -282,7 +282,7 @@ contains
     self%moved = suport_values(scene, self%step)
   end subroutine find_step
 
-  !> How much of a step makes the function least.
+  !> Fraction of a step that minimises the function.
   real(wp) function length_of_step(self) result(length)
     class(joined_search), intent(in) :: self
     real(wp) :: curvature, descent
@@ -294,10 +294,10 @@ contains
                       self%lower, self%upper)
   end function length_of_step
 
-  !> Go along a step; lambda follows a full one with the same set, but the first of all displacements.
+  !> Add a step; lambda follows a full step with the same set, except the first with all displacements.
   subroutine take_step(self, length, state)
     class(joined_search), intent(inout) :: self
-    real(wp), intent(in) :: length       !! part of the step
+    real(wp), intent(in) :: length       !! fraction of the step
     type(solved_state), intent(inout) :: state
     real(wp), allocatable :: next(:)
 
@@ -321,12 +321,12 @@ contains
     end associate
   end subroutine take_step
 
-  !> Displacements follow a whole step. Is the contact found, or must the springs be firmer?
+  !> Update displacements after a full step. Check if the contact is found, or if springs must be firmer.
   subroutine judge(self, scene, bodies, before, state)
     class(joined_search), intent(inout) :: self
     type(planned_model), intent(in) :: scene
     class(factored_bodies), intent(in) :: bodies
-    real(wp), intent(in) :: before(2)             !! change by the step before
+    real(wp), intent(in) :: before(2)             !! change in the step before
     type(solved_state), intent(inout) :: state
     logical :: firmer
 
@@ -347,7 +347,7 @@ contains
     call self%balance(scene, bodies, state)
   end subroutine judge
 
-  !> The displacements follow.
+  !> Update all displacements.
   subroutine take_displacements(self, scene, bodies, state)
     class(joined_search), intent(inout) :: self
     type(planned_model), intent(in) :: scene
@@ -361,7 +361,7 @@ contains
     state%strain = state%strain + strain
     state%contact%approach = state%contact%approach + self%moved
     self%held = 0.0_wp
-    ! Of stiff bodies among soft ones stresses tell what strains do not.
+    ! For stiff bodies among soft ones, stresses show changes that strains do not.
     self%change(2) = max(part_of_largest(strain, state%strain), &
                          part_of_largest(bodies%law%increment(strain), bodies%law%stress(state%strain)))
   end subroutine take_displacements

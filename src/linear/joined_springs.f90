@@ -1,4 +1,4 @@
-!> How stiff the springs of joined bodies are, measured on their elements; what SUPORT DOFs do and carry.
+!> Stiffness of the springs of joined bodies, relative to their elements; motion and forces of SUPORT DOFs.
 module epcont_linear_joined_springs
   use epcont_assembly_bodies, only: factored_bodies
   use epcont_base_kinds, only: wp
@@ -12,34 +12,34 @@ module epcont_linear_joined_springs
   private
   public :: add_suport_forces, joined_springs, new_springs, suport_values
 
-  !> Stiffness of a spring over that of the softer body at its pair. A step leaves 1E-3 of the gaps, mostly
-  !! 1E-4; more would cost digits of the factor, of which steps bring back as many each.
+  !> Stiffness of a spring over that of the softer body at its pair. A step leaves 1E-3 of the gaps, usually
+  !! 1E-4; stiffer springs would cost digits of the factor, which further steps regain slowly.
   real(wp), parameter :: of_pairs = 1.0e3_wp
-  !> And of a SUPORT DOF, over the largest of a node of the softest body, which may be all that holds its
-  !! own: so weak that steps hardly feel it, and unit loads not at all.
+  !> Stiffness at a SUPORT DOF, over the largest of a node of the softest body. It may be the only restraint
+  !! of a body, and is so weak that steps hardly depend on it, and unit loads not at all.
   real(wp), parameter :: of_suport = 1.0e-9_wp
-  !> But over that of its node so strong that a pivot is left where no pair holds the body.
+  !> But at least this fraction of that of its node, so that a pivot remains if no pair restrains the body.
   real(wp), parameter :: least_pivot = 1.0e-13_wp
-  !> What a half-plane deforms by at a force on a node of its boundary, against what is a hundred sides
-  !! below it (2 ln(200)/pi), over what the node's own stiffness would let it.
+  !> Compliance of a half-plane at a boundary node, relative to a point a hundred edges
+  !! below it (2 ln(200)/pi), over the inverse of the node's own stiffness.
   real(wp), parameter :: half_plane = 3.4_wp
-  !> So much stiffer are springs of SUPORT DOFs where rounding has left no pivot of a body that no pair
-  !! holds, as often as that may help: they change no answer.
+  !> Factor by which springs of SUPORT DOFs become stiffer if rounding leaves no pivot of a body without
+  !! contact, repeated if necessary: they do not change the result.
   real(wp), parameter :: stiffer = 1.0e3_wp
   integer, parameter :: most_stiffened = 2
-  !> And so much stiffer are those of pairs where stiff bodies carry each other by soft ones: some pairs give
-  !! way by far less than their softer side there.
+  !> Factor by which springs of pairs become stiffer if stiff bodies carry each other through soft ones: some
+  !! pairs deform there by far less than their softer side.
   real(wp), parameter :: firmer = 100.0_wp
 
   !> Springs of a joined system.
   type :: joined_springs
     real(wp), allocatable :: gamma(:)      !! of the pairs [force/length] [pairs]
     real(wp), allocatable :: hold(:)       !! of SUPORT DOFs [force/length] [motions]
-    logical, allocatable :: closed(:)      !! pairs whose springs are to be in the factor [pairs]
-    !> What a pair deforms by under a force of its own, about [length/force] [pairs]
+    logical, allocatable :: closed(:)      !! pairs whose springs belong in the factor [pairs]
+    !> Compliance of a pair for a unit force on it, approximately [length/force] [pairs]
     real(wp), allocatable :: compliance(:)
-    integer, private :: stiffened = 0      !! how often gamma has grown
-    logical :: unique = .false.            !! forces are found to be, with the factor that there is
+    integer, private :: stiffened = 0      !! number of increases of gamma
+    logical :: unique = .false.            !! forces are known to be unique with the present factor
   contains
     procedure :: factor
     procedure :: make_firmer
@@ -47,14 +47,14 @@ module epcont_linear_joined_springs
 
 contains
 
-  !> Factor the bodies with the springs of the pairs in contact, as far as law or springs have changed.
+  !> Factor the bodies with the springs of the pairs in contact, if law or springs have changed.
   subroutine factor(self, scene, bodies, threads, sound, watch)
     class(joined_springs), intent(inout) :: self
     type(planned_model), intent(in) :: scene
     class(factored_bodies), intent(inout) :: bodies
-    integer, intent(in) :: threads               !! that share the fronts
-    logical, intent(out) :: sound                !! the factor can be solved with
-    class(stopwatch), intent(inout) :: watch     !! takes the time
+    integer, intent(in) :: threads               !! number of threads
+    logical, intent(out) :: sound                !! the factor can be used
+    class(stopwatch), intent(inout) :: watch     !! measures the time
     real(wp) :: wanted(scene%model%contact%pairs)
     integer :: k
 
@@ -79,7 +79,7 @@ contains
     sound = bodies%body(1)%is_sound()
   end subroutine factor
 
-  !> Make the springs of pairs firmer, if that may still help.
+  !> Make the springs of pairs stiffer, if this may help.
   subroutine make_firmer(self, done)
     class(joined_springs), intent(inout) :: self
     logical, intent(out) :: done
@@ -90,12 +90,12 @@ contains
     self%gamma = firmer*self%gamma
   end subroutine make_firmer
 
-  !> Springs of SUPORT DOFs, in the factor from now on, and of pairs, in it where these press. What
-  !! nothing resists is held as firmly as its node.
+  !> Make springs of SUPORT DOFs, in the factor from now on, and of pairs, in the factor if in contact. Modes
+  !! without restraint have springs as stiff as their node.
   subroutine new_springs(scene, bodies, redundant, new)
     type(planned_model), intent(in) :: scene          !! numbered as one system
     class(factored_bodies), intent(inout) :: bodies   !! with a law
-    logical, intent(in) :: redundant(:)               !! nothing resists the motion [motions]
+    logical, intent(in) :: redundant(:)               !! nothing restrains the mode [modes]
     type(joined_springs), intent(out) :: new          !! all pairs closed
     real(wp) :: softest, stiffness(scene%model%mesh%nodes)
     integer :: k, springs
@@ -120,7 +120,7 @@ contains
 
   contains
 
-    !> The least that bodies have at their stiffest nodes.
+    !> Least stiffness of a body at its stiffest node.
     pure real(wp) function stiffness_of_softest() result(softest)
       real(wp) :: largest(scene%model%mesh%bodies)
       integer :: i
@@ -134,7 +134,7 @@ contains
       softest = minval(largest, mask=largest > 0.0_wp)
     end function stiffness_of_softest
 
-    !> Stiffness of the softer body at a pair, of those that deform at all, 0 if absent does.
+    !> Stiffness of the softer deformable body at a pair, 0 if both are rigid.
     pure real(wp) function softer_side(pair) result(softer)
       integer, intent(in) :: pair
       real(wp) :: side
@@ -156,7 +156,7 @@ contains
     end function softer_side
   end subroutine new_springs
 
-  !> Have the springs of SUPORT DOFs in the next factor.
+  !> Put the springs of SUPORT DOFs in the next factor.
   subroutine hold_suports(scene, hold, bodies)
     type(planned_model), intent(in) :: scene          !! numbered as one system
     real(wp), intent(in) :: hold(:)                   !! [force/length] [motions]
@@ -171,9 +171,9 @@ contains
     end do
   end subroutine hold_suports
 
-  !> What displacements move SUPORT DOFs by [length, or radian] [motions].
+  !> Displacements of SUPORT DOFs [length, or radian] [modes].
   function suport_values(scene, u) result(value)
-    type(planned_model), intent(in) :: scene   !! with its motions
+    type(planned_model), intent(in) :: scene   !! with its modes
     real(wp), intent(in) :: u(:, :)            !! [length] [directions, nodes]
     real(wp) :: value(scene%motions%count)
     integer :: k
@@ -186,9 +186,9 @@ contains
     end do
   end function suport_values
 
-  !> Add forces, or moments, on SUPORT DOFs to those on the nodes.
+  !> Add forces, or moments, at SUPORT DOFs to the nodal forces.
   subroutine add_suport_forces(scene, value, force)
-    type(planned_model), intent(in) :: scene     !! with its motions
+    type(planned_model), intent(in) :: scene     !! with its modes
     real(wp), intent(in) :: value(:)             !! [force, or force*length] [motions]
     real(wp), intent(inout) :: force(:, :)       !! [force] [directions, nodes]
     integer :: k
@@ -201,7 +201,7 @@ contains
     end do
   end subroutine add_suport_forces
 
-  !> The RBE2 whose angle measures a motion.
+  !> RBE2 whose rotation measures a mode.
   pure integer function platen_of(scene, motion) result(platen)
     type(planned_model), intent(in) :: scene
     integer, intent(in) :: motion
@@ -209,7 +209,7 @@ contains
     platen = findloc(scene%model%constraints%platen%leader, scene%motions%node(motion), dim=1)
   end function platen_of
 
-  !> How far the farthest of its nodes is from the master node [length].
+  !> Largest distance of its nodes from the master node [length].
   pure real(wp) function longest_arm(scene, motion)
     type(planned_model), intent(in) :: scene
     integer, intent(in) :: motion
@@ -220,10 +220,10 @@ contains
     end associate
   end function longest_arm
 
-  !> The spring of the SUPORT DOF that measures a motion.
+  !> Spring of the SUPORT DOF that measures a mode.
   pure integer function spring_of_motion(scene, motion)
     type(planned_model), intent(in) :: scene   !! numbered as one system
-    integer, intent(in) :: motion              !! which
+    integer, intent(in) :: motion              !! index of the mode
 
     associate (reference => scene%model%constraints%reference, c => scene%motions%component(motion), &
                node => scene%motions%node(motion))
@@ -237,8 +237,8 @@ contains
     end associate
   end function spring_of_motion
 
-  !> What elements and springs give to the diagonal of the stiffness at each node; what others follow has as
-  !! much as the stiffest of them. And the largest sum of magnitudes of a row.
+  !> Diagonal of the stiffness at each node from elements and springs; a master node has that of the stiffest
+  !! dependent node. And the largest row sum of magnitudes.
   subroutine measure(scene, bodies, stiffness, norm)
     type(planned_model), intent(in) :: scene
     class(factored_bodies), intent(in) :: bodies

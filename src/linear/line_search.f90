@@ -1,4 +1,4 @@
-!> How far to go along a step of joined bodies (`linear/joined_search.f90`), and whether it is the last.
+!> Line search along a step of joined bodies (`linear/joined_search.f90`), and its convergence test.
 module epcont_linear_line_search
   use epcont_base_bracket, only: bracket
   use epcont_base_kinds, only: wp
@@ -7,21 +7,21 @@ module epcont_linear_line_search
   private
   public :: has_settled, least_at, part_of_largest
 
-  !> A step is cut where the slope at its end is more than this part of that where it begins.
+  !> A step is cut if the slope at its end is more than this fraction of the slope at its start.
   real(wp), parameter :: flat_enough = 0.1_wp
-  !> Places that are tried.
+  !> Maximum number of points that are tried.
   integer, parameter :: most_tried = 200
 
 contains
 
-  !> Part of a step, up to all of it, at which a function of it is about least, by regula falsi and geometric
-  !! means: the energy of bodies, their loads, and springs whose forces have bounds.
+  !> Fraction of a step, at most 1, that approximately minimises a function, by regula falsi and geometric
+  !! means: the energy of bodies, their loads, and springs with bounded forces.
   real(wp) function least_at(curvature, descent, pull, loss, opening, lower, upper) result(t)
-    real(wp), intent(in) :: curvature    !! of the energy of all but the springs [energy]
-    real(wp), intent(in) :: descent      !! what that and the loads lose where the step begins [energy]
-    real(wp), intent(in) :: pull(:)      !! of each spring there [force]
-    real(wp), intent(in) :: loss(:)      !! of pull, by the whole step [force]
-    real(wp), intent(in) :: opening(:)   !! of the gaps by it [length]
+    real(wp), intent(in) :: curvature    !! of the energy of bodies and loads [energy]
+    real(wp), intent(in) :: descent      !! initial decrease of this energy [energy]
+    real(wp), intent(in) :: pull(:)      !! initial force of each spring [force]
+    real(wp), intent(in) :: loss(:)      !! decrease of `pull` in the whole step [force]
+    real(wp), intent(in) :: opening(:)   !! of the gaps in the whole step [length]
     real(wp), intent(in) :: lower(:), upper(:)   !! bounds of the forces of springs [force]
     type(bracket) :: zero                ! of the slope
     real(wp) :: begin, now
@@ -41,7 +41,7 @@ contains
 
   contains
 
-    !> Of the function there.
+    !> Slope of the function at t.
     real(wp) function slope(t)
       real(wp), intent(in) :: t
 
@@ -49,16 +49,16 @@ contains
     end function slope
   end function least_at
 
-  !> The largest of some changes, of the largest of all.
+  !> Largest change, over the largest value.
   pure real(wp) function part_of_largest(change, whole) result(part)
     real(wp), intent(in) :: change(:, :), whole(:, :)   !! [any, any]
 
     part = maxval(abs(change))/max(maxval(abs(whole)), tiny(1.0_wp))
   end function part_of_largest
 
-  !> Has what steps change come to an end? The next step would change as much less, or it is rounding.
+  !> Has a change converged? The next step would change less by the same factor, or this is rounding.
   elemental logical function has_settled(change, before)
-    real(wp), intent(in) :: change, before   !! by the last step and the one before, of the largest
+    real(wp), intent(in) :: change, before   !! in the last step and the one before, over the largest value
 
     has_settled = change*merge(min(1.0_wp, change/max(before, tiny(1.0_wp))), 1.0_wp, before <= 1.0_wp) &
                   <= negligible .or. change <= no_effect .and. change > 0.5_wp*before

@@ -1,4 +1,4 @@
-!> The bodies of a model with a linear law, their contact solved exactly: one step of every iteration.
+!> Bodies of a model with a linear law, and their exact contact solution: one step of every iteration.
 module epcont_linear_linear_problem
   use epcont_assembly_bodies, only: factored_bodies, new_bodies
   use epcont_base_kinds, only: wp
@@ -19,8 +19,8 @@ module epcont_linear_linear_problem
 
   type, extends(factored_bodies) :: linear_problem
     type(model_materials) :: materials
-    class(contact_rule), allocatable :: rule   !! finds the contact
-    logical, allocatable :: touching(:)        !! of the last load case: the next begins with them [pairs]
+    class(contact_rule), allocatable :: rule   !! contact solver
+    logical, allocatable :: touching(:)        !! of the last load case: start of the next [pairs]
   contains
     procedure :: take_case
     procedure :: set_stiffness
@@ -30,45 +30,45 @@ module epcont_linear_linear_problem
 
 contains
 
-  !> What does not change with the law.
+  !> Make the parts that do not depend on the law.
   subroutine new_linear_problem(scene, plan, linear)
-    type(planned_model), intent(in) :: scene       !! what is to be solved
-    type(iteration_plan), intent(in) :: plan       !! how; it may differ from the model's
-    type(linear_problem), intent(out) :: linear    !! all but its law
+    type(planned_model), intent(in) :: scene       !! the model
+    type(iteration_plan), intent(in) :: plan       !! may differ from that of the model
+    type(linear_problem), intent(out) :: linear    !! without its law
 
     call find_materials(scene%model, linear%materials)
     linear%factored_bodies = new_bodies(scene)
     call choose_rule(scene, plan, linear%rule)
   end subroutine new_linear_problem
 
-  !> Another load case of the model, with the factors that there are: those of the elastic bodies.
+  !> Take another load case of the model, with the present factors: those of the elastic bodies.
   subroutine take_case(self, scene)
     class(linear_problem), intent(inout) :: self
-    type(planned_model), intent(in) :: scene    !! that it was made for, with that case
+    type(planned_model), intent(in) :: scene    !! the same model, with this case
 
     call self%rule%see_case(scene)
     call self%rule%take_case(scene, self%factored_bodies)
   end subroutine take_case
 
-  !> Factor the bodies, as far as the law of their elements has changed, and prepare the contact.
+  !> Factor the bodies if the law of their elements has changed, and prepare the contact.
   subroutine set_stiffness(self, scene, failed_body, watch)
     class(linear_problem), intent(inout) :: self
-    type(planned_model), intent(in) :: scene    !! that it was made for
-    integer, intent(out) :: failed_body            !! first body that could not be factored; 0: all could
-    class(stopwatch), intent(inout) :: watch    !! takes the time
+    type(planned_model), intent(in) :: scene    !! the same model
+    integer, intent(out) :: failed_body            !! first body that could not be factored, 0 if absent
+    class(stopwatch), intent(inout) :: watch    !! measures the time
 
     call self%rule%factor(scene, self%factored_bodies, failed_body, watch)
   end subroutine set_stiffness
 
-  !> Find displacements, stresses and contact under a part of the loads and prescribed displacements. Without
+  !> Find displacements, stresses and contact under a fraction of loads and prescribed displacements. Without
   !! contact equilibrium (`state%contact%state`) there are no displacements.
   subroutine solve(self, scene, load_factor, start, state, watch)
     class(linear_problem), intent(inout) :: self
-    type(planned_model), intent(in) :: scene       !! that it was made for
-    real(wp), intent(in) :: load_factor            !! of the loads
+    type(planned_model), intent(in) :: scene       !! the same model
+    real(wp), intent(in) :: load_factor            !! factor of the loads
     logical, allocatable, intent(in) :: start(:)   !! guess of the pairs in contact, if allocated [pairs]
-    type(solved_state), intent(inout) :: state      !! what is found
-    class(stopwatch), intent(inout) :: watch       !! takes the time
+    type(solved_state), intent(inout) :: state      !! the solution
+    class(stopwatch), intent(inout) :: watch       !! measures the time
 
     call self%rule%solve(scene, self%factored_bodies, load_factor, start, state, watch)
     if (state%contact%state /= contact_solved) return
@@ -76,15 +76,15 @@ contains
     call watch%lap(stage_displacements)
   end subroutine solve
 
-  !> One step of refinement of what `solve` has found: where a body is long and its elements fine, rounding
-  !! leaves forces out of balance, and gaps, though the factors are in double.
+  !> Take one step of iterative refinement: if a body is long and its elements are fine, rounding
+  !! leaves residual forces and gaps, although the factors are in double precision.
   subroutine sharpen(self, scene, load_factor, state, change, watch)
     class(linear_problem), intent(inout) :: self
-    type(planned_model), intent(in) :: scene    !! that it was made for
-    real(wp), intent(in) :: load_factor         !! of the loads
-    type(solved_state), intent(inout) :: state   !! as it was where the contact is not found again
-    real(wp), intent(out) :: change             !! of displacements and contact forces, of the largest of each
-    class(stopwatch), intent(inout) :: watch    !! takes the time
+    type(planned_model), intent(in) :: scene    !! the same model
+    real(wp), intent(in) :: load_factor         !! factor of the loads
+    type(solved_state), intent(inout) :: state   !! unchanged if no contact is found
+    real(wp), intent(out) :: change             !! of displacements and contact forces, relative
+    class(stopwatch), intent(inout) :: watch    !! measures the time
     type(solved_state) :: refined
     logical :: found
 
@@ -95,12 +95,12 @@ contains
     call complete(self, scene, load_factor, refined)
     change = max(relative_change(state%displacement, refined%displacement, of=refined%displacement), &
                  force_change(state%contact, refined%contact, of=refined%contact))
-    if (allocated(refined%point)) deallocate (refined%point)   ! those of the strain before
+    if (allocated(refined%point)) deallocate (refined%point)   ! belongs to the strain before
     state = refined
     call watch%lap(stage_displacements)
   end subroutine sharpen
 
-  !> What follows from deformation, strains and contact: stresses, displacements and gaps.
+  !> Compute stresses, displacements and gaps from deformation, strains and contact.
   subroutine complete(self, scene, load_factor, state)
     type(linear_problem), intent(in) :: self
     type(planned_model), intent(in) :: scene
@@ -120,8 +120,8 @@ contains
       end if
       state%displacement = state%deformation + load_factor*scene%model%loads%travel
       call scene%motions%add(scene%model, contact%approach, state%displacement)
-      ! A pair without force touches if its gap is only rounding, as the displacements have it,
-      ! whatever a rule makes of it by the flexibility.
+      ! A pair without force is in contact if its gap, computed from displacements, is only rounding,
+      ! even if the contact solver finds another gap from the flexibility.
       rounding = negligible*(abs(problem%initial_gap) + abs(travel) + &
                              problem%motion%times(contact%approach, magnitudes=.true.) + &
                              terms_of_openings(scene%model, state%deformation)) + &
@@ -131,7 +131,7 @@ contains
     end associate
   end subroutine complete
 
-  !> Largest rounding of displacements of the bodies that each pair has nodes of [length] [pairs].
+  !> Largest rounding of displacements of the bodies at each pair [length] [pairs].
   pure function rounding_of_pairs(scene, state) result(rounding)
     type(planned_model), intent(in) :: scene
     type(solved_state), intent(in) :: state

@@ -1,5 +1,5 @@
-!> Load cases that have, one after the other, times as much of the same loads. As long as the contacts stay
-!> their states are on one line: from two of them follows the next.
+!> Prediction for successive load cases that are multiples of the same loads. While the contacts stay,
+!> their states are on one line, and two of them give the next.
 module epcont_linear_load_line
   use epcont_base_kinds, only: wp
   use epcont_linear_multiple, only: multiple_of
@@ -9,10 +9,10 @@ module epcont_linear_load_line
   public :: load_line
 
   type :: load_line
-    type(solved_state), allocatable :: last     !! what was found last
-    real(wp), allocatable, private :: before(:, :), force(:), approach(:)   !! the state on the line before it
+    type(solved_state), allocatable :: last     !! last solution
+    real(wp), allocatable, private :: before(:, :), force(:), approach(:)   !! the earlier state on the line
     real(wp), allocatable, private :: load(:, :)   !! of the load case [force] [directions, nodes]
-    !> The case's load over that of `last`, that of the state before over that; 0: they are not on one line
+    !> The case's load over that of `last`, that of the earlier state over that; 0: not on one line
     real(wp), private :: times = 0.0_wp, times_before = 0.0_wp
   contains
     procedure :: take_load
@@ -22,7 +22,7 @@ module epcont_linear_load_line
 
 contains
 
-  !> Another load case.
+  !> Take the loads of another case.
   pure subroutine take_load(self, load)
     class(load_line), intent(inout) :: self
     real(wp), intent(in) :: load(:, :)   !! [force] [directions, nodes]
@@ -32,7 +32,7 @@ contains
     self%load = load
   end subroutine take_load
 
-  !> Keep what was found for it, and the state before where that is on the line.
+  !> Keep the solution of the case, and the state before if it is on the line.
   pure subroutine keep(self, state)
     class(load_line), intent(inout) :: self
     type(solved_state), intent(in) :: state
@@ -48,7 +48,7 @@ contains
     self%last = state
   end subroutine keep
 
-  !> The state that the last two lead to; the last itself where they lead nowhere.
+  !> Predict from the last two states; return the last one if there is no line.
   pure function next(self) result(state)
     class(load_line), intent(in) :: self
     type(solved_state) :: state

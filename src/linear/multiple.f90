@@ -1,16 +1,16 @@
-!> Loads that are a multiple of others: of a linear body so is what they do.
+!> Loads that are a multiple of others: the response of a linear body is the same multiple.
 module epcont_linear_multiple
   use epcont_base_kinds, only: wp
   implicit none
   private
   public :: multiple_of
 
-  !> What factors of load cases round off.
+  !> Rounding by the factors of load cases.
   real(wp), parameter :: rounding = 4.0_wp*epsilon(1.0_wp)
 
 contains
 
-  !> How many times some forces others are; 0 where they are no multiple of them.
+  !> Factor between two fields of forces; 0 if they are not multiples.
   pure real(wp) function multiple_of(force, of) result(times)
     real(wp), intent(in) :: force(:, :), of(:, :)   !! [force] [directions, nodes]
     integer :: at(2)

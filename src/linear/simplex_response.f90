@@ -1,10 +1,10 @@
-!> What errors do to a contact that the flexibility has given: forces under unit loads, the pairs in contact
-!> held closed, and what an error of the flexibility and of the gaps does to the contact forces.
+!> Sensitivity of a contact solution from the flexibility: forces under unit loads, with the pairs in contact
+!> kept closed, and changes of the contact forces by errors of the flexibility and of the gaps.
 !>
-!> On the pairs in contact these are R = -M g + ..., with M = F^-1 - F^-1 A (A'F^-1 A)^-1 A'F^-1. Errors dF
-!> and dg move them by M (dF R + dg), at most |M| (|dF| |R| + |dg|): a bound that no change of units alters
-!> (Skeel 1979). Its largest entry is the 1-norm of D M with D = diag(|dF| |R| + |dg|): summed up where pairs
-!> are few, else estimated from a few products (Hager 1984; Higham 1988).
+!> On the pairs in contact, R = -M g + ..., with M = F^-1 - F^-1 A (A'F^-1 A)^-1 A'F^-1. Errors dF
+!> and dg change R by M (dF R + dg), at most |M| (|dF| |R| + |dg|): a bound that does not depend on units
+!> (Skeel 1979). Its largest entry is the 1-norm of D M with D = diag(|dF| |R| + |dg|): computed if there are
+!> few pairs, else estimated from a few products (Hager 1984; Higham 1988).
 module epcont_linear_simplex_response
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: least_difference, solved_to
@@ -15,20 +15,20 @@ module epcont_linear_simplex_response
   private
   public :: find_sensitivity, load_pairs
 
-  !> Pairs up to which all of M is made: the estimate may stop at one of two nearly equal rows, as rounding
-  !! has it.
+  !> Number of pairs up to which all of M is computed: of two nearly equal rows, rounding may choose the one
+  !! at which the estimate stops.
   integer, parameter :: few_pairs = 200
   integer, parameter :: most_products = 5
 
 contains
 
-  !> Contact forces under unit loads along motions, and when the gap of each pair shrinks by its share: none
-  !> if motions close the gaps. By reciprocity a unit load along a motion changes a sum of forces by the
+  !> Contact forces under unit loads along modes, and of gaps that shrink by the weight of each pair: zero
+  !> if modes close the gaps. By reciprocity, a unit load along a mode changes a sum of forces by the
   !> approach that closing the gaps causes.
   pure subroutine load_pairs(problem, basis, loads)
     type(scaled_problem), intent(in) :: problem   !! of the contact
     type(contact_basis), intent(in) :: basis      !! of the pairs in contact
-    type(contact_loads), intent(inout) :: loads   !! motions and shares are given
+    type(contact_loads), intent(inout) :: loads   !! with modes and weights
     real(wp), allocatable :: opening(:, :), load(:, :), carried(:, :), approach(:, :)
     integer :: j, motions
 
@@ -54,10 +54,10 @@ contains
     end associate
   end subroutine load_pairs
 
-  !> Forces that keep the pairs in contact closed where their gaps would open so, nothing else driving them
+  !> Forces that keep the pairs in contact closed against given openings, without other loads
   !! [pairs in contact, any].
   pure function forces_under(basis, opening) result(carried)
-    type(contact_basis), intent(in) :: basis                 !! a sound one
+    type(contact_basis), intent(in) :: basis                 !! sound
     real(wp), contiguous, intent(in) :: opening(:, :)        !! in scaled units [pairs in contact, any]
     real(wp), allocatable :: carried(:, :), approach(:, :)
     real(wp) :: load(basis%motions, size(opening, 2))
@@ -66,16 +66,16 @@ contains
     call respond(basis, opening, load, carried, approach)
   end function forces_under
 
-  !> What errors of the stiffness and of the gaps do to the forces.
+  !> Compute the sensitivity of the forces to errors of the stiffness and of the gaps.
   pure function find_sensitivity(problem, basis, force, travel, condition) result(found)
     type(scaled_problem), intent(in) :: problem   !! of the contact
     type(contact_basis), intent(in) :: basis      !! of the pairs in contact
     real(wp), intent(in) :: force(:)     !! [force] [pairs]
-    real(wp), intent(in) :: travel(:)    !! what the gap of each pair is the sum of, added up [length] [pairs]
+    real(wp), intent(in) :: travel(:)    !! sum of magnitudes of the terms of each gap [length] [pairs]
     real(wp), intent(in) :: condition    !! of the stiffness
     type(contact_sensitivity) :: found
     real(wp), allocatable :: opening(:), pressed(:), rounding(:)
-    real(wp) :: change(2)                !! by these
+    real(wp) :: change(2)                !! of forces
 
     if (.not. basis%sound .or. size(basis%pairs) == 0) return
     found%known = .true.
@@ -90,7 +90,7 @@ contains
     found%rounding = min(1.0_wp, change(2))
   end function find_sensitivity
 
-  !> 1-norm of D M, of each D.
+  !> 1-norm of D M for each D.
   pure function largest_changes(basis, d) result(norm)
     type(contact_basis), intent(in) :: basis
     real(wp), intent(in) :: d(:, :)   !! diagonals [pairs in contact, any]
@@ -109,7 +109,7 @@ contains
     end if
   end function largest_changes
 
-  !> 1-norm of D M, estimated.
+  !> Estimate the 1-norm of D M.
   pure real(wp) function largest_change(basis, d) result(norm)
     type(contact_basis), intent(in) :: basis
     real(wp), intent(in) :: d(:)
@@ -128,13 +128,13 @@ contains
       x = 0.0_wp
       x(k) = 1.0_wp
     end do
-    ! Where all pairs are alike that stays at the start: forces of alternating sign are looked at, too.
+    ! If all pairs are alike, the estimate stays at its start: also try forces of alternating sign.
     x = [(merge(1.0_wp, -1.0_wp, mod(k, 2) == 0)*(1.0_wp + (k - 1.0_wp)/(size(d) - 1.0_wp)), k=1, size(d))]
     norm = max(norm, sum(abs(d*change(x)))/(1.5_wp*size(d)))
 
   contains
 
-    !> M g, but for its sign.
+    !> M g, up to its sign.
     pure function change(gap)
       real(wp), intent(in) :: gap(:)
       real(wp) :: change(size(gap))

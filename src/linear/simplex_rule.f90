@@ -1,4 +1,4 @@
-!> RULE CONRY: each body is factored by itself, F is found by inversion, and a simplex finds the contact.
+!> RULE CONRY: each body is factored separately, F is found by inversion, and a simplex finds the contact.
 module epcont_linear_simplex_rule
   use epcont_assembly_bodies, only: factored_bodies, half_solved_body
   use epcont_base_kinds, only: wp
@@ -26,10 +26,10 @@ module epcont_linear_simplex_rule
   public :: simplex_rule
 
   type, extends(contact_rule) :: simplex_rule
-    !> Of bodies that cannot yield, if others can [length/force] [pairs, pairs]
+    !> Contribution of elastic bodies, if others can yield [length/force] [pairs, pairs]
     real(wp), allocatable, private :: lasting_flexibility(:, :)
     type(contact_basis), private :: basis      !! of the last contact with this flexibility
-    type(borne_loads), private :: borne        !! in a load case before
+    type(borne_loads), private :: borne        !! of an earlier load case
   contains
     procedure :: take_case
     procedure :: factor
@@ -45,7 +45,7 @@ module epcont_linear_simplex_rule
 
 contains
 
-  !> Another load case, with the factors of the case before.
+  !> Take another load case, with the factors of the case before.
   subroutine take_case(self, scene, bodies)
     class(simplex_rule), intent(inout) :: self
     type(planned_model), intent(in) :: scene
@@ -55,8 +55,8 @@ contains
     call bodies%settle(scene)
   end subroutine take_case
 
-  !> Factor the bodies and invert for the flexibility; after the first time only bodies that can yield, as far
-  !! as the law of their elements has changed.
+  !> Factor the bodies and compute the flexibility; after the first time only of bodies that can yield, and
+  !! whose law has changed.
   subroutine factor(self, scene, bodies, failed_body, watch)
     class(simplex_rule), intent(inout) :: self
     type(planned_model), intent(in) :: scene
@@ -64,7 +64,7 @@ contains
     integer, intent(out) :: failed_body
     class(stopwatch), intent(inout) :: watch
 
-    if (allocated(self%basis%factor)) deallocate (self%basis%factor)   ! of the flexibility before
+    if (allocated(self%basis%factor)) deallocate (self%basis%factor)   ! belongs to the old flexibility
     call factor_bodies(scene, scene%numbering%body%can_yield .or. .not. allocated(self%problem%flexibility), &
                        self%threads, bodies, failed_body)
     bodies%law%changed = .false.
@@ -76,11 +76,11 @@ contains
     call watch%lap(stage_flexibility)
   end subroutine factor
 
-  !> Assemble and factor some bodies, in parallel if that pays.
+  !> Assemble and factor some bodies, in parallel if this is faster.
   subroutine factor_bodies(scene, chosen, threads, bodies, failed_body)
     type(planned_model), intent(in) :: scene
     logical, intent(in) :: chosen(:)     !! [bodies]
-    integer, intent(in) :: threads       !! that share the bodies
+    integer, intent(in) :: threads       !! number of threads
     class(factored_bodies), intent(inout) :: bodies
     integer, intent(out) :: failed_body
     integer, allocatable :: body(:)
@@ -102,7 +102,7 @@ contains
                           .true., dim=1)
   end subroutine factor_bodies
 
-  !> F of all bodies: what bodies that cannot yield give to it is found once.
+  !> Compute F of all bodies; the contribution of elastic bodies is computed once.
   subroutine find_flexibility(self, scene, bodies)
     class(simplex_rule), intent(inout) :: self
     type(planned_model), intent(in) :: scene
@@ -123,7 +123,7 @@ contains
     end associate
   end subroutine find_flexibility
 
-  !> Contact with the gaps that the loads open alone, then the deformation under loads and contact forces.
+  !> Find the contact from the gaps under loads alone, then the deformation under loads and contact forces.
   subroutine solve(self, scene, bodies, load_factor, start, state, watch)
     class(simplex_rule), intent(inout) :: self
     type(planned_model), intent(in) :: scene
@@ -151,12 +151,12 @@ contains
     call watch%lap(stage_contact)
     if (state%contact%state /= contact_solved) return
     call bodies%add_forces(scene, pair_forces(scene%model, state%contact%force), 0.0_wp, half)
-    ! Strains are of the deformation: added to a long travel it would lose their digits.
+    ! Strains come from the deformation: added to a large rigid-body displacement, they would lose digits.
     state%deformation = bodies%finish(scene, half, load_factor, .false.)
     state%strain = bodies%operator%strains(scene%model, state%deformation, load_factor)
   end subroutine solve
 
-  !> The contact with the gaps of the problem as they now are.
+  !> Find the contact with the present gaps of the problem.
   subroutine find_contact(self, load_factor, start, contact)
     class(simplex_rule), intent(inout) :: self
     real(wp), intent(in) :: load_factor
@@ -167,8 +167,8 @@ contains
     call solve_contact(self%problem, contact, start, self%basis)
   end subroutine find_contact
 
-  !> One step of refinement: the deformation under the residual is added, the contact follows the deformation,
-  !! and that the contact.
+  !> Take one step of iterative refinement: add the deformation under the residual, solve the contact with it,
+  !! and add the deformation under the change of contact forces.
   subroutine refine(self, scene, bodies, load_factor, state, refined, watch)
     class(simplex_rule), intent(inout) :: self
     type(planned_model), intent(in) :: scene
@@ -184,7 +184,7 @@ contains
                 - bodies%operator%nodal_forces(scene%model, bodies%law%stress(state%strain)) &
                 - spring_forces(scene%model, state%deformation), state)
     call watch%lap(stage_displacements)
-    ! F tells what a change of the forces that made the deformation opens.
+    ! F gives the opening by a change of the forces.
     call move_alloc(state%contact%touching, guess)
     associate (problem => self%problem, &
                opening => gap_opening(scene%model, state%deformation) + load_factor*self%travel_gap)
@@ -195,7 +195,7 @@ contains
     call self%find_contact(load_factor, guess, state%contact)
     call watch%lap(stage_contact)
     refined = state%contact%state == contact_solved
-    ! Not under all forces again: in a slender body even the rounding of these opens gaps.
+    ! Only under the change: in a slender body, even the rounding of all forces opens gaps.
     if (refined) call deform(scene, bodies, pair_forces(scene%model, state%contact%change), state)
   end subroutine refine
 
@@ -212,7 +212,7 @@ contains
     state%strain = state%strain + bodies%operator%strains(scene%model, step, 0.0_wp)
   end subroutine deform
 
-  !> Find forces under unit loads, by the contact's own factor of the pairs with a force.
+  !> Find forces under unit loads, with the contact's own factor of the pairs with a force.
   subroutine respond(self, scene, bodies, state, loads, known)
     class(simplex_rule), intent(inout), target :: self
     type(planned_model), intent(in) :: scene
@@ -227,7 +227,7 @@ contains
     call load_pairs(scaled, self%basis, loads)
   end subroutine respond
 
-  !> How much errors of the stiffness and of the gaps change the contact forces.
+  !> Compute the sensitivity of the contact forces to errors of the stiffness and of the gaps.
   function sensitivity(self, state, condition) result(found)
     class(simplex_rule), intent(inout), target :: self
     class(solved_state), intent(in) :: state
@@ -241,8 +241,8 @@ contains
                              self%problem%motion%times(state%contact%approach, magnitudes=.true.), condition)
   end function sensitivity
 
-  !> The problem in its own units, with a basis of the pairs that have a force. Of modes that none of these
-  !! resists as many are held as are independent, which says nothing of the others.
+  !> Scale the problem, with a basis of the pairs that have a force. Modes that none of these
+  !! restrains are kept as long as they are independent; the results do not depend on the others.
   subroutine scale_pressed(self, contact, scaled)
     class(simplex_rule), intent(inout), target :: self
     type(contact_solution), intent(in) :: contact
@@ -261,7 +261,7 @@ contains
     call renew_basis(self%basis, scaled, self%problem%between(contact%force))
   end subroutine scale_pressed
 
-  !> The diagonal of F.
+  !> Diagonal of F.
   pure function compliance(self)
     class(simplex_rule), intent(in) :: self
     real(wp), allocatable :: compliance(:)

@@ -1,4 +1,4 @@
-!> What a linear step finds: displacements, stresses in equilibrium, contact.
+!> Result of a linear step: displacements, stresses in equilibrium, contact.
 module epcont_linear_solved_state
   use epcont_base_kinds, only: wp
   use epcont_contact_problem, only: contact_solution
@@ -9,19 +9,19 @@ module epcont_linear_solved_state
 
   type :: solved_state
     real(wp), allocatable :: displacement(:, :)   !! [length] [directions, nodes]
-    !> Displacements before the rigid motions are added [length] [directions, nodes]
+    !> Displacements without the rigid-body displacements [length] [directions, nodes]
     real(wp), allocatable :: deformation(:, :)
     real(wp), allocatable :: strain(:, :)         !! xx, yy, zz, xy (engineering) [components, points]
     !> xx, yy, zz, xy, in equilibrium [stress] [components, points]
     real(wp), allocatable :: point_stress(:, :)
-    !> Of the materials at that strain, where any yields [points]; not allocated: not found yet.
+    !> Material states at this strain, if one yields [points]; not allocated: not computed yet
     type(point_state), allocatable :: point(:)
     type(contact_solution) :: contact
   contains
     procedure :: take
   end type solved_state
 
-  !> The end of a load step from which the next one went on (flow theory).
+  !> End of the load step from which the next one continued (flow theory).
   type :: committed_step
     real(wp) :: load_factor = 0.0_wp
     real(wp), allocatable :: deformation(:, :)   !! as in `solved_state` [length] [directions, nodes]
@@ -29,7 +29,7 @@ module epcont_linear_solved_state
 
 contains
 
-  !> Take another state's place; that is empty then.
+  !> Move another state here; that is empty afterwards.
   pure subroutine take(self, from)
     class(solved_state), intent(inout) :: self
     type(solved_state), intent(inout) :: from   !! empty afterwards

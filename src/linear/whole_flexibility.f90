@@ -1,4 +1,4 @@
-!> F of all bodies, from that of each.
+!> F of all bodies, from that of each body.
 module epcont_linear_whole_flexibility
   use epcont_assembly_stiffness, only: body_stiffness
   use epcont_base_incidence, only: incidence, new_incidence
@@ -11,21 +11,21 @@ module epcont_linear_whole_flexibility
   private
   public :: add_flexibilities, add_part, complete_flexibility
 
-  !> Rows and columns that are copied across the diagonal at once: both places fit into the nearest cache.
+  !> Rows and columns that are transposed at once: both blocks fit into the nearest cache.
   integer, parameter :: tile = 32
 
 contains
 
-  !> Add what some bodies give to the flexibility, each found by itself, in their order: so all roundings are
-  !! the same on any number of threads.
+  !> Add the contributions of some bodies to the flexibility, each computed separately, in their order, so
+  !! that rounding is the same for any number of threads.
   subroutine add_flexibilities(scene, body, chosen, threads, flexibility)
-    type(planned_model), intent(in) :: scene          !! that they are of
+    type(planned_model), intent(in) :: scene          !! the model
     type(body_stiffness), intent(in) :: body(:)       !! factored
     logical, intent(in) :: chosen(:)                  !! [bodies]
-    integer, intent(in) :: threads                    !! that share the bodies
-    real(wp), intent(inout) :: flexibility(:, :)      !! its lower triangle is added to [pairs, pairs]
+    integer, intent(in) :: threads                    !! number of threads
+    real(wp), intent(inout) :: flexibility(:, :)      !! its lower triangle is updated [pairs, pairs]
     type(body_flexibility) :: own
-    type(incidence) :: pair   ! of each body
+    type(incidence) :: pair   ! pairs of each body
     integer :: b, many
 
     associate (model => scene%model, numbering => scene%numbering)
@@ -44,7 +44,7 @@ contains
     end associate
   end subroutine add_flexibilities
 
-  !> Add what one body gives, whose pairs ascend.
+  !> Add the contribution of one body, whose pairs ascend.
   pure subroutine add_part(own, flexibility)
     type(body_flexibility), intent(in) :: own
     real(wp), intent(inout) :: flexibility(:, :)   !! [pairs, pairs]
@@ -57,7 +57,7 @@ contains
     end do
   end subroutine add_part
 
-  !> When all parts have been added: copy the lower triangle to the upper one.
+  !> Copy the lower triangle to the upper one, after all parts have been added.
   pure subroutine complete_flexibility(f)
     real(wp), intent(inout) :: f(:, :)   !! [pairs, pairs]
     integer :: i, j, k, n
