@@ -241,8 +241,8 @@ contains
                              self%problem%motion%times(state%contact%approach, magnitudes=.true.), condition)
   end function sensitivity
 
-  !> Scale the problem, with a basis of the pairs that have a force. Modes that none of these
-  !! restrains are kept as long as they are independent; the results do not depend on the others.
+  !> Scale the problem, with a basis of the pairs that have a force. Modes that these pairs do not
+  !! restrain are kept as long as they are independent; the results do not depend on the others.
   subroutine scale_pressed(self, contact, scaled)
     class(simplex_rule), intent(inout), target :: self
     type(contact_solution), intent(in) :: contact

@@ -129,7 +129,7 @@ contains
     type(*), intent(in), optional :: array(..)   !! absent: the array is not allocated
 
     if (.not. present(array)) then
-      call need(found, [.false.], name//' is not allocated', 'allocate it, with size 0 if it has no entries')
+      call need(found, [.false.], name//' is not allocated', 'allocate it, with size 0 if empty')
     else if (size(wanted) > 0) then
       call need(found, [all(shape(array) == wanted)], name//' has the shape '//text_of_shape(shape(array)), &
                 text_of_shape(wanted))
