@@ -18,7 +18,7 @@ class Shapes(Extremes):
         for aspect in (1e-6, 1e-4, 1e-2, 1e2, 1e4, 1e6):
             for triangles in (False, True):
                 with self.subTest(aspect=aspect, triangles=triangles):
-                    result = self.right_or_refused(flat(aspect, triangles=triangles), "rounding|condition|hardly tell")
+                    result = self.right_or_refused(flat(aspect, triangles=triangles), "rounding|condition|hardly distinguish")
                     self.assertTrue(result or aspect < 1e-2 or aspect > 1e3)
                     if result:
                         self.near(result.force, [2.5, 5.0, 2.5], 1e-6)

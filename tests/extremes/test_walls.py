@@ -150,7 +150,7 @@ class Walls(Extremes):
     def test_rollers(self):
         """Sixteen motions that nothing resists stay at none."""
         result = self.by_rules(rollers(8).text())
-        self.assertEqual(16, result.listing.count("nothing resists or drives")//2)   # said in two sections
+        self.assertEqual(16, result.listing.count("undetermined: nothing resists or drives"))
 
     def test_heap(self):
         self.by_rules(heap(5).text())

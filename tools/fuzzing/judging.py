@@ -85,12 +85,12 @@ class Run:
             return max(cases, key=WORDS.get)
         if len(lines) != 1:
             return None
-        return lines[0].split("  ")[0]
+        return re.sub(r" at load factor .*", "", lines[0].split("  ")[0])
 
     def words_of_cases(self, name):
         """What it says of each of several load cases."""
         found = [re.match(re.escape(name) + r" SUBCASE \d+  (.*?)(?:  |$)", line) for line in self.said]
-        return [one[1] for one in found if one]
+        return [re.sub(r" at load factor .*", "", one[1]) for one in found if one]
 
     def told(self, name):
         """What standard error says of a deck: from the first line that names it to the next deck."""
