@@ -137,7 +137,7 @@ CARDS = {
     "MPC": ("plane", 1, [("SID", "5", error("there is no set 6")), ("G1 ..", "4", error("MPC 6")), ("C1 ..", "3", error("GRID 3 has no direction 3")), ("A1 ..", "2.", CHANGES)]),
     "MPCADD": ("plane", 0, [("SID", "8", error("MPC = 7: the deck has no such set")), ("S1..", "6", CHANGES)]),
     "CELAS1": ("plane", 1, [("EID", "34", CHANGES), ("PID", "31", CHANGES), ("G1", "3", CHANGES), ("C1", "1", CHANGES), ("G2", "9", error("SUPORT")), ("C2", "1", CHANGES)]),
-    "CELAS2": ("plane", 0, [("EID", "34", CHANGES), ("K", "50.", CHANGES), ("G1", "8", error("both ends at one freedom")), ("C1", "1", error("SUPORT")), ("G2", "9", error("SUPORT")), ("C2", "1", error("SUPORT")),
+    "CELAS2": ("plane", 0, [("EID", "34", CHANGES), ("K", "50.", CHANGES), ("G1", "8", error("both ends at one DOF")), ("C1", "1", error("SUPORT")), ("G2", "9", error("SUPORT")), ("C2", "1", error("SUPORT")),
                             ("GE", ".1", NOTED), ("S", ".1", NOTED)]),
     "PELAS": ("plane", 0, [("PID1", "99", error("there is no PELAS 30")), ("K1", "60.", CHANGES), ("GE1", ".1", NOTED), ("S1", ".1", NOTED),
                            ("PID2", "99", error("there is no PELAS 31")), ("K2", "70.", CHANGES), ("GE2", ".1", NOTED), ("S2", ".1", NOTED)]),
