@@ -315,7 +315,9 @@ contains
                    all(self%closed .or. .not. abs(self%nearer - self%bound) > 0.0_wp)
       if (.not. self%stays .or. self%whole .and. self%change(2) > 1.0_wp) return
       next = self%forces_of(self%pull)
-      self%change(1) = maxval([abs(next - force), 0.0_wp])/maxval([abs(next), tiny(1.0_wp)])
+      ! Forces that vanish in this step: a change that is large, but no overflow.
+      self%change(1) = maxval([abs(next - force), 0.0_wp])/ &
+                       maxval([abs(next), epsilon(1.0_wp)*abs(force), tiny(1.0_wp)])
       force = next
       self%pull = force - self%gamma*self%gap
     end associate
