@@ -248,8 +248,9 @@ contains
       kinematics = axisymmetric
       do s = 1, size(named)
         if (named(s) > 0) section(s) = material(named(s))
-        call found%add_origin([of_section, s, item_density], &
-                         [card_mat1, named(s), deck%card(card_mat1)%column('RHO')])
+        ! Without a MAT1 the finding is at the section.
+        if (named(s) > 0) call found%add_origin([of_section, s, item_density], &
+            [card_mat1, named(s), deck%card(card_mat1)%column('RHO')])
         if (s <= shell%count) call choose_kinematics(deck, s, kinematics(s), found)
       end do
       if (deck%parameter_word('PLANE') == 'STRESS' .and. all(kinematics /= plane_stress) .and. &
