@@ -2,7 +2,7 @@
 module epcont_base_incidence
   implicit none
   private
-  public :: incidence, new_incidence
+  public :: add_new, incidence, new_incidence
 
   !> Member i belongs to the groups group(start(i):start(i+1)-1), ascending.
   type :: incidence
@@ -61,4 +61,20 @@ contains
 
     members = pack([(i, i=1, size(self%start) - 1)], self%start(2:) > self%start(:size(self%start) - 1))
   end function members
+
+  !> Append to a list all members with numbers of at least `from` that are not in it yet.
+  pure subroutine add_new(number, from, seen, list, length)
+    integer, intent(in) :: number(:), from
+    logical, intent(inout) :: seen(:)   !! members of the list [members]
+    integer, intent(inout) :: list(:), length
+    integer :: i
+
+    do i = 1, size(number)
+      if (number(i) < from) cycle
+      if (seen(number(i))) cycle
+      seen(number(i)) = .true.
+      length = length + 1
+      list(length) = number(i)
+    end do
+  end subroutine add_new
 end module epcont_base_incidence

@@ -3,7 +3,7 @@
 !> Front p has the own equations first(p) to first(p+1)-1, and reaches the equations rows%of(p). Its parent,
 !> the front with the first of these, has or reaches all of them.
 module epcont_linalg_front_layout
-  use epcont_base_incidence, only: incidence, new_incidence
+  use epcont_base_incidence, only: add_new, incidence, new_incidence
   use epcont_base_kinds, only: i8, wp
   use epcont_base_sorting, only: sorted_order
   implicit none
@@ -115,22 +115,6 @@ contains
     end do
     layout%rows = incidence(start, row(:start(size(start)) - 1))
   end subroutine find_rows
-
-  !> Append to the list all equations with numbers of at least `from` that are not in it yet.
-  pure subroutine add_new(number, from, seen, list, length)
-    integer, intent(in) :: number(:), from
-    logical, intent(inout) :: seen(:)   !! those that are in it [order]
-    integer, intent(inout) :: list(:), length
-    integer :: i
-
-    do i = 1, size(number)
-      if (number(i) < from) cycle
-      if (seen(number(i))) cycle
-      seen(number(i)) = .true.
-      length = length + 1
-      list(length) = number(i)
-    end do
-  end subroutine add_new
 
   !> Find the units: fronts that have enough operations together with their descendants, and fronts without a
   !! parent.

@@ -1,5 +1,6 @@
 !> Breadth-first order of the nodes of a body: each level has the neighbours of the level before.
 module epcont_plan_level_order
+  use epcont_base_incidence, only: add_new
   use epcont_base_sorting, only: sorted_order
   use epcont_model_model, only: model_type
   implicit none
@@ -27,7 +28,7 @@ contains
     allocate (order%node(size(own)))
     seen(own) = .false.
     filled = 0
-    call add_new(roots, seen, order%node, filled)
+    call add_new(roots, 1, seen, order%node, filled)
     end_of_level = 0
     next = 1
     do at = 1, size(own)
@@ -35,7 +36,7 @@ contains
         do while (seen(own(next)))
           next = next + 1
         end do
-        call add_new(own(next:next), seen, order%node, filled)
+        call add_new(own(next:next), 1, seen, order%node, filled)
       end if
       if (at > end_of_level) then
         order%levels = order%levels + 1
@@ -44,7 +45,7 @@ contains
       first = filled + 1
       do k = model%mesh%around%start(order%node(at)), model%mesh%around%start(order%node(at) + 1) - 1
         e = model%mesh%around%group(k)
-        call add_new(model%mesh%connectivity(:model%mesh%node_count(e), e), seen, order%node, filled)
+        call add_new(model%mesh%connectivity(:model%mesh%node_count(e), e), 1, seen, order%node, filled)
       end do
       if (filled > first) then
         found = order%node(first:filled)
@@ -53,19 +54,4 @@ contains
       end if
     end do
   end subroutine sweep
-
-  !> Append the nodes that are not in the order yet.
-  pure subroutine add_new(node, seen, order, filled)
-    integer, intent(in) :: node(:)
-    logical, intent(inout) :: seen(:)
-    integer, intent(inout) :: order(:), filled
-    integer :: i
-
-    do i = 1, size(node)
-      if (seen(node(i))) cycle
-      seen(node(i)) = .true.
-      filled = filled + 1
-      order(filled) = node(i)
-    end do
-  end subroutine add_new
 end module epcont_plan_level_order
