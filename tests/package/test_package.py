@@ -214,7 +214,9 @@ class Package(unittest.TestCase):
         """In a root of its own; without its dependencies it does not run there, so that it is they which make it."""
         deck, out = "/usr/" + DECK, self.root / "out"
         out.mkdir()
-        enter = ["chroot", self.root] if os.geteuid() == 0 else ["unshare", "--map-root-user", "chroot", self.root]
+        enter = [shutil.which("chroot"), self.root]   # whole, as the empty environment below has no PATH
+        if os.geteuid() != 0:
+            enter[:0] = ["unshare", "--map-root-user"]
         command = [*enter, "/usr/bin/epcont", deck, "-o", "/out", "--tables", "all"]
         self.assertNotEqual(0, run(*command, env={"PATH": os.environ["PATH"]}).returncode)
         Closure(self.field("Depends")).copy_to(self.root)
