@@ -27,7 +27,7 @@ class Attempts(unittest.TestCase):
                          ["attempts: (1) simplex: nodes without a pair came near; (2) more pairs: valid"])
 
     def test_other_rule(self):
-        self.assertEqual(attempts("tests/found/pile_on_a_corner.bdf"),
+        self.assertEqual(attempts("tests/found/a_force_that_drives_nothing.dat"),
                          ["attempts: (1) simplex: no active set found; (2) joined bodies: valid"])
 
     def test_refinement(self):
