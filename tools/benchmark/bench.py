@@ -149,7 +149,8 @@ def main():
                 5: lambda: part5(place, turns, options)}
         for part in (options.part,) if options.part else (4, 3, 5, 1, 2):
             load = f"load {os.getloadavg()[0]:.1f} at the start"
-            kept(part).write_text(json.dumps({"command": command, "load": load, "rows": does[part]()}), encoding="ascii")
+            about = {"command": command, "load": load, "version": output(RELEASE / "epcont", "--version").split()[-1]}
+            kept(part).write_text(json.dumps({**about, "rows": does[part]()}), encoding="ascii")
     parts = {part: json.loads(kept(part).read_text()) for part in PARTS if kept(part).exists()}
     text = report.page(parts if len(parts) == len(PARTS) else {options.part: parts[options.part]}, machine())
     print(text)

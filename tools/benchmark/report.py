@@ -1,5 +1,4 @@
 """The page and the picture of tools/bench."""
-import math
 
 import report_large
 from report_words import best, exponent, milliseconds, per_cent, short, table
@@ -11,77 +10,92 @@ SCIKIT_FEM = ("scikit-fem", "scikit-fem's parts")
 PROGRAMS = ("epcont", "CalculiX", *SCIKIT_FEM)
 
 
-def ratios(rows):
+def comparison(rows):
+    """A row for each model: epcont, and the fastest sound setting of CalculiX."""
     lines = []
     for kind in KINDS:
         for ours in best(rows, kind, "epcont"):
-            of = {p: next((r for r in best(rows, kind, p) if r["nodes"] == ours["nodes"]), None) for p in PROGRAMS[1:]}
-            direct = [r for r in rows if r["kind"] == kind and r["nodes"] == ours["nodes"] and "SPOOLES" in r["setting"] and r["wall"]]
-            direct = min(direct, key=lambda r: r["cpu"], default=None)
-            ccx = of["CalculiX"]
-            lines.append([kind, ours["nodes"], short(ours["cpu"]), short(ccx["cpu"]), short(ccx["cpu_ratio"]), short(ccx["wall_ratio"]),
-                          ccx["setting"], short(direct["cpu_ratio"]) if direct else "", direct["setting"].replace(", SPOOLES", "") if direct else "",
-                          short(ours["memory"]), short(ccx["memory_ratio"]),
-                          *(short(value) for p in SCIKIT_FEM
-                            for value in ((of[p]["cpu_ratio"], of[p]["rest"] / ours["cpu"]) if of[p] else (None, None)))])
-    return table(["", "nodes", "epcont, s", "CalculiX, s", "ratio", "of wall", "its fastest sound setting", "ratio, SPOOLES", "with",
-                  "epcont, MB", "ratio, CalculiX", "ratio, scikit-fem", "without imports", "ratio, its parts, tuned", "without imports"], lines)
+            ccx = next(row for row in best(rows, kind, "CalculiX") if row["nodes"] == ours["nodes"])
+            lines.append([kind, ours["nodes"], *(cell for row in (ours, ccx) for cell in (
+                short(row["cpu"]), short(row["memory"]), per_cent(row["p_error"]), per_cent(row["d_error"]))), short(ccx["cpu_ratio"]), ccx["setting"]])
+    figures = ["MB", "p_max, %", "approach, %"]
+    return table(["", "nodes", "epcont, s", *figures, "CalculiX, s", *figures, "CPU ratio", "CalculiX setting"], lines)
+
+
+def settings(rows, kind):
+    """A row for each program and setting, a column for each mesh: CPU seconds."""
+    rows = [row for row in rows if row["kind"] == kind]
+    nodes = sorted({row["nodes"] for row in rows})
+    lines = {}
+    for row in rows:
+        name = f"{row['program']} {row['setting']}".strip()
+        lines.setdefault(name, {})[row["nodes"]] = row["cpu"]
+        if row["rest"]:
+            lines.setdefault(f"{name}, without imports", {})[row["nodes"]] = row["rest"]
+    return table([f"{kind}, CPU s", *(f"{n} nodes" for n in nodes)], [[name, *(short(of.get(n)) for n in nodes)] for name, of in lines.items()])
 
 
 def cylinders(rows):
-    lines = [[row["kind"], row["nodes"], row["program"], row["setting"], row["runs"], short(row["cpu"]), short(row["wall"]), short(row["memory"]),
-              short(row["p_max"], 4), per_cent(row["p_error"]), f"{row['approach']:.6f}", per_cent(row["d_error"]), short(row["cpu_ratio"]),
-              short(row["wall_ratio"]), short(row["memory_ratio"]), row["note"]] for row in rows]
     return "\n\n".join([
         "## Two cylinders: whole programs",
-        "Seconds of processor (user and system) and of wall, peak memory of the process. Ratios: the program's over epcont's. CalculiX: GAPUNI with "
-        "a *PLASTIC card that elastic runs never reach, or NODE TO SURFACE contact, closed gaps 1e5 E stiff; SPOOLES is its default and direct, "
-        "ITERATIVE CHOLESKY its conjugate gradients. Each setting runs once (wall empty: only once); those near the fastest sound "
-        "one, and the fastest with SPOOLES, take turns with epcont, each right after a run that is not timed where it is short (under 5 s). Sound: whole load, approach within 1 % of epcont's, p_max within 1 % "
-        "(elastoplastic: 6 %). epcont elastoplastic: NEWTON to 1e-8.",
-        ratios(rows),
-        "Errors in per cent: elastic p_max against Hertz, approach against Johnson; elastoplastic against epcont's converged total theory (198.4, "
-        "0.001419). CalculiX has flow theory: its lower p_max is no error but another theory. scikit-fem ends with "
-        "displacements and contact forces (no stresses, tables, certificate): as contact is written with it, condensed and solved for each "
-        "active set (condense), and the fastest that we could make of its parts, which is epcont's own way (splu, cholmod; `scikit_fem.py`).",
-        table(["", "nodes", "program", "setting", "runs", "CPU, s", "wall, s", "MB", "p_max", "%", "approach", "%", "CPU ratio", "wall ratio",
-               "memory ratio", ""], lines)])
+        "All programs solve the two cylinders of `tools/decks` (hertz, CTRIA3). Times are user and system seconds of the whole process, medians of all turns. A ratio is "
+        "the median of the ratios of each turn: above 1, epcont is faster.",
+        "- CalculiX: contact by GAPUNI, or NODE TO SURFACE with a stiffness of 1e5 E. SPOOLES is its default solver, ITERATIVE CHOLESKY its conjugate gradients.\n"
+        "- A setting is sound if it carries the whole load, the approach is within 1 % of that of epcont, and p_max within 1 % (elastoplastic: 6 %).\n"
+        "- Each setting runs once. The fastest sound settings then take turns with epcont.\n"
+        "- Errors: elastic p_max against Hertz, approach against Johnson. Elastoplastic against the converged total theory of epcont (198.4, 0.001419).\n"
+        "- Elastoplastic: epcont uses NEWTON to 1e-8. CalculiX uses flow theory, so its lower p_max is another theory, not an error.",
+        comparison(rows),
+        "scikit-fem computes displacements and contact forces only. `condense` condenses the system and solves it for each active set. "
+        "`splu` and `cholmod` combine its parts in the way of epcont, the fastest that we found (`scikit_fem.py`).",
+        *(settings(rows, kind) for kind in KINDS if any(row["kind"] == kind for row in rows))])
+
+
+#: Numbers of pairs that the page shows.
+SHOWN = (100, 1000)
 
 
 def contact(rows):
-    lines = [[row["problem"], row["n"], f"{row['condition']:.0e}", row["program"], short(row["cpu"]), short(row["ratio"]),
-              "" if row["violation"] is None else f"{row['violation']:.0e}", row["note"]] for row in rows]
+    """A row for each problem and size: CPU milliseconds of each program; last, the largest violation of each program at all sizes."""
+    names = list(dict.fromkeys(row["program"] for row in rows))
+    lines = {}
+    for row in rows:
+        if row["n"] in SHOWN:
+            lines.setdefault((row["problem"], row["n"], f"{row['condition']:.0e}"), {})[row["program"]] = row["note"] and "no answer" or milliseconds(row["cpu"])
+    largest = {name: max((row["violation"] for row in rows if row["program"] == name and row["violation"]), default=None) for name in names}
     return "\n\n".join([
         "## Dense contact problem alone",
-        "Strips on a half-plane, one motion. epcont: its simplex (CONRY); WARM from the right active set; dgemm one "
-        "product of matrices of that size. Seconds of processor; ratio over epcont's (below 1: faster than epcont). Violation: largest of |min(R/|R|, "
-        "w/(|F||R|))| and of the load's relative error, |R| the largest force, |F| the largest sum of a row; the packages are asked for 1e-9. A program that "
-        "took too long is left out at the next size.",
-        table(["problem", "n", "condition of F", "program", "CPU, s", "ratio", "violation", ""], lines)])
+        "Strips of pressure on a half-plane, with one rigid-body mode. CPU milliseconds. epcont uses its simplex (CONRY); WARM starts from the right active set; dgemm is one "
+        "product of matrices of that size. Violation: largest of |min(R/max R, w/(|F| max R))| and of the relative error of the load, for all sizes from 50 to 1000 "
+        "pairs. |F| is the largest row sum of F. The packages are asked for 1e-9.",
+        table(["problem", "pairs", "condition of F", *names],
+              [*([*key, *(of.get(name, "") for name in names)] for key, of in lines.items()),
+               ["largest violation", "", "", *("" if largest[name] is None else f"{largest[name]:.0e}" for name in names)]])])
 
 
 def factor(rows, runs):
     lines = [["dgemm, n = 1000" if row["nodes"] is None else row["nodes"], int(row["equations"]), int(row["width"]), short(row["seconds"]),
               f"{row['rate'] / 1e9:.1f}", f"{100 * row['part']:.0f}"] for row in rows["factor"]]
-    text = ["## Factorization", "Operations: n w^2 of the band, 2 n^3 of dgemm.",
+    text = ["## Factorization", "Band of half-bandwidth w. Operations: n w^2 for the band, 2 n^3 for dgemm.",
             table(["nodes", "equations", "half-bandwidth", "seconds", "1e9 operations/s", "% of dgemm"], lines)]
-    text += ["## Growth", "Two cylinders, elastic: the whole process, its solve part (numbering to displacements, as in the section on it), its peak memory.",
+    text += ["## Growth", "Two cylinders, elastic. The solve part begins with the numbering and ends with the displacements.",
              table(["equations", "process, CPU s", "wall, s", "solve part, CPU s", "peak memory, MB"],
                    [[row["equations"], *(short(row[what]) for what in ("cpu", "wall", "solve", "memory"))] for row in rows["growth"]])]
     growth = [(f"epcont, {name}", [(row["equations"], row[what]) for row in rows["growth"]])
-              for name, what in (("process, CPU", "cpu"), ("process, wall", "wall"), ("solve part, CPU", "solve"), ("peak memory", "memory"))]
+              for name, what in (("CPU", "cpu"), ("solve part", "solve"), ("memory", "memory"))]
     growth += [("factorization", [(row["equations"], row["seconds"]) for row in rows["factor"] if row["nodes"] and row["nodes"] > 900])]
-    growth += [(f"{program}, {kind}, whole", [(row["nodes"], row["cpu"]) for row in best(runs, kind, program) if row["nodes"] > 900])
-               for program in PROGRAMS for kind in KINDS]
-    text += ["They grow with the unknowns to the power (1 000 nodes and more, least squares):",
-             table(["", "power"], [[name, f"{exponent(points):.2f}"] for name, points in growth if len(points) > 1])]
-    text += ["## The smallest deck", "Milliseconds of processor of a whole process, against those of an empty program with the same libraries.",
+    growth += [(f"{program}, {kind}", [(row["nodes"], row["cpu"]) for row in best(runs, kind, program) if row["nodes"] > 900])
+               for program in PROGRAMS[:2] for kind in KINDS]
+    growth = [(name, points) for name, points in growth if len(points) > 1]
+    text += ["Powers of the number of unknowns, by least squares, for 1 000 nodes or more:",
+             table([name for name, _ in growth], [[f"{exponent(points):.2f}" for _, points in growth]])]
+    text += ["## Smallest deck", "CPU milliseconds of a whole process, and of an empty program with the same libraries.",
              table(["deck", "epcont, ms", "empty, ms", "difference, ms", "runs"],
                    [[row["deck"], *(f"{row[what]:.2f}" for what in ("cpu", "empty", "difference")), row["runs"]] for row in rows["smallest"]])]
     return "\n\n".join(text)
 
 
-#: Stages of the solve part, and what the libraries bare do there.
+#: Stages of the solve part.
 STAGES = {"ordering": "numbering", "factor": "factor", "flexibility": "F", "load_gap": "load gaps", "contact": "contact", "displacements": "displacements"}
 
 
@@ -96,21 +110,20 @@ def solve_part(rows):
         stages.append(["", once["name"], *(milliseconds(once[stage]) if stage in once else "" for stage in STAGES), "", ""])
     return "\n\n".join([
         "## Solve part",
-        "Two cylinders, elastic, milliseconds of processor: numbering, factor, F, contact and displacements by epcont, and by the best libraries "
-        "bare (`bare/`: LAPACK's band, CHOLMOD, MUMPS, all with OpenBLAS; the fastest of 14 ways at each size), that get the matrix ready made and are "
-        "told which pairs touch. "
-        "Seven more: factor to displacements with the same ordering. Ratio below 1: epcont is faster.",
-        table(["equations", "epcont", "bare", "ratio", "by", "seven more", "bare", "ratio", "by"], ratios),
-        "By stages. Load gaps: the loads here act on SUPORT freedoms and open none; the libraries are not asked for them. epcont's assembly, "
-        "which clears the storage of the factor too, and its estimate of the condition are in no sum.",
+        "Two cylinders, elastic, CPU milliseconds. The solve part is numbering, factorization, F, contact and displacements. The libraries are the band solver of LAPACK, CHOLMOD "
+        "and MUMPS, all with OpenBLAS (`bare/`), with the fastest of 14 combinations for each size. They get the assembled matrix and the active set. Seven more: seven further "
+        "solves, from factorization to displacements, with the same ordering. Ratio below 1: epcont is faster.",
+        table(["equations", "epcont", "libraries", "ratio", "fastest library", "epcont, seven more", "libraries", "ratio", "fastest library"], ratios),
+        "Stages. The loads act on SUPORT DOFs and open no gap, so the libraries do not compute load gaps. No sum contains the assembly, which also "
+        "clears the storage of the factor, nor the condition estimate.",
         table(["equations", "", *STAGES.values(), "assembly", "condition"], stages)])
 
 
 def page(parts, about):
-    """`parts`: of each number the rows, and the command and the load that they were measured by and under."""
+    """`parts`: for each number the rows, the command that measured them, and the load of the machine."""
     rows = {part: found["rows"] for part, found in parts.items()}
-    by = "; ".join(f"part {part} by `{found['command']}`, {found['load']}" for part, found in sorted(parts.items()))
-    text = ["# Benchmarks", f"{about} One thread each, where nothing else is said. Measured once: {by}. Another machine, or a busy one, gives other times. Ratios are steadier."]
+    text = ["# Benchmarks", f"{about} One thread, unless a table says otherwise. Ratios depend less on the machine than times.",
+            table(["part", "command", "load", "epcont"], [[part, f"`{found['command']}`", found["load"], found.get("version")] for part, found in sorted(parts.items())])]
     text += [cylinders(rows[1])] if 1 in rows else []
     text += [contact(rows[2])] if 2 in rows else []
     text += [factor(rows[3], rows.get(1, []))] if 3 in rows else []
