@@ -142,7 +142,7 @@ def per_cent(part):
 def fronts(runs):
     by_time, by_memory = front(runs, "cpu"), front(runs, "memory")
     rows = sorted(by_time + [run for run in by_memory if run not in by_time], key=lambda run: -worst(run))
-    return table(["element", "mesh", "choice", "CPU, ms", "MB", "p_max off, %", "estimate", "approach off, %", "estimate", "front of"],
+    return table(["element", "mesh", "choice", "CPU, ms", "MB", "p_max error, %", "estimate", "approach error, %", "estimate", "front"],
                  [[run.element.upper(), run.size, words(run.choice), short(1e3 * run.cpu), f"{run.memory:.1f}", per_cent(run.error_p),
                    per_cent(run.estimate_p), per_cent(run.error_q), per_cent(run.estimate_q),
                    " and ".join([word for word, of in (("time", by_time), ("memory", by_memory)) if run in of])] for run in rows])
@@ -213,67 +213,49 @@ def draw(found, path):
     figure.savefig(path, dpi=110, metadata={"Software": None})
 
 
-#: Mechanisms that are no longer there: old and new program in turns, medians of five, one thread.
+#: Mechanisms that were removed: old and new program in turns, medians of five, one thread.
 REMOVED = [
-    ["PARAM RULE BLOCK: block pivoting of the contacts with F of each body, from 100 pairs on; an interior path",
-     "blocks of `tools/decks` with 600 pairs and 24 000 nodes 0.27 s, now 0.26 (CONRY); 1000 pairs and 40 000 nodes 0.56, 0.70 (JOINED); strip of 600 pairs 0.15, 0.15",
-     "a second way to the same bits, 300 lines; its exchanges remain as the rescue of the simplex, its interior path in joined bodies. Rows of BLOCK in the "
-     "other tables of this page are of the program before"],
-    ["flexibility in levels: F and its factor as block tridiagonal matrices, unit loads passed from level to level",
-     "stack of `tools/decks` (30 bodies, 42 000 nodes) 0.43 s and 158 MB, now 0.65 s and 208 MB (JOINED; with CONRY 1.04 s and 173 MB); 1 000 small bodies 0.66, 0.74 s; walls the other way: "
-     "16 x 16 bricks 0.57 s and 66 MB, now 0.16 s and 26 MB",
-     "900 lines; many bodies are joined, which takes springs, MPC and undetermined modes now"],
-    ["PARAM PRECIS: factors in single precision, refined (MIXED) or not (SINGLE)",
-     "hertz 42000 of `tools/decks` with PRECIS DOUBLE, MIXED, SINGLE: elastic 0.33, 0.39, 0.32 s and 141, 114, 112 MB; yielding (`--plastic`) 0.82, "
-     "1.39, 0.65 s and 214, 166, 165 MB",
-     "1 000 lines of templates included twice, a second solve where single precision fails, every test in three precisions: for 3 to 20 % of "
-     "the time of large models and a fifth of their memory. Rows of MIXED and SINGLE in the other tables of this page are of the program before"],
-    ["forecast of the run time in seconds: `--plan`, progress",
-     "the time of 151 of 152 decks within a factor of 2 (as the documents said), of which `--plan` took 3 ms; other runs take the same time without it",
-     "360 lines of src and 700 of tests that follow the machine; `--plan` states operations and memory, progress what is done"],
-    ["large pages under the factors and, touched ahead, under the heap; small ones where large ones come slowly",
-     "0 to 4 % of processor time (medians of seven, with the row below): `tools/decks` hertz 11000 0.078 s with, 0.081 without; `--plastic` 0.183, 0.183; "
-     "hertz 42000 0.314, 0.328; blocks of 43 000 nodes and 1500 pairs 0.616, 0.621. Large pages under the first step of the heap stay: without them "
-     "0.093, 0.208, 0.367, 0.666 s",
-     "90 lines; one call of madvise (`system/memory.f90`) has most of the gain"],
-    ["probes of the condition taken through the factorization and the solves of the error estimates",
-     "at most 3 % of processor time: hertz 42000 0.362 s with, 0.368 with two solves more; `--plastic` 0.818, 0.820; blocks of 43 000 nodes 0.659, 0.680; "
-     "stack 0.442, 0.440; dovetail 0.407, 0.407; hertz 150000 1.473, 1.498. Memory 0 to 1 % less without",
-     "110 lines in five files; now one procedure of 20 lines (`assembly/stiffness.f90`)"],
-    ["unit loads along every rigid-body mode, passed on from level to level: an error of every approach",
-     "an error of the approach of more than the 12 largest motions; others are blank now. With and without, stack of `tools/decks` of 30 bodies 0.42 and 0.39 s, "
-     "of 1 000 1.24 and 1.17 s, a wall of 16 x 16 bricks 0.49 and 0.33 s and 66 and 36 MB; two cylinders, blocks, dovetail, strip the same. Share of the "
-     "accuracy in an elastic run: 14 to 23 %, wall 6 %, 1 000 bodies 8 %; in 100 load cases 27 to 30 %",
-     "350 lines of src and 180 of tests; both contact rules now have one set of unit loads"],
-    ["load cases of a deck in parallel, in streams that each start from a copy of the first case",
-     "one thread: the same processor time. 100 cases of hertz 3000, hertz 11000, hertz 900 `--plastic` and 600 pairs of blocks take 0.99, 0.97, 1.02 and 1.03 "
-     "of it without (medians of two to five in turns). Forecast of their memory: 45 MB, 89 with. On more threads the cases of one deck no longer gain; decks "
-     "in parallel (`tools/batch`) do",
-     "200 lines of src: streams, copies, a second start if a case changed the plan, texts held until the last case, memory of threads"],
-    ["cards read by several threads, then faulty cards once more in the order of lines",
-     "hertz 42000 of `tools/decks`: one thread, 0.359 s with and without. Reading takes 0.026 s of it, so two threads can save 0.013 s of the wall clock",
-     "60 lines of src; now each card is read once, in the order of lines"]]
+    ["PARAM RULE BLOCK: block pivoting with F of each body",
+     "600 pairs: 0.27 s, now 0.26 s (CONRY); 1000 pairs: 0.56 s, now 0.70 s (JOINED)", "300 lines for the same answer"],
+    ["F in levels: block tridiagonal matrices",
+     "30 bodies, 42 000 nodes: 0.43 s and 158 MB, now 0.65 s and 208 MB (JOINED). 16 x 16 bricks: 0.57 s and 66 MB, now 0.16 s and 26 MB", "900 lines"],
+    ["PARAM PRECIS SINGLE: factors in single precision",
+     "hertz 42000, elastic: 0.32 s and 112 MB, now 0.33 s and 141 MB; yielded: 0.65 s and 165 MB, now 0.82 s and 214 MB",
+     "1 000 lines, a second solve if single precision fails, and all tests in three precisions"],
+    ["PARAM PRECIS MIXED: the same with iterative refinement",
+     "hertz 42000, elastic: 0.39 s and 114 MB; yielded: 1.39 s and 166 MB", "the same lines; slower than double precision"],
+    ["forecast of the run time in seconds", "right within a factor of 2 for 151 of 152 decks", "360 lines of src and 700 of tests that depend on the machine"],
+    ["large pages under the factors; heap touched ahead", "0 to 4 % of processor time", "90 lines; one call of madvise has most of the gain (`system/memory.f90`)"],
+    ["condition estimate within the factorization", "at most 3 % of processor time", "110 lines; now one procedure of 20 lines (`assembly/stiffness.f90`)"],
+    ["adjoint loads along every rigid-body mode", "an error of each approach; now only of the 12 largest rigid-body displacements",
+     "350 lines; 16 x 16 bricks took 0.49 s and 66 MB, without 0.33 s and 36 MB"],
+    ["load cases of a deck in parallel", "none on one thread; for more threads, run decks in parallel (`tools/batch`)", "200 lines"],
+    ["cards read by several threads", "at most 0.013 s of 0.359 s (hertz 42000, two threads)", "60 lines"]]
 
 
 def page(found, quick, spent, picture):
     count = sum(len(runs) + len(failed) for _, runs, failed in found)
     text = ["# Time, memory and accuracy of each choice",
-            f"`tools/tradeoff{' --quick' if quick else ''}`, {platform.machine()}: {count} choices of mesh, element, method, tolerance and rule in "
-            f"{spent / 60:.0f} minutes. Time: processor, whole process, one thread, the least of three runs. Memory: its peak. Errors: true ones, the worst "
-            "largest pressure and the worst approach (tube: mean u(a)) in per cent; beside them what the program itself says. mesh: elements across the contact (cylinders), round "
-            "the pin, through the wall (tube), size at the contact (joint). The pin has no approach: its load is a point load."]
-    text += [f"![Error against time]({picture})", "## Elements: milliseconds for an error",
-             f"Choices: {words(BASE)}, as far as a scene has a use for them. Error: the worse of largest pressure and approach, and on all finer meshes too.",
-             table(["scene", "element", "3 %", "1 %", "0.3 %", "finest, % in ms"], [row for scene, runs, _ in found for row in elements(runs, scene)]),
-             "## One choice at a time",
-             f"Against {words(BASE)} on the same mesh: time (median over the meshes, and on the one that takes longest), memory there, how far p_max or "
-             "approach moves at most, true error (median); runs that gave no answer (not converged in 100 iterations, or none that the certificate takes).",
-             table(["scene", "choice", "time", "largest", "memory", "moves by", "error", "no answer"],
-                   [row for scene, runs, failed in found for row in one_at_a_time(runs, failed, scene)])]
-    text += ["## Removed", "Mechanisms that are no longer there, and what they gained: old and new program in turns, processor time and peak memory, medians of five.",
-             table(["mechanism", "what it gained", "why it went"], REMOVED)]
-    text += ["## Pareto fronts", "Runs that err less, by a tenth at least, than all that cost less; of choices within a tenth of each other on one mesh the one nearest to "
-             f"{words(BASE)}."]
+            f"`tools/tradeoff{' --quick' if quick else ''}` solved {count} combinations of mesh, element, method, tolerance and contact solver in {spent / 60:.0f} minutes "
+            f"({platform.machine()}). The mesh decides: other choices on one mesh mostly leave the same error.",
+            "- Time: processor time of the whole process on one thread, the least of three runs. Memory: its peak.\n"
+            "- Error: true error of the largest pressure and of the approach, the worst of each model. For the tube: mean u(a). The pin has no approach, because its load is a point load.\n"
+            "- Estimate: the error that epcont itself states.\n"
+            "- Mesh: elements across the contact (cylinders), around the pin, through the wall (tube); size at the contact (joint).",
+            f"![Error against time]({picture})", "## Elements: milliseconds for an error",
+            f"Choices: {words(BASE)}, if they apply to the model. Error: the worse of largest pressure and approach, on this mesh and all finer ones.",
+            table(["model", "element", "3 %", "1 %", "0.3 %", "finest, % in ms"], [row for scene, runs, _ in found for row in elements(runs, scene)]),
+            "## One choice at a time",
+            f"All figures are relative to {words(BASE)} on the same mesh.",
+            "- Time: median over the meshes. Largest, memory: on the mesh that takes longest.\n"
+            "- Change: largest change of p_max or approach. Error: true error, median.\n"
+            "- No answer: runs without convergence in 100 iterations, or with an answer that the certificate rejects.",
+            table(["model", "choice", "time", "largest", "memory", "change", "error", "no answer"],
+                  [row for scene, runs, failed in found for row in one_at_a_time(runs, failed, scene)]),
+            "## Removed", "Old and new program ran in turns. Processor time and peak memory, medians of five. Models are those of `tools/decks`.",
+            table(["mechanism", "gain", "reason for removal"], REMOVED),
+            "## Pareto fronts", "A run is on the front if its error is at least a tenth less than that of all cheaper runs. If choices on one mesh differ by less than a tenth, "
+            f"the one nearest to {words(BASE)} is shown."]
     for scene, runs, _ in found:
         text += [f"### {scene.name[0].upper()}{scene.name[1:]}", fronts(runs)]
     return "\n\n".join(text) + "\n"
