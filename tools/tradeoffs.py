@@ -188,6 +188,20 @@ def one_at_a_time(runs, failed, scene):
     return rows
 
 
+def prices(rows):
+    """Summarize the rows of `one_at_a_time` over all models: range of times, largest change and error, runs without answer."""
+    choices_of = collections.defaultdict(list)
+    for _, choice, *cells in rows:
+        choices_of[choice].append(cells)
+    lines = []
+    for choice, cells in choices_of.items():
+        times, changes, errors = ([float(row[k]) for row in cells if row[k]] for k in (0, 3, 4))
+        lost = sum(int(row[5].split()[0]) for row in cells if row[5])
+        if times:
+            lines.append([choice, f"{min(times):.2f} to {max(times):.2f}", f"{max(changes):.0e}", f"{max(errors):.2f}", lost or ""])
+    return lines
+
+
 def draw(found, path):
     from drawing import style  # here: what drives the runs stays small
     from drawing.style import plt
@@ -235,6 +249,7 @@ REMOVED = [
 
 def page(found, quick, spent, picture):
     count = sum(len(runs) + len(failed) for _, runs, failed in found)
+    single = [row for scene, runs, failed in found for row in one_at_a_time(runs, failed, scene)]
     text = ["# Time, memory and accuracy of each choice",
             f"`tools/tradeoff{' --quick' if quick else ''}` solved {count} combinations of mesh, element, method, tolerance and contact solver in {spent / 60:.0f} minutes "
             f"({platform.machine()}). The mesh decides: other choices on one mesh mostly leave the same error.",
@@ -242,6 +257,8 @@ def page(found, quick, spent, picture):
             "- Error: true error of the largest pressure and of the approach, the worst of each model. For the tube: mean u(a). The pin has no approach, because its load is a point load.\n"
             "- Estimate: the error that epcont itself states.\n"
             "- Mesh: elements across the contact (cylinders), around the pin, through the wall (tube); size at the contact (joint).",
+            "## Price of a choice", f"Ranges over all models, relative to {words(BASE)} on the same mesh. `One choice at a time` below explains the columns.",
+            table(["choice", "time", "largest change", "largest error", "no answer"], prices(single)),
             f"![Error against time]({picture})", "## Elements: milliseconds for an error",
             f"Choices: {words(BASE)}, if they apply to the model. Error: the worse of largest pressure and approach, on this mesh and all finer ones.",
             table(["model", "element", "3 %", "1 %", "0.3 %", "finest, % in ms"], [row for scene, runs, _ in found for row in elements(runs, scene)]),
@@ -250,8 +267,7 @@ def page(found, quick, spent, picture):
             "- Time: median over the meshes. Largest, memory: on the mesh that takes longest.\n"
             "- Change: largest change of p_max or approach. Error: true error, median.\n"
             "- No answer: runs without convergence in 100 iterations, or with an answer that the certificate rejects.",
-            table(["model", "choice", "time", "largest", "memory", "change", "error", "no answer"],
-                  [row for scene, runs, failed in found for row in one_at_a_time(runs, failed, scene)]),
+            table(["model", "choice", "time", "largest", "memory", "change", "error", "no answer"], single),
             "## Removed", "Old and new program ran in turns. Processor time and peak memory, medians of five. Models are those of `tools/decks`.",
             table(["mechanism", "gain", "reason for removal"], REMOVED),
             "## Pareto fronts", "A run is on the front if its error is at least a tenth less than that of all cheaper runs. If choices on one mesh differ by less than a tenth, "
