@@ -1,20 +1,20 @@
-"""Cards as text: the fields of a line, a real in a field, and the columns as the program's own catalogue has them."""
+"""Cards as text: the fields of a line, a real in a field, and the fields according to the program's catalogue."""
 import re
 import subprocess
 from dataclasses import dataclass
 from decimal import Decimal
 
-FIRST, LAST = 8, 72   # columns of data in fixed fields
+FIRST, LAST = 8, 72   # data columns in fixed format
 MOST_DIGITS = 17
 
 
 def is_wide(line):
-    """Has a line fields of 16 columns, or four between commas?"""
+    """Does a line have fields of 16 columns, or four between commas?"""
     return "*" in line[:FIRST].split(",")[0]
 
 
 def places(line):
-    """Where the data fields of a line stand, as slices; of a free one those that are there."""
+    """Positions of the data fields of a line, as slices; in free format only those that exist."""
     most = 4 if is_wide(line) else 8
     if "," in line:
         ends = [match.start() for match in re.finditer(",", line)] + [len(line)]
@@ -24,26 +24,26 @@ def places(line):
 
 
 def fields(line):
-    """Name and data fields of one line, four or eight."""
+    """Name and data fields (four or eight) of one line."""
     name = line.partition(",")[0] if "," in line else line[:FIRST]
     data = [line[place].strip() for place in places(line)]
     return name.strip(), data + [""] * ((4 if is_wide(line) else 8) - len(data))
 
 
 def written(value, width=None):
-    """A real with its point and as many digits as `width` columns hold; with an exponent (`1.5-7`) where there is no room, or it is far from 1.
+    """A real with a decimal point and as many digits as `width` columns hold; it has an exponent (`1.5-7`) if space is short or it is far from 1.
 
-    ValueError: no real of this width is near it."""
+    ValueError if no real of this width is near."""
     value = Decimal(value)
     for digits in range(MOST_DIGITS, 0, -1):
         for text in spellings(value, digits):
             if width is None or len(text) <= width:
                 return text
-    raise ValueError(f"no real of {width} columns is near {value}")
+    raise ValueError(f"{width} columns cannot hold {value}")
 
 
 def spellings(value, digits):
-    """A number rounded to so many digits, without an exponent where that is usual, and with one."""
+    """A number rounded to some digits: without exponent if this is usual, and with exponent."""
     if not value:
         yield "0."
         return
@@ -59,12 +59,12 @@ def spellings(value, digits):
 @dataclass
 class Column:
     name: str
-    kind: str      # integer, real, word, digits, any; empty where the field must be blank
+    kind: str      # integer, real, word, digits, any; empty if the field must be blank
     choices: list
 
 
 class Catalogue:
-    """What `epcont --cards` prints of every card."""
+    """Read the output of `epcont --cards` for every card."""
 
     def __init__(self, program):
         def ask(*name):
@@ -92,7 +92,7 @@ class Catalogue:
             self.parameters[name] = Column(name, kind, words)
 
     def column(self, name, slot):
-        """What stands in a slot of a card."""
+        """Field of a card."""
         columns = self.columns.get(name)
         if not columns:
             return Column("", "any", [])

@@ -1,12 +1,12 @@
-"""How fast the answers come near the known ones, for each kind of element: tables, and a picture.
+"""Convergence of results to known answers for each element type: tables, and a picture.
 
     tools/convergence                                  tables
     tools/convergence -o input/hertz/pictures/convergence     and NAME.png, NAME.svg
 
 Two equal cylinders, elastic: the approach against Johnson's 2 P (1 - nu^2)/(pi E) (2 ln(4 R/b) - 1), the largest pressure
-against Hertz's. A thick tube beyond yield (p = 0.16): u(a), the mean over the inner nodes, against the one-dimensional
+against Hertz's. A thick tube, yielded (p = 0.16): u(a), the mean over the inner nodes, against the one-dimensional
 integration along the radius. The decks are those of tools/scenes, run in a temporary directory; times are the shortest of
-three whole runs (one, where it takes a second), reading and writing included, and differ from machine to machine and run to run; all else does not.
+three whole runs (one, if it takes a second), including reading and writing; only times differ between machines and runs.
 Unknowns: equations of the bodies, as `epcont --plan` counts them.
 """
 import math
@@ -32,8 +32,8 @@ B = math.sqrt(4 * P * (R / 2) * 2 * (1 - NU * NU) / (math.pi * E))
 P_MAX = 2 * P / (math.pi * B)
 APPROACH = P * (1 - NU * NU) / (math.pi * E) * (2 * math.log(4 * R / B) - 1)   # half of the cylinders'
 U_A = 0.1835687
-#: Elements across the contact; elements through the wall. Six-node triangles twice as large. No whole numbers only: where the
-#: contact ends within an element matters.
+#: Elements across the contact; elements through the wall. Six-node triangles are twice as large. Not only integers: the position of the
+#: end of contact within an element matters.
 ACROSS = {"ctria3": (3.3, 4.7, 6, 8.5, 10.5, 12.5, 14.5, 16, 24.3, 32.7, 48.5), "cquad4": (2, 3, 4, 5, 6, 7, 8, 12, 16, 24, 32, 48),
           "ctria6": (1, 1.3, 1.7, 2, 2.5, 2.7, 3.3, 3.7, 4, 4.7, 6, 8.5, 12.3, 16.7, 24.3)}
 PARTS = {"ctria3": (5, 10, 20, 40, 80), "cquad4": (5, 10, 20, 40, 80), "ctria6": (3, 5, 10, 20, 40)}
@@ -65,7 +65,7 @@ def two_cylinders(element, across, place):
 
 
 def inner_displacement(path):
-    """Mean radial displacement of the inner nodes of a tube, from the tables of a run of this deck."""
+    """Mean radial displacement of the inner nodes of a tube, from the tables of its run."""
     nodes = [[float(row[key]) for key in ("x", "y", "ux", "uy")] for row in tables.rows(path.with_suffix(".nodes.csv"))]
     inner = [math.hypot(ux, uy) for x, y, ux, uy in nodes if abs(math.hypot(x, y) - 100.0) < 1e-6]
     return sum(inner) / len(inner)
@@ -78,7 +78,7 @@ def tube(element, parts, place):
 
 
 def needed(rows, error=1e-3):
-    """Unknowns from which on the error stays below, between two meshes on the line of the logarithms; None: never."""
+    """Unknowns above which the error stays below the limit, interpolated between two meshes in logarithmic scales; None if never."""
     beyond = [i for i, row in enumerate(rows) if abs(row[1]) > error]
     if not beyond or beyond[-1] + 1 == len(rows):
         return None
@@ -88,7 +88,7 @@ def needed(rows, error=1e-3):
 
 
 def draw(contact, wall, name):
-    from drawing import style  # here, so that the tables need nothing but Python
+    from drawing import style  # imported here, so that the tables need only Python
     from drawing.style import plt
 
     figure, panels = plt.subplots(1, 3, figsize=(12.5, 4.2), layout="constrained", sharey=True)
@@ -105,7 +105,7 @@ def draw(contact, wall, name):
 
 
 def check_folder(parser, output):
-    """Before minutes of runs: can the files be written?"""
+    """Check before minutes of runs that the files can be written."""
     if not output:
         return
     try:
@@ -118,7 +118,7 @@ def check_folder(parser, output):
 
 def main():
     parser = parser_of(__doc__, "tools/convergence")
-    parser.add_argument("-o", "--output", type=pathlib.Path, help="name of a picture, without .png and .svg")
+    parser.add_argument("-o", "--output", type=pathlib.Path, help="name of the picture, without .png and .svg")
     options = parser.parse_args()
     check_folder(parser, options.output)
     with tempfile.TemporaryDirectory() as place:

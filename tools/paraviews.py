@@ -1,11 +1,11 @@
-"""A picture of any deck by ParaView, from the files that `epcont --vtk` writes: equivalent stress on the displaced bodies, and the
+"""Draw any deck with ParaView, from the files of `epcont --vtk`: equivalent stress on the displaced bodies, and the
 contact pressure along their boundary.
 
     tools/paraview DECK.dat [-o NAME.png] [--scale 10] [--near X,Y,HALF_HEIGHT] [--case N]
 
-One panel shows the whole, displacements times --scale; the other what is near a place, meshes and all, displacements as they are.
-Of several load cases one is drawn: --case, else the one with the largest pressure.
-NAME is DECK.paraview, here, if not given. The exit status is that of epcont: a deck that is rejected has no picture.
+One panel shows the whole model, displacements times --scale; the other a detail with its mesh, displacements unscaled.
+With several load cases one is drawn: --case, or the one with the largest pressure.
+The default NAME is DECK.paraview, in the current folder. The exit status is that of epcont: a rejected deck has no picture.
 """
 import argparse
 import math
@@ -43,14 +43,14 @@ def read_arguments():
     parser = parser_of(__doc__, "tools/paraview")
     parser.add_argument("deck", metavar="DECK", type=pathlib.Path)
     parser.add_argument("-o", "--output", metavar="NAME.png", type=pathlib.Path, help="name of the picture")
-    parser.add_argument("--scale", type=scale, default=1.0, help="of the displacements, where the whole is drawn (1)")
+    parser.add_argument("--scale", type=scale, default=1.0, help="factor of the displacements in the whole model (1)")
     parser.add_argument("--near", metavar="X,Y,HALF_HEIGHT", type=near,
-                        help="a second panel of this place; behind = where X is negative: --near=-1,0,2")
-    parser.add_argument("--case", metavar="N", type=int, help="the SUBCASE that is drawn; else the one with the largest pressure")
+                        help="a second panel of this region; use = if X is negative: --near=-1,0,2")
+    parser.add_argument("--case", metavar="N", type=int, help="SUBCASE to draw; default: the one with the largest pressure")
     options = parser.parse_args()
     options.output = options.output or pathlib.Path(f"{options.deck.stem}.paraview.png")
     if options.output.suffix.lower() != ".png":
-        parser.error(f"-o {options.output}: the picture is a PNG file: a name that ends in .png")
+        parser.error(f"-o {options.output}: not a PNG file: give a name that ends in .png")
     return options
 
 
@@ -67,11 +67,11 @@ def main():
         stem += f".case{case}" if case is not None else ""
         if not (place / f"{stem}.vtu").exists():
             return run.returncode
-        from drawing import by_paraview  # here: arguments are read by any Python
+        from drawing import by_paraview  # imported here: any Python can read the arguments
 
         by_paraview.draw(place, stem, options.scale, options.near, place / "picture.png")
         if not (place / "picture.png").exists():
-            print("tools/paraview: ParaView has drawn nothing (above)", file=sys.stderr)
+            print("tools/paraview: ParaView has drawn nothing (see above)", file=sys.stderr)
             return 3
         try:
             options.output.parent.mkdir(parents=True, exist_ok=True)

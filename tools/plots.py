@@ -1,17 +1,17 @@
-"""Pictures of runs.
+"""Draw runs.
 
     tools/plot DECK [-o NAME.png] [--only contact|shape|yielded|history] [--known FORMULA]... [--case N]
 
-One figure of any deck, with the panels that it has: the deformed shape, enlarged so that it is seen, with equivalent stress, and the
-surroundings of small contacts; what has yielded; the pressure along each contact line; the iteration. NAME is DECK's, here, if not given.
-A formula in the abscissa `s` of a panel of pressures is drawn into those where it has real values, such as
-"3585.36*sqrt(1-(s/6.21463)**2)". Of several load cases one is drawn: --case, else the one with the largest pressure. The exit status is that of epcont: a deck that is rejected has no picture.
+One figure of any deck, with all its panels: the deformed shape, enlarged to be visible, with equivalent stress, and
+details of small contacts; the yielded zone; the pressure along each contact line; the iteration. The default NAME is DECK's, in the current folder.
+A formula in the abscissa `s` of a pressure panel is drawn into the panels in which it has real values, for example
+"3585.36*sqrt(1-(s/6.21463)**2)". With several load cases one is drawn: --case, or the one with the largest pressure. The exit status is that of epcont: a rejected deck has no picture.
 
     tools/plot --all                                   pictures/DECK.png beside every deck of input
     tools/plot contact ELASTIC PLASTIC -o NAME         the paper's Fig. 6: pressure along the contact, stresses down the axis
     tools/plot section ELASTIC PLASTIC -o NAME         the paper's Fig. 7: equivalent stress and yielded zone in the section
 
-The last two are for a quarter of two equal cylinders, solved elastic and with yielding on one mesh; they write NAME.png and NAME.svg.
+The last two need a quarter of two equal cylinders, solved elastic and plastic on one mesh; they write NAME.png and NAME.svg.
 The same deck gives the same bytes on every run.
 """
 import argparse
@@ -28,7 +28,7 @@ def paper_figure(arguments):
     parser.add_argument("picture", choices=["contact", "section"])
     parser.add_argument("elastic", type=pathlib.Path)
     parser.add_argument("plastic", type=pathlib.Path)
-    parser.add_argument("-o", "--output", type=pathlib.Path, required=True, help="name without .png and .svg")
+    parser.add_argument("-o", "--output", type=pathlib.Path, required=True, help="name of the picture, without .png and .svg")
     options = parser.parse_args(arguments)
     runs = Run(options.elastic), Run(options.plastic)
     for run in runs:
@@ -42,20 +42,20 @@ def one_figure(arguments):
     parser.add_argument("deck", type=pathlib.Path, nargs="?")
     parser.add_argument("-o", "--output", type=pathlib.Path, help="name of the picture, with .png")
     parser.add_argument("--only", choices=figure.KINDS, help="panels of this kind only")
-    parser.add_argument("--known", metavar="FORMULA", action="append", default=[], help="drawn beside the pressures")
-    parser.add_argument("--case", metavar="N", type=int, help="the SUBCASE that is drawn; else the one with the largest pressure")
-    parser.add_argument("--all", action="store_true", help="the pictures kept beside the decks of input")
+    parser.add_argument("--known", metavar="FORMULA", action="append", default=[], help="formula to draw with the pressures")
+    parser.add_argument("--case", metavar="N", type=int, help="SUBCASE to draw; default: the one with the largest pressure")
+    parser.add_argument("--all", action="store_true", help="draw the pictures kept beside the decks of input")
     options = parser.parse_args(arguments)
     if options.all:
         if options.deck or options.output or options.only or options.known or options.case is not None:
-            parser.error("--all takes nothing beside it")
+            parser.error("--all with other arguments: use it alone")
         kept.draw_all()
         return 0
     if not options.deck:
-        parser.error("a deck is wanted, or --all")
+        parser.error("no deck: give one, or --all")
     output = options.output or pathlib.Path(f"{options.deck.stem}.png")
     if output.suffix.lower() != ".png":
-        parser.error(f"-o {output}: the picture is a PNG file: a name that ends in .png")
+        parser.error(f"-o {output}: not a PNG file: give a name that ends in .png")
     run = Run(options.deck, options.case)
     style.save_small(figure.draw(run, options.only, options.known), output)
     if run.message:

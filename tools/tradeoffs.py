@@ -1,13 +1,13 @@
-"""Time, memory and accuracy of each choice: mesh x element x method x tolerance x rule, on scenes with known answers.
+"""Measure time, memory and accuracy of each choice: mesh x element x method x tolerance x rule, on models with known answers.
 
     tools/tradeoff                  tools/tradeoff.md and tools/tradeoff.png
     tools/tradeoff --quick          coarse meshes and few choices: the same tables in a minute
     tools/tradeoff -o build/mine    build/mine.md, build/mine.png
 
-Time: processor, user and system, of a whole process on one thread, reading and writing included; the least of three runs (one, where
-it takes a second). Memory: its peak. True error: against the closed form, or what meshes many times as fine converge
-to (tests/accuracy/cases.py); the worse of the largest pressures and of the approaches. Errors are the same on every run; times
-are not, and runs whose times are within a few per cent of each other may change places.
+Time: processor time, user and system, of a whole process on one thread, including reading and writing; the shortest of three runs (one, if
+it takes a second). Memory: its peak. True error: from the closed form, or from the limit of much finer meshes
+(tests/accuracy/cases.py); the larger one of the largest pressures and of the approaches. Errors are the same on every run; times
+are not, and runs whose times differ by a few per cent may change places.
 """
 import collections
 import itertools
@@ -30,13 +30,13 @@ from wording import parser_of, run  # noqa: E402
 
 METHODS, TOLERANCES = ("NEWTON", "SECANT", "MODSEC", "INISTR"), ("1.E-2", "1.E-4", "1.E-8")
 RULES = "CONRY", "JOINED"
-#: What everything is compared with. Scenes leave out what they have no use for.
+#: The base of all comparisons. Models omit options that they do not use.
 BASE = {"METHOD": "NEWTON", "TOL": "1.E-8", "RULE": "CONRY"}
-#: The way of the program of about 1980, whole.
+#: The complete method of the program of about 1980.
 ORIGINAL = {"ORIGINAL": "YES"}
-#: A scene: its truth, what makes its deck, its meshes (element, parameter; the finest of each element last), whether it yields, touches.
+#: A model: its known answer, its deck, its meshes (element, parameter; the finest of each element last), whether it yields, and has contact.
 Scene = collections.namedtuple("Scene", "name truth make meshes yields touches")
-#: A run that ended well: errors and estimates are parts of the figure, the worst of their kind; None: no such figure, no estimate.
+#: A successful run: errors and estimates are relative, the largest of their type; None if there is no such value or estimate.
 Run = collections.namedtuple("Run", "scene element size choice cpu memory values error_p error_q estimate_p estimate_q")
 
 
@@ -58,7 +58,7 @@ def scenes():
 
 
 def choices(scene):
-    """All that a scene has a use for, the base first; of methods other than NEWTON those by CONRY; and ORIGINAL."""
+    """All choices that apply to a model, the base first; methods other than NEWTON only with CONRY; and ORIGINAL."""
     of = {"METHOD": METHODS if scene.yields else (), "TOL": TOLERANCES[::-1] if scene.yields else (), "RULE": RULES if scene.touches else ()}
     names = [name for name in of if of[name]]
     every = [dict(zip(names, values)) for values in itertools.product(*(of[name] for name in names))]
@@ -66,12 +66,12 @@ def choices(scene):
 
 
 def apart(choice):
-    """The names in which a choice differs from the base."""
+    """Options in which a choice differs from the base."""
     return [name for name in choice if choice[name] != BASE.get(name)]
 
 
 def solve(scene, element, size, deck, choice, place):
-    """A Run, or the exit status of one that gave no answer."""
+    """A Run, or the exit status if there is no answer."""
     path = place / "scene.dat"
     cards = [f"PARAM   {name:8}{value}" for name, value in choice.items()]
     path.write_text(deck.replace("ENDDATA", "\n".join([*cards, "ENDDATA"])), encoding="ascii")
@@ -101,7 +101,7 @@ def worst(run):
 
 
 def runs_of(scene, quick):
-    """All runs of a scene, and (element, size, choice, exit status) of those that gave no answer."""
+    """All runs of a model, and (element, size, choice, exit status) of those without an answer."""
     runs, failed = [], []
     sizes = [mesh for _, of in itertools.groupby(scene.meshes, lambda mesh: mesh[0]) for mesh in list(of)[:2 if quick else None]]
     with tempfile.TemporaryDirectory() as place:
@@ -119,8 +119,8 @@ def runs_of(scene, quick):
 
 
 def front(runs, cost):
-    """Runs that err by a tenth less, at least, than all that cost less; cheapest first. Of choices on one mesh that are within a tenth
-    of each other in both, the one nearest to the base: noise does not choose."""
+    """Runs whose error is at least a tenth below that of all cheaper ones; cheapest first. If choices on one mesh are within a tenth
+    of each other in both, the one nearest to the base is taken, so that noise does not choose."""
     chosen = []
     for run in sorted(runs, key=lambda run: (getattr(run, cost), worst(run))):
         if not chosen or worst(run) < 0.9 * worst(chosen[-1]):
@@ -149,7 +149,7 @@ def fronts(runs):
 
 
 def elements(runs, scene):
-    """Time that each element needs, on the line of the logarithms between two meshes, for an error; base choice."""
+    """Time that each element needs for an error with the base choice, interpolated between two meshes in logarithmic scales."""
     rows = []
     for element in ELEMENTS:
         of = [run for run in runs if run.element == element and not apart(run.choice)]
@@ -163,7 +163,7 @@ def elements(runs, scene):
 
 
 def one_at_a_time(runs, failed, scene):
-    """What one choice changes, from the base, on the meshes of a scene; of methods at every tolerance."""
+    """Effect of each change from the base, on the meshes of a model; methods at every tolerance."""
     key = lambda run: (run.element, run.size)  # noqa: E731
     base = {key(run): run for run in runs if not apart(run.choice)}
     rows = []
@@ -203,7 +203,7 @@ def prices(rows):
 
 
 def draw(found, path):
-    from drawing import style  # here: what drives the runs stays small
+    from drawing import style  # inside the function, so that the driving process stays small
     from drawing.style import plt
 
     figure, panels = plt.subplots(2, 3, figsize=(12.5, 7.4), layout="constrained")
@@ -279,8 +279,8 @@ def page(found, quick, spent, picture):
 
 def main():
     parser = parser_of(__doc__, "tools/tradeoff")
-    parser.add_argument("--quick", action="store_true", help="two meshes of each element, one choice at a time: a minute")
-    parser.add_argument("-o", "--output", type=pathlib.Path, help="name of page and picture, without .md and .png; tools/tradeoff if not given")
+    parser.add_argument("--quick", action="store_true", help="two meshes of each element, one choice at a time: one minute")
+    parser.add_argument("-o", "--output", type=pathlib.Path, help="name of page and picture, without .md and .png; default tools/tradeoff")
     options = parser.parse_args()
     name = options.output or TOP / ("build/tradeoff_quick" if options.quick else "tools/tradeoff")
     check_folder(parser, name)

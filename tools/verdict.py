@@ -1,8 +1,8 @@
-"""The results of all decks in two folders, compared figure by figure: one verdict.
+"""Compare the results of all decks in two folders, value by value, and give one verdict.
 
-A result is what a user takes from a run: the status, and the displacements, forces, stresses, pressures, widths and error estimates in
-the tables, or in the listing if there is no summary table. Run times, memory, the plan, messages, the iteration, and the figures of the
-certificate and of rounding are no results: the status says whether they hold.
+A result is the status and the displacements, forces, stresses, pressures, widths and error estimates in
+the tables, or in the listing if there is no summary table. Run times, memory, the plan, messages, the iteration, and the values of the
+certificate and of rounding are not results: the status says whether they hold.
 """
 import pathlib
 import re
@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import tables
 
-#: Of each table the key of a row, and its results by their kind. Figures of one kind have one scale, the largest of them.
+#: For each table the key of a row, and its results by quantity. All values of a quantity have one scale, the largest of them.
 TABLES = {
     "contact": ("pair", {"force": "force", "pressure": "pressure", "gap": "length", "initial_gap": "length"}),
     "zones": ("zone", {"force": "force", "max_pressure": "pressure", "half_width": "width", "half_width_last_pair": "width"}),
@@ -19,7 +19,7 @@ TABLES = {
     "elements": ("element", {"sx": "stress", "sy": "stress", "sz": "stress", "txy": "stress", "equivalent_stress": "stress",
                              "max_equivalent_stress": "stress", "equivalent_strain": "strain", "secant_modulus": "modulus"}),
 }
-#: Keys of a summary or columns of a batch that are results, by their kind; None: words. The first that fits counts.
+#: Keys of a summary or columns of a batch that are results, by quantity (None: text). The first match counts.
 SUMMARY = [(re.compile(pattern), kind) for pattern, kind in (
     (r"status|max_pressure_is|p_max_is", None),
     (r"(mesh_error_)?approach_.*_6|angle_.*", "angle"), (r"(mesh_error_)?approach.*|max_displacement", "length"),
@@ -27,7 +27,7 @@ SUMMARY = [(re.compile(pattern), kind) for pattern, kind in (
     (r"p_max|max_pressure|mesh_error_max_pressure|mesh_error_pressure_.*", "pressure"), (r"max_equivalent_stress", "stress"),
     (r"half_width|mesh_error_half_width.*", "width"), (r"(p_max|half_width)_error|mesh_error_energy_norm", "part"),
     (r"(lowest|highest)_temperature", "temperature"), (r"load_factor", "part"))]
-#: What listings call them, also those of version 0.5.0.
+#: Their names in listings, including those of version 0.5.0.
 LISTED = {"largest pressure": "p_max", "total contact force": "total_contact_force", "largest equivalent stress": "max_equivalent_stress",
           "largest displacement": "max_displacement", "approach: ": "approach of ", "rotation of GRID ": "angle_", "turn of GRID ": "angle_",
           "force of spring ": "spring_", "pull of spring ": "spring_", "moment of the support of GRID ": "moment_"}
@@ -36,16 +36,16 @@ TITLES = {"CONTACT": "contact", "CONTACT ZONES": "zones", "ZONES": "zones", "CON
 HEADS = {"to last closed": "half_width_last_pair", "to last pair": "half_width_last_pair", "p_max": "max_pressure", "max pressure": "max_pressure", "first pair": "-", "last pair": "-", "half-width": "half_width",
          "first GRID": "-", "at GRID": "-", "GRID": "node", "force x": "force_x", "force y": "force_y", "equivalent": "equivalent_stress",
          "largest": "max_equivalent_stress", "strain": "equivalent_strain", "secant": "secant_modulus"}
-#: Two units in the last of six digits, as listings have them; more than rounding in single precision. Rotations [radian] are compared with no less.
+#: Two units in the last of six digits, as in listings; more than rounding in single precision. The scale of rotations [radian] is not smaller.
 TOLERANCE, LEAST_ANGLE = 2e-5, 1e-6
 
 
 @dataclass
 class Figure:
-    name: str        # for people
-    kind: str        # None: a word
+    name: str        # name for messages
+    kind: str        # quantity; None for text
     text: str
-    case: str        # number of the load case, empty if there are not several
+    case: str        # number of the load case, empty if there is only one
 
     def value(self):
         try:
@@ -59,7 +59,7 @@ def kind_of(key):
 
 
 def decks_of(top):
-    """Of each deck its files, by what they are; and the rows of batch.csv that name it."""
+    """Files of each deck, by type, and the rows of batch.csv that name it."""
     found = {}
     for path in sorted(top.rglob("*.lst")) + sorted(top.rglob("*.csv")):
         name, _, table = path.name[:-4].rpartition(".") if path.suffix == ".csv" else (path.name[:-4], "", "lst")
@@ -74,7 +74,7 @@ def decks_of(top):
 
 
 def figures(files, sources):
-    """The results of a deck by (source, load case, row, column)."""
+    """Results of a deck by (source, load case, row, column)."""
     found = {}
 
     def put(key, name, kind, text):
@@ -105,7 +105,7 @@ def figures(files, sources):
 
 
 def listed_figures(path):
-    """(load case, table, row, column, kind, text) of the results in a listing."""
+    """(load case, table, row, column, quantity, text) of the results in a listing."""
     case, table, heads = "", None, None
     for line in path.read_text(encoding="latin-1").splitlines():
         title = line.split("  ")[0].split(" AND ")[0]
@@ -137,8 +137,8 @@ def replaced(text, words):
 
 
 def differences(old, new, relative):
-    """(size, name, words) of all that differs; the size of what is not a number is infinite. Of answers that are not valid the status alone is
-    a result."""
+    """(size, name, words) of all differences; the size is infinite if a value is not a number. If an answer is not valid, only its status
+    is compared."""
     unsolved = {figure.case for figure in old.values() if figure.name.startswith("status") and figure.text.strip() != "valid"}
     old, new = ({key: figure for key, figure in figures.items() if figure.case not in unsolved or figure.name.startswith("status")} for figures in (old, new))
     scale = {}
@@ -161,7 +161,7 @@ def differences(old, new, relative):
                 yield float("inf"), figure.name, f"{figure.text or 'nothing'} -> {other.text or 'nothing'}"
             continue
         size = max(abs(a), scale[figure.case, figure.kind])
-        if figure.kind == "moment":   # of a support that bears none: rounding
+        if figure.kind == "moment":   # reaction of an unloaded support: rounding
             size = max(size, scale.get((figure.case, "force"), 0.0) * scale.get((figure.case, "length"), 0.0))
         size = max(size, LEAST_ANGLE if figure.kind == "angle" else 0.0)
         off = abs(b - a) / size if size else float("inf") if b else 0.0
@@ -170,7 +170,7 @@ def differences(old, new, relative):
 
 
 def worst_of(deck, old, new, relative):
-    """The largest difference of a deck, of its figures before its estimates, or None."""
+    """Largest difference of a deck, values before estimates; None if there is none."""
     if not (old and new):
         return (2, float("inf")), f"deck {deck}, only in the {'first' if old else 'second'} folder"
     exact = "summary" in old and "summary" in new
@@ -187,7 +187,7 @@ def worst_of(deck, old, new, relative):
 
 
 def compare_folders(first, second, relative=None, shown=20):
-    """Print what differs and the verdict; True if all decks are the same."""
+    """Print the differences and the verdict; return True if all decks are the same."""
     old, new = decks_of(first), decks_of(second)
     names = sorted(old.keys() | new.keys())
     found = {name: worst_of(name, old.get(name), new.get(name), relative) for name in names}

@@ -1,16 +1,16 @@
-"""Words of messages, and of what a tool says to --help; how a tool ends."""
+"""Words of messages and of --help, and the exit of a tool."""
 import argparse
 import signal
 import sys
 
 
 def parser_of(words, prog=None):
-    """Of the options of a tool, of which these words stand as they are."""
+    """Parser of a tool's options; the words are printed unchanged."""
     return argparse.ArgumentParser(prog=prog, description=words, formatter_class=argparse.RawDescriptionHelpFormatter)
 
 
 def run(main):
-    """Ends with the exit status of a tool; if nobody reads its output any more, as other programs do, by SIGPIPE."""
+    """End with the exit status of a tool; by SIGPIPE if the reader of its output has ended, as other programs do."""
     signal.signal(signal.SIGPIPE, signal.SIG_DFL)
     sys.exit(main())
 
@@ -21,5 +21,5 @@ def counted(number, word):
 
 
 def shown(text):
-    """On one line, whatever is in it: names of files may have control characters."""
+    """Put a text on one line: file names may contain control characters."""
     return "".join(c if c.isprintable() or "\udc80" <= c <= "\udcff" else c.encode("unicode_escape").decode() for c in text)

@@ -206,9 +206,9 @@ class Lists(Case):
 
     def test_bad_lists(self):
         for name, text, words in (("empty", "# nothing\n", "no deck in the list"), ("binary", "a.dat\nb\0.dat\n", "binary:2: not a text"),
-                                  ("a.csv", "name\nx\n", "a.csv:1: a list that is a table needs a column `deck`"),
+                                  ("a.csv", "name\nx\n", "a.csv:1: no column `deck`: add it"),
                                   ("b.csv", "deck,x\na.dat\n", "b.csv:2: 2 values"), ("c.csv", "deck,status\na.dat,1\n", "column status"),
-                                  ("d.csv", "deck,x\n,1\n", "d.csv:2: the deck has no name")):
+                                  ("d.csv", "deck,x\n,1\n", "d.csv:2: the deck has no name: give one")):
             with self.subTest(name):
                 (self.place / name).write_text(text)
                 self.assertIn(words, self.run_it(3, "--list", name, "-o", "out").stderr)
@@ -223,23 +223,23 @@ class Lists(Case):
                           ["a.dat", "-o", "out", "--resum"], ["a.dat", "-o", "out", "--partition=x"], ["a.dat", "-o", "out", "--slurm", "-p"]):
             with self.subTest(arguments):
                 self.assertIn("tools/batch: ", self.run_it(3, *arguments).stderr)
-        for words, right in ((["--slurm", "--partition", "short", "a.dat"], "--partition short: options of sbatch are written --name=value"),
-                             (["--slurm", "-p", "short", "a.dat"], "-p short: options of sbatch are written --name=value"),
+        for words, right in ((["--slurm", "--partition", "short", "a.dat"], "--partition short: write options of sbatch as --name=value"),
+                             (["--slurm", "-p", "short", "a.dat"], "-p short: write options of sbatch as --name=value"),
                              (["--collect", "out", "-j", "2"], "takes nothing beside it but --no-wait; here: -j 2"),
                              (["--collect=out", "a.dat", "--resume"], "takes nothing beside it but --no-wait; here: a.dat --resume"),
                              (["--collect", "out", "--partition=short"], "takes nothing beside it but --no-wait; here: --partition=short")):
             with self.subTest(words):
                 self.assertIn(right, self.run_it(3, *words, "-o", "out").stderr if "--collect" not in words[0] else self.run_it(3, *words).stderr)
-        self.assertIn("no such program: tools/build makes it", self.run_it(3, "a.dat", "-o", "out", "--program", "nowhere").stderr)
-        self.assertIn("a working epcont would be right", self.run_it(3, "a.dat", "-o", "out", "--program", "/bin/false").stderr)
-        self.assertIn("a working epcont would be right", self.run_it(3, "a.dat", "-o", "out", "--program", "/bin/true").stderr)
+        self.assertIn("no such program: run tools/build", self.run_it(3, "a.dat", "-o", "out", "--program", "nowhere").stderr)
+        self.assertIn("give a working epcont", self.run_it(3, "a.dat", "-o", "out", "--program", "/bin/false").stderr)
+        self.assertIn("give a working epcont", self.run_it(3, "a.dat", "-o", "out", "--program", "/bin/true").stderr)
         self.assertIn("cannot be written", self.run_it(3, "a.dat", "-o", "a.dat").stderr)
 
     def test_a_plan_that_is_none(self):
         (self.place / "out" / ".batch").mkdir(parents=True)
         for text in ("{}", "[]", "{\"decks\": [3]}", '{"decks": [["a.dat", "a", {"x": "1"}, 9]]}', "\0"):
             (self.place / "out" / ".batch" / "plan.json").write_text(text)
-            self.assertIn("begin the batch anew", self.run_it(3, "--collect", "out").stderr)
+            self.assertIn("start the batch again", self.run_it(3, "--collect", "out").stderr)
 
     def test_bytes_of_another_encoding(self):
         """They are handed on as they are."""

@@ -93,46 +93,46 @@ class Fields(Sweep):
 class Refusals(Sweep):
     def test_what_does_not_fit(self):
         line = SMALL_FIELD.splitlines().index("MAT1    1       %E%             %nu%") + 1
-        for value, words in (("1.23456e-5", "8 columns hold 1.2346-5"), ("-1.23456789e-12", "8 columns hold -1.23-12"), ("x", "a real such as"),
-                             ("1e400", "beyond what a real holds"), ("1.5e400", "beyond what a real holds"), ("\uff12.5", "a real such as"), ("\u0663.0", "a real such as"),
-                             ("nan", "a real such as"), ("1 2", "a real such as")):
+        for value, words in (("1.23456e-5", "8 columns hold only 1.2346-5"), ("-1.23456789e-12", "8 columns hold only -1.23-12"), ("x", "not a real: write it as"),
+                             ("1e400", "out of the range of reals: give a value between"), ("1.5e400", "out of the range of reals"), ("\uff12.5", "not a real: write it as"), ("\u0663.0", "not a real: write it as"),
+                             ("nan", "not a real: write it as"), ("1 2", "not a real: write it as")):
             with self.subTest(value):
                 self.refused(SMALL_FIELD, f"E,nu\n20400,.3\n{value},.3\n", f"t.csv:3: column E, {value!r}: s.in:{line}:17-24: MAT1 field 3 (E): ",
-                             words, "\ntools/sweep: 1 fault, nothing is written\n")
+                             words, "\ntools/sweep: 1 error, nothing is written\n")
 
     def test_continued_large_fields(self):
         """A small-field line behind half a row of large fields begins a new row."""
         deck = TEXT.replace("MAT1    1       20400.          .29", "MAT1*   1               20400.                          .29\n+       %a%")
-        self.refused(deck, "a\nx\n", ":9-16: MAT1 field 12 (ST): a real such as")
+        self.refused(deck, "a\nx\n", ":9-16: MAT1 field 12 (ST): not a real: write it as")
         deck = deck.replace("+       %a%", "*       %a%")
-        self.refused(deck, "a\nx\n", ":9-24: MAT1 field 6 (RHO): a real such as")
+        self.refused(deck, "a\nx\n", ":9-24: MAT1 field 6 (RHO): not a real: write it as")
 
     def test_kinds(self):
         deck = SMALL_FIELD.replace("FORCE   1       41      0 ", "FORCE   1       %node%  0 ").replace("PARAM   GAPGEOM YES", "PARAM   GAPGEOM %geom%")
         self.refused(deck, "E,nu,node,geom\n1.,.3,41.5,NO\n1.,.3,41,long_words\n1.,.3,123456789,NO\n",
-                     "(G): a whole number would be right", "a word of at most 8 characters", "9 characters in a field of 8", "3 faults, nothing")
+                     "(G): not a whole number: give one", "not a word: give at most 8 characters", "9 characters in a field of 8", "3 errors, nothing")
 
     def test_digits_of_other_scripts(self):
         deck = SMALL_FIELD.replace("FORCE   1       41      0 ", "FORCE   1       %node%  0 ")
-        self.refused(deck, "E,nu,node\n1.,.3,\uff14\uff11\n", "t.csv:2: column node, '\uff14\uff11': s.in:", "(G): a whole number would be right")
+        self.refused(deck, "E,nu,node\n1.,.3,\uff14\uff11\n", "t.csv:2: column node, '\uff14\uff11': s.in:", "(G): not a whole number: give one")
         for card, value in (("XYZ     ", "\uff15"), ("PARAM   NOSUCH  ", "\uff15")):   # of a kind that is not known
-            self.refused(deck.replace("BEGIN BULK", f"BEGIN BULK\n{card}%x%"), f"E,nu,node,x\n1.,.3,41,{value}\n", f"column x, '{value}'", "would be right")
+            self.refused(deck.replace("BEGIN BULK", f"BEGIN BULK\n{card}%x%"), f"E,nu,node,x\n1.,.3,41,{value}\n", f"column x, '{value}'", ": not a ")
 
     def test_unlike_rows_of_one_deck(self):
         """A field of 8 columns rounds both to the same: whatever titles say, they would be one deck."""
         line = SMALL_FIELD.splitlines().index("MAT1    1       %E%             %nu%") + 1
-        more = "; a large field (a * behind the card's name) or a free one (commas) holds more"
+        more = ": use a large field (a * after the card's name) or free format (commas)"
         for deck in (SMALL_FIELD, SMALL_FIELD.replace("CEND", "CEND\n$ %E%")):
             k = line + (deck != SMALL_FIELD)
             run = self.sweep(3, deck, "E,nu\n66666.671,.3\n1.,.3\n66666.672,.3\n66666.67,0.30\n66666.671,.31\n")
-            self.assertEqual(f"t.csv:4: the same deck as of line 2: column E, '66666.671' and '66666.672': s.in:{k}:17-24: MAT1 field 3 (E): "
+            self.assertEqual(f"t.csv:4: the same deck as line 2: column E, '66666.671' and '66666.672': s.in:{k}:17-24: MAT1 field 3 (E): "
                              f"both are 66666.67: 8 columns hold 7 digits{more}\n"
-                             f"t.csv:5: the same deck as of line 2: column E, '66666.671' and '66666.67': s.in:{k}:17-24: MAT1 field 3 (E): "
-                             f"both are 66666.67: 8 columns hold 7 digits{more}\ntools/sweep: 2 faults, nothing is written\n", run.stderr)
+                             f"t.csv:5: the same deck as line 2: column E, '66666.671' and '66666.67': s.in:{k}:17-24: MAT1 field 3 (E): "
+                             f"both are 66666.67: 8 columns hold 7 digits{more}\ntools/sweep: 2 errors, nothing is written\n", run.stderr)
             self.assertFalse((self.place / "set").exists())
         line = FREE_FIELD.splitlines().index("MAT1,1,%E%,,%nu%") + 1
         self.refused(FREE_FIELD, "E,nu\n0.12345678901234567891,.3\n0.12345678901234567892,.3\n",
-                     "t.csv:3: the same deck as of line 2: column E, '0.12345678901234567891' and '0.12345678901234567892': "
+                     "t.csv:3: the same deck as line 2: column E, '0.12345678901234567891' and '0.12345678901234567892': "
                      f"s.in:{line}:8-10: MAT1 field 3 (E): both are 0.12345678901234567892: a real holds 16 digits\n")
 
     def test_like_rows_and_other_decks(self):
@@ -142,16 +142,16 @@ class Refusals(Sweep):
         self.assertNotEqual((self.place / "free" / "s_1.dat").read_text(), (self.place / "free" / "s_2.dat").read_text())
 
     def test_places(self):
-        self.refused(SMALL_FIELD.replace("%E%     ", "%young% "), "E,nu\n1.,.3\n", "%young% has no column in t.csv, which has E, nu")
-        self.refused(SMALL_FIELD.replace("%E%     ", "1%E%    "), "E,nu\n1.,.3\n", "%E% does not fill a field of its own")
-        self.refused(SMALL_FIELD.replace("%E%             ", "%modulus%       "), "modulus,nu\n1.,.3\n", "does not fill a field of its own: a shorter name")
-        self.refused(TEXT, "E\n1.\n", "no place such as %E% in the deck")
+        self.refused(SMALL_FIELD.replace("%E%     ", "%young% "), "E,nu\n1.,.3\n", "%young% has no column in t.csv: use one of E, nu")
+        self.refused(SMALL_FIELD.replace("%E%     ", "1%E%    "), "E,nu\n1.,.3\n", "%E% does not fill a field")
+        self.refused(SMALL_FIELD.replace("%E%             ", "%modulus%       "), "modulus,nu\n1.,.3\n", "does not fill a field: use a shorter name")
+        self.refused(TEXT, "E\n1.\n", "no placeholder in the deck: add one, such as %E%")
 
     def test_tables(self):
-        for table, words in (("", "a first line with the name of each column"), ("E,E\n1,2\n", "each once"), ("E,nu\n", "no row of values"),
-                             ("E,nu\n1.\n", "t.csv:2: 2 values"), ("E,nu\n1.,.3,4\n", "t.csv:2: 2 values"), ("E\n1,2\n", "t.csv:2: 1 value would be right\n"), ("deck,E,nu\n../x,1.,.3\n", "letters, digits"),
-                             ("deck,E,nu\na,1.,.3\nA.dat,1.,.3\n", "deck A.dat is there twice"), ("deck,E,nu,status\na,1.,.3,4\n", "column status is one of"),
-                             ("deck,E,nu\na.csv,1.,.3\n", "not .lst or .csv")):
+        for table, words in (("", "t.csv:1: not a header: give each column a name"), ("E,E\n1,2\n", "each name only once"), ("E,nu\n", "no values: add a row"),
+                             ("E,nu\n1.\n", "t.csv:2: wrong number of values: give 2, one per column"), ("E,nu\n1.,.3,4\n", "t.csv:2: wrong number of values: give 2, one per column"), ("E\n1,2\n", "t.csv:2: wrong number of values: give 1, one per column\n"), ("deck,E,nu\n../x,1.,.3\n", "use letters, digits"),
+                             ("deck,E,nu\na,1.,.3\nA.dat,1.,.3\n", "deck A.dat occurs twice"), ("deck,E,nu,status\na,1.,.3,4\n", "column status is also in batch.csv"),
+                             ("deck,E,nu\na.csv,1.,.3\n", "without .lst or .csv")):
             with self.subTest(table):
                 self.refused(SMALL_FIELD, table, words)
 
@@ -162,7 +162,7 @@ class Refusals(Sweep):
         self.assertIn("nowhere.csv: cannot be read: No such file", self.run_it(3, "s.in", "nowhere.csv", "-o", "set", tool="sweep").stderr)
         self.assertIn("nowhere.in: cannot be read: No such file", self.run_it(3, "nowhere.in", "t.csv", "-o", "set", tool="sweep").stderr)
         for program in ("/bin/true", "/bin/false"):
-            self.assertIn("a working epcont would be right", self.run_it(3, "s.in", "t.csv", "-o", "set", "--program", program, tool="sweep").stderr)
+            self.assertIn("give a working epcont", self.run_it(3, "s.in", "t.csv", "-o", "set", "--program", program, tool="sweep").stderr)
 
     def test_a_missing_include(self):
         self.refused(SMALL_FIELD.replace("ENDDATA", "INCLUDE 'nowhere.inc'\nENDDATA"), "E,nu\n1.,.3\n", "INCLUDE: nowhere.inc: no such file")
@@ -174,14 +174,14 @@ class Sets(Sweep):
         self.sweep(0, SMALL_FIELD, "deck,E,nu\na,3.,.3\n")
         self.assertEqual(["MAT1    1       3.              .3"], self.cards("a.dat", "MAT1"))
         (self.place / "set" / "mine.dat").write_text("mine")
-        self.assertIn("mine.dat is there, and of no earlier sweep", self.sweep(3, SMALL_FIELD, "deck,E,nu\nmine,3.,.3\n").stderr)
+        self.assertIn("mine.dat exists, and not from an earlier sweep", self.sweep(3, SMALL_FIELD, "deck,E,nu\nmine,3.,.3\n").stderr)
         self.assertEqual("mine", (self.place / "set" / "mine.dat").read_text())
 
     def test_a_sweep_csv_of_somebody_else(self):
         (self.place / "set").mkdir()
         for text in (b"\xff\xfe\0", b"", b"name\nx\n"):
             (self.place / "set" / "sweep.csv").write_bytes(text)
-            self.assertIn("sweep.csv is there, and of no earlier sweep", self.sweep(3, SMALL_FIELD, "E,nu\n1.,.3\n").stderr)
+            self.assertIn("sweep.csv exists, and not from an earlier sweep", self.sweep(3, SMALL_FIELD, "E,nu\n1.,.3\n").stderr)
             self.assertEqual(text, (self.place / "set" / "sweep.csv").read_bytes())
 
     def test_faults_leave_an_earlier_sweep_as_it_was(self):
@@ -205,7 +205,7 @@ class Sets(Sweep):
     def test_nothing_is_left_behind(self):
         (self.place / "set").mkdir()
         (self.place / "set" / "b.dat").mkdir()
-        self.assertIn("set/b.dat is there, and of no earlier sweep", self.sweep(3, SMALL_FIELD, "deck,E,nu\na,1.,.3\nb,2.,.3\n").stderr)
+        self.assertIn("set/b.dat exists, and not from an earlier sweep", self.sweep(3, SMALL_FIELD, "deck,E,nu\na,1.,.3\nb,2.,.3\n").stderr)
         self.assertEqual(["b.dat"], os.listdir(self.place / "set"))
         name = "a" * 300
         for table, directory, words in ((f"deck,E,nu\nb,1.,.3\n{name},1.,.3\n", "new/deep/set", f"new/deep/set/{name}.dat.part: cannot be written: File name too long"),

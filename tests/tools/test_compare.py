@@ -254,14 +254,14 @@ class Files(Case):
         self.assertEqual(self.run_tool(compare, self.place / "none.lst", self.write("a.lst", "a\n")), 2)
         (self.place / "empty").mkdir()
         self.assertEqual(self.run_tool(compare, self.place / "empty", self.place / "empty"), 2)
-        self.assertIn("no results of epcont or tools/batch in them", self.output)
+        self.assertIn("no results of epcont or tools/batch: give folders with results", self.output)
         for suffix in ("lst", "csv"):
             self.assertEqual(self.verdict("", "", suffix=suffix), 2)
-            self.assertIn(f"compare: {self.place}/old.{suffix}: nothing in it: a listing or a table would be right\n", self.output)
+            self.assertIn(f"compare: {self.place}/old.{suffix}: empty file: give a listing or a table\n", self.output)
             strange = self.place / f"strange.{suffix}"
             strange.write_bytes(b"a\n\xff\n")
             self.assertEqual(self.run_tool(compare, self.write(f"a.{suffix}", "a\n"), strange), 2)
-            self.assertIn(f"compare: {strange}:2: not a text in UTF-8", self.output)
+            self.assertIn(f"compare: {strange}:2: not UTF-8 text: give a listing or a table", self.output)
 
     def test_accept(self):
         new = self.write("new/a.lst", "epcont 1\na 2.0\n")

@@ -71,19 +71,19 @@ class Calls(Case):
         for scale in ("x", "nan", "0"):
             self.refused("paraviews.py", f"hertz44.dat --scale {scale}", 2, f"--scale: '{scale}': a number above zero")
         for name in ("x", "x.pdf"):
-            self.refused("paraviews.py", f"hertz44.dat -o {name}", 2, f"-o {name}: the picture is a PNG file")
+            self.refused("paraviews.py", f"hertz44.dat -o {name}", 2, f"-o {name}: not a PNG file: give a name that ends in .png")
 
     def test_decks(self):
-        for arguments, words in (("hertz x", "x: a whole number from 90 on"), ("hertz 0 -o h.dat", "0: a whole number from 90 on"),
-                                 ("hertz --spacing 0 -o h.dat", "0: a number above 0"), ("hertz --spacing nan -o h.dat", "nan: a number above 0"),
-                                 ("hertz --spacing 100 -o h.dat", "hertz: no mesh comes of these parameters"),
+        for arguments, words in (("hertz x", "x: give a whole number of at least 90"), ("hertz 0 -o h.dat", "0: give a whole number of at least 90"),
+                                 ("hertz --spacing 0 -o h.dat", "0: give a number above 0"), ("hertz --spacing nan -o h.dat", "nan: give a number above 0"),
+                                 ("hertz --spacing 100 -o h.dat", "hertz: these parameters give no mesh"),
                                  ("hertz 330 -o folder", "folder: cannot be written: Is a directory"),
-                                 ("tube -n 0 -o h.dat", "0: a whole number from 1 on"), ("tube --young 1e400 -o h.dat", "1e400: a number above 0"),
-                                 ("tube --inner 2 --outer 1 -o h.dat", "an inner radius below the outer one"),
+                                 ("tube -n 0 -o h.dat", "0: give a whole number of at least 1"), ("tube --young 1e400 -o h.dat", "1e400: give a number above 0"),
+                                 ("tube --inner 2 --outer 1 -o h.dat", "give an inner radius below the outer one"),
                                  ("tube -o hertz44.dat/h.dat", "hertz44.dat: cannot be written: File exists"),
-                                 ("block -n 0 -o h.dat", "0: a whole number from 1 on"), ("ball --part 3 -o h.dat", "ball: no mesh"),
-                                 ("gears --z1 0 -o h.dat", "0: a whole number from 1 on"), ("gears --load nan -o h.dat", "nan: a number would be right"),
-                                 ("pin_in_lug --half 120 -o h.dat", "half 120: an angle above 0 and below 84.8")):
+                                 ("block -n 0 -o h.dat", "0: give a whole number of at least 1"), ("ball --part 3 -o h.dat", "ball: these parameters give no mesh"),
+                                 ("gears --z1 0 -o h.dat", "0: give a whole number of at least 1"), ("gears --load nan -o h.dat", "nan: give a number"),
+                                 ("pin_in_lug --half 120 -o h.dat", "half 120: give an angle above 0 and below 84.8")):
             self.refused("decks", arguments, 2, words)
         self.assertFalse((self.place / "h.dat").exists())
 
@@ -103,9 +103,9 @@ class Verify(Case):
     def test_tables(self):
         self.refused("verify", "hertz44.dat folder", 2, "folder/hertz44.summary.csv: No such file or directory; epcont hertz44.dat -o folder --tables all")
         self.refused("verify", "hertz44.dat empty.dat", 2, "empty.dat/hertz44.summary.csv: Not a directory")
-        for table, text, words in (("nodes", BINARY, "the line is cut off"), ("nodes", b"", "no node 1: the table of another deck"),
+        for table, text, words in (("nodes", BINARY, "the line is incomplete"), ("nodes", b"", "no node 1: the table is incomplete or of another deck"),
                                    ("nodes", lambda whole: b"\n".join(whole.split(b"\n")[:20]), "no node 20: "),
-                                   ("nodes", lambda whole: whole[:1500], "the line is cut off"), ("nodes", lambda whole: whole.replace(b"ux", b"vx", 1), ":2: ux: no such column"),
+                                   ("nodes", lambda whole: whole[:1500], "the line is incomplete"), ("nodes", lambda whole: whole.replace(b"ux", b"vx", 1), ":2: ux: no such column"),
                                    ("elements", lambda whole: b"\n".join(whole.split(b"\n")[:9]), "no element 9: "),
                                    ("contact", lambda whole: b"\n".join(whole.split(b"\n")[:5]), "no pair 305: "),
                                    ("summary", lambda whole: whole.replace(b"max_pressure,", b"max_pressure,x", 1), "max_pressure: 'x")):

@@ -129,7 +129,7 @@ class Refusals(Case):
 
     def test_a_python_without_packages(self):
         for self.minor in (8, 14):
-            self.refused("tools/requirements.txt are made for Python 3.9 to 3.13", f"here: Python 3.{self.minor}.1")
+            self.refused("tools/requirements.txt are for Python 3.9 to 3.13", f"this python3 is Python 3.{self.minor}.1")
 
     def test_another_python_beside_it_serves(self):
         self.minor = 14
@@ -143,29 +143,29 @@ class Refusals(Case):
 
     def test_no_pypi(self):
         self.note("offline")
-        self.refused("pip: no route to host", "pip did not install tools/requirements.txt", "is PyPI within reach?")
+        self.refused("pip: no route to host", "pip did not install tools/requirements.txt", "check the access to PyPI")
         (self.place / "offline").unlink()
         self.run_it(0)
 
     def test_packages_that_do_not_load(self):
         self.note("headless")
         self.script(self.place / "bin" / "apt-get", "#!/bin/sh\n")
-        self.refused("the packages do not load: OSError: libGLU.so.1")
+        self.refused("the packages cannot be imported: OSError: libGLU.so.1")
 
     def test_a_place_that_cannot_be_written(self):
         (self.top / "build").write_text("")
         self.refused(f"{self.top}/build cannot be written")
 
     def test_usage(self):
-        self.assertIn("nonsense: tools, vtk or benchmark would be right", self.run_it(3, "nonsense").stderr)
-        self.assertIn("tools/make_venv [tools|vtk|benchmark]: makes", self.run_it(0, "--help").stdout)
+        self.assertIn("nonsense: no such set of packages: give tools, vtk or benchmark", self.run_it(3, "nonsense").stderr)
+        self.assertIn("tools/make_venv [tools|vtk|benchmark]: make", self.run_it(0, "--help").stdout)
 
 
 class Skipping(Case):
     def test_a_test_is_skipped_or_fails(self):
         self.note("offline")
         run = self.run_it(77, "tools", "any.py", tool="tests/in_venv")
-        self.assertEqual("skipped: pip did not install tools/requirements.txt (above; it has 1200 s): is PyPI within reach?",
+        self.assertEqual("skipped: pip did not install tools/requirements.txt (above; limit 1200 s): check the access to PyPI",
                          run.stdout.splitlines()[-1])
         self.run_it(77, "tools", "any.py", tool="tests/in_venv", EPCONT_NEED_VENV="0")
         self.run_it(1, "tools", "any.py", tool="tests/in_venv", EPCONT_NEED_VENV="1")

@@ -181,10 +181,10 @@ class Missing(Case):
 
     def test_without_apt(self):
         self.machine(lacking=["make"], apt=False)
-        self.refused("please install what Debian calls make", "tools/build")
+        self.refused("missing packages: install make (names of Debian packages)", "tools/build")
         self.machine(lapack=False, apt=True)
         (self.place / "bin" / "apt-get").unlink(missing_ok=True)
-        self.refused("please install what Debian calls libopenblas-openmp-dev", "tools/build")
+        self.refused("missing packages: install libopenblas-openmp-dev (names of Debian packages)", "tools/build")
 
     def test_root_installs_what_is_missing(self):
         self.machine(user=0, lacking=["gfortran", "make"])

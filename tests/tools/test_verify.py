@@ -176,17 +176,17 @@ class Wholesale(Case):
 
     def test_a_row_twice_or_too_many(self):
         for table, key, row in (("nodes", "node", 7), ("elements", "element", 7), ("contact", "pair", 2), ("zones", "zone", 1), ("history", "iteration", 2)):
-            self.wrong(table, lambda rows: [*rows, rows[row]], rf"hertz44\.{table}\.csv:\d+: {key} \d+ is there twice", status=2)
-        self.wrong("summary", lambda rows: [*rows, *(row for row in rows if row[0] == "max_pressure")], r"hertz44.summary.csv:\d+: max_pressure is there twice", status=2)
+            self.wrong(table, lambda rows: [*rows, rows[row]], rf"hertz44\.{table}\.csv:\d+: {key} \d+ occurs twice", status=2)
+        self.wrong("summary", lambda rows: [*rows, *(row for row in rows if row[0] == "max_pressure")], r"hertz44.summary.csv:\d+: max_pressure occurs twice", status=2)
         for table, key in (("nodes", "node"), ("elements", "element"), ("contact", "pair")):
-            self.wrong(table, lambda rows: [*rows, ["77777", *rows[1][1:]]], f"{key} 77777 is not in the deck: the table of another one", status=2)
+            self.wrong(table, lambda rows: [*rows, ["77777", *rows[1][1:]]], f"{key} 77777 is not in the deck: the table is of another deck", status=2)
         self.wrong("zones", lambda rows: [*rows, ["2", *rows[1][1:]]], r"(?m)^zones +1 +2  WRONG$")
         self.wrong("history", lambda rows: rows[:-1], r"(?m)^iterations +6 +7  WRONG$")
 
     def test_what_is_no_number(self):
         for word in ("nan", "inf", "1e999"):
-            self.wrong("nodes", lambda rows: [*rows[:9], [*rows[9][:3], word, *rows[9][4:]], *rows[10:]], f"hertz44.nodes.csv:10: ux: '{word}' is no finite number", status=2)
-        for key, status, words in (("total_contact_force", 2, "total_contact_force: '' is no number"), ("max_pressure", 1, r"(?m)^max_pressure .*WRONG$")):
+            self.wrong("nodes", lambda rows: [*rows[:9], [*rows[9][:3], word, *rows[9][4:]], *rows[10:]], f"hertz44.nodes.csv:10: ux: '{word}' is not a finite number", status=2)
+        for key, status, words in (("total_contact_force", 2, "total_contact_force: '' is not a number"), ("max_pressure", 1, r"(?m)^max_pressure .*WRONG$")):
             self.wrong("summary", lambda rows: [row if row[0] != key else [key, "", row[2]] for row in rows], words, status=status)
 
     def test_a_status_that_is_not_valid(self):

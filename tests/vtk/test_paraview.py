@@ -53,7 +53,7 @@ class Pictures(unittest.TestCase):
     def test_usage(self):
         for arguments, said in ((("--near", "2"), "argument --near: '2': three numbers and commas, a place and half the height above zero, such as 2.0,-0.5,1.5"),
                                 (("--near", "1,2,0"), "argument --near: '1,2,0': three"),
-                                (("-o", "a.jpg"), "-o a.jpg: the picture is a PNG file: a name that ends in .png")):
+                                (("-o", "a.jpg"), "-o a.jpg: not a PNG file: give a name that ends in .png")):
             with self.subTest(arguments):
                 run = self.run_it(DECK, *arguments)
                 self.assertEqual(2, run.returncode)

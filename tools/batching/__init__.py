@@ -1,1 +1,1 @@
-"""Many decks as one batch: lists, runs, journals, the table, Slurm."""
+"""Run many decks as one batch: lists, runs, journals, the table, Slurm."""

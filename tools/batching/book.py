@@ -1,7 +1,7 @@
-"""What a batch keeps in DIR/.batch, so that nothing is lost whenever it is stopped: its plan, and journals of what has ended.
+"""The state of a batch in DIR/.batch: its plan, and journals of finished decks, so that a stopped batch loses nothing.
 
-The plan is written whole or not at all. A journal is only added to, a line when a deck begins and one when it has ended; a
-line that was cut off is no line. Each process that runs decks has a journal of its own; the table is made from all of them.
+The plan is written completely or not at all. A journal only grows: one line when a deck begins and one when it ends. An incomplete last
+line is ignored. Each process that runs decks has its own journal; the table is made from all journals.
 """
 import collections
 import contextlib
@@ -15,7 +15,7 @@ import os
 from .decks import Deck, Refused, fingerprint
 from .outcome import ANSWERED, CASE_COLUMNS, COLUMNS, KILLED, NOT_RUN, SUMMARY, number
 
-ENDED = {"place", "row", "inputs", "at", "version", "listing"}   # what a line that tells of an end has
+ENDED = {"place", "row", "inputs", "at", "version", "listing"}   # keys of a journal line that records an end
 NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP)
 
 
@@ -33,7 +33,7 @@ class Book:
             raise Refused(f"{self.directory}: cannot be written: {error.strerror}") from None
 
     def load(self):
-        """The plan of an earlier call."""
+        """Read the plan of an earlier call."""
         try:
             with open(self.plan_path, encoding="utf-8") as file:
                 plan = json.load(file)
@@ -41,9 +41,9 @@ class Book:
             if not all(isinstance(deck.rows, list) for deck in plan["decks"]):
                 raise ValueError
         except OSError as error:
-            raise Refused(f"{self.directory}: no batch was begun here ({self.plan_path}: {error.strerror})") from None
+            raise Refused(f"{self.directory}: no batch was started here ({self.plan_path}: {error.strerror})") from None
         except (ValueError, KeyError, TypeError):
-            raise Refused(f"{self.plan_path}: not what tools/batch of this version writes: begin the batch anew") from None
+            raise Refused(f"{self.plan_path}: not written by this version of tools/batch: start the batch again without --resume") from None
         return plan
 
     def save(self, plan):
@@ -54,11 +54,11 @@ class Book:
         return os.path.join(self.folder, f"{name}.journal")
 
     def stem(self, deck):
-        """Path of the results of a deck, without their suffixes."""
+        """Path of the results of a deck, without suffix."""
         return os.path.join(self.directory, deck.place)
 
     def entries(self):
-        """Of each place the last end in the journals; of each where a deck was begun how often it was begun alone."""
+        """Read the journals: the last end of each place, and for places without an end the number of attempts in a process of its own."""
         ends, begun = {}, collections.Counter()
         for name in sorted(os.listdir(self.folder)):
             if name.endswith(".journal"):
@@ -69,11 +69,11 @@ class Book:
         return ends, begun
 
     def begin(self, decks, resume, version):
-        """Put aside what earlier calls have left, but what may be kept; the decks still to run."""
+        """Move earlier journals away, except the ends to keep; return the decks still to run."""
         for name in os.listdir(self.folder):
             if name.endswith(".journal"):
                 with open(os.path.join(self.folder, name), "ab") as file:
-                    lock(file.fileno(), self.directory, False)   # of a task that runs elsewhere
+                    lock(file.fileno(), self.directory, False)   # written by a task on another machine
         kept = self.kept(decks, version) if resume else []
         write_whole(self.journal("kept"), "".join(json.dumps(entry) + "\n" for entry in kept))
         for name in os.listdir(self.folder):
@@ -83,7 +83,7 @@ class Book:
         return [deck for deck in decks if deck.place not in places]
 
     def kept(self, decks, version):
-        """The ends of decks that are as they were then, with their listings, of this program."""
+        """Find the ends of decks whose input, listing and program are unchanged."""
         ends, kept = self.entries()[0], []
         for deck in decks:
             entry = ends.get(deck.place)
@@ -94,7 +94,7 @@ class Book:
         return kept
 
     def rows(self, plan, ends):
-        """The rows of the decks, in the order of the list."""
+        """Make the rows of the decks, in the order of the list."""
         found = []
         for deck in plan["decks"]:
             row = ends[deck.place]["row"] if deck.place in ends else \
@@ -120,14 +120,14 @@ class Book:
 
 
 class Journal:
-    """Open for adding; locked, and what the lock is inherited by are the runs: as long as one lives, nobody else begins."""
+    """Open and lock the journal. The runs inherit the lock, so that no other batch starts while one of them is alive."""
 
     def __init__(self, path, wait=False):
         self.path = path
         self.descriptor = os.open(path, os.O_WRONLY | os.O_APPEND | os.O_CREAT, 0o666)
         lock(self.descriptor, path, wait)
         os.set_inheritable(self.descriptor, True)
-        self.add({})   # what was cut off ends here
+        self.add({})   # end an incomplete line
 
     def add(self, entry):
         line = (json.dumps(entry) + "\n").encode() if entry else b"\n"
@@ -136,12 +136,12 @@ class Journal:
         except OSError:
             whole = False
         if not whole:
-            raise Refused(f"{self.path}: cannot be written: is the disk full?")
+            raise Refused(f"{self.path}: cannot be written: check that the disk is not full")
 
 
 @contextlib.contextmanager
 def alone(book):
-    """Nobody else works on this batch."""
+    """Lock the batch against other processes."""
     path = os.path.join(book.folder, "lock")
     descriptor = os.open(path, os.O_WRONLY | os.O_CREAT, 0o666)
     try:
@@ -155,9 +155,9 @@ def lock(descriptor, what, wait):
     try:
         fcntl.flock(descriptor, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
     except BlockingIOError:
-        raise Refused(f"{what}: another tools/batch is at work there, or what it began is still running") from None
+        raise Refused(f"{what}: another tools/batch or one of its runs is still active there: wait for it") from None
     except OSError as error:
-        if error.errno not in NO_LOCKS:   # some file systems have none
+        if error.errno not in NO_LOCKS:   # some file systems have no locks
             raise
 
 
@@ -177,7 +177,7 @@ def read_journal(path):
 
 
 def write_whole(path, text):
-    """A file appears whole or not at all."""
+    """Write a file completely or not at all."""
     try:
         with open(path + ".part", "w", encoding="utf-8", errors="surrogateescape", newline="") as file:
             file.write(text)
@@ -189,7 +189,7 @@ def write_whole(path, text):
 
 
 def no_formula(value):
-    """What a spreadsheet would take for a formula is a text to it with an apostrophe before it; numbers stay as they are."""
+    """Put an apostrophe before texts that a spreadsheet would take for a formula; numbers are unchanged."""
     if not isinstance(value, str) or not value or value[0].isalnum() or not value.lstrip().startswith(("=", "+", "-", "@")) or number(value) is not None:
         return value
     return "'" + value

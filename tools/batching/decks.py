@@ -1,4 +1,4 @@
-"""The decks of a batch: where they stand, where their results go, what they are made of."""
+"""The decks of a batch: their paths, the paths of their results, and their content."""
 import argparse
 import csv
 import hashlib
@@ -10,13 +10,13 @@ from dataclasses import dataclass, field
 from wording import counted
 
 INCLUDE = re.compile(rb"""[ ]*include[ ]*(['"])(.*?)\1[ ]*(?:\$.*)?\r?$""", re.IGNORECASE)
-DEEPEST = 8      # as the program has it
+DEEPEST = 8      # as in the program
 MOST_FILES = 10000
-NO_NAME = ("-", "=", "+", "@")   # the program would take it for an option, a spreadsheet for a formula
+NO_NAME = ("-", "=", "+", "@")   # the program would take the name for an option, a spreadsheet for a formula
 
 
 class Refused(Exception):
-    """A fault of the call or of a list: nothing is run."""
+    """An error of the call or of a list: nothing is run."""
 
 
 class Parser(argparse.ArgumentParser):
@@ -24,21 +24,21 @@ class Parser(argparse.ArgumentParser):
         super().__init__(description=words, formatter_class=argparse.RawDescriptionHelpFormatter, **more)
 
     def error(self, message):   # argparse's own exit status would be 2
-        raise Refused(f"{message}; --help says more")
+        raise Refused(f"{message}; see --help")
 
 
 @dataclass
 class Deck:
-    path: str                                    # as it is named to the program and to people
-    place: str = ""                              # its results below the folder of the batch, without their suffix
-    rows: list = field(default_factory=list)     # of a list that is a table: [number, further columns] of each row of the deck
-    size: int = 0                                # bytes, with what it includes
-    digest: str = ""                             # of what it holds, where nothing is included
-    stamp: tuple = ()                            # of its file when that was read
+    path: str                                    # as given to the program and shown in messages
+    place: str = ""                              # path of its results below the folder of the batch, without suffix
+    rows: list = field(default_factory=list)     # for a list that is a table: [number, further columns] of each row of the deck
+    size: int = 0                                # bytes, including its INCLUDE files
+    digest: str = ""                             # digest of its content, if it includes no files
+    stamp: tuple = ()                            # file state when the digest was read
 
 
 def read_list(path):
-    """The decks of a list, one path a line, or of a table (.csv) with a column `deck`; relative to the folder of the list."""
+    """Read the decks of a list with one path per line, or of a table (.csv) with a column `deck`; paths are relative to the folder of the list."""
     folder = os.path.dirname(path) if os.path.isfile(path) else ""
     try:
         with open(path, encoding="utf-8-sig", errors="surrogateescape", newline="") as file:
@@ -46,10 +46,10 @@ def read_list(path):
     except (OSError, ValueError) as error:
         raise Refused(f"{path}: the list cannot be read: {getattr(error, 'strerror', None) or error}") from None
     if "\0" in text:
-        raise Refused(f"{path}:{text[:text.index(chr(0))].count(chr(10)) + 1}: not a text: one path a line would be right")
+        raise Refused(f"{path}:{text[:text.index(chr(0))].count(chr(10)) + 1}: not a text: write one path per line")
     decks = read_table(path, text) if path.endswith(".csv") else read_lines(text)
     if not decks:
-        raise Refused(f"{path}: no deck in the list: one path a line would be right")
+        raise Refused(f"{path}: no deck in the list: write one path per line")
     for deck in decks:
         deck.path = os.path.normpath(os.path.join(folder, deck.path))
     return decks
@@ -63,23 +63,23 @@ def read_lines(text):
 def read_table(path, text):
     rows, columns = rows_of(path, text)
     if "deck" not in columns:
-        raise Refused(f"{path}:1: a list that is a table needs a column `deck`")
+        raise Refused(f"{path}:1: no column `deck`: add it")
     for line, row in rows:
         if not row["deck"]:
-            raise Refused(f"{path}:{line}: the deck has no name")
+            raise Refused(f"{path}:{line}: the deck has no name: give one")
     return [Deck(row.pop("deck"), rows=[[number, row]]) for number, (_, row) in enumerate(rows)]
 
 
 def rows_of(path, text):
-    """(line, values by column) of each row of a table that somebody has written; its columns."""
+    """Read a table: (line, values by column) of each row, and its columns."""
     reader, rows = csv.DictReader(io.StringIO(text, newline=""), strict=True), []
     try:
         columns = reader.fieldnames = [(name or "").strip() for name in reader.fieldnames or []]
         if not columns or not all(columns) or len(set(columns)) < len(columns):
-            raise Refused(f"{path}:1: a first line with the name of each column, each once, would be right")
+            raise Refused(f"{path}:1: not a header: give each column a name, and each name only once")
         for row in reader:
             if None in row or None in row.values():
-                raise Refused(f"{path}:{reader.line_num}: {counted(len(columns), 'value')} would be right")
+                raise Refused(f"{path}:{reader.line_num}: wrong number of values: give {len(columns)}, one per column")
             rows.append((reader.line_num, row))
     except csv.Error as error:
         raise Refused(f"{path}:{reader.line_num}: {error}") from None
@@ -87,12 +87,12 @@ def rows_of(path, text):
 
 
 def arrange(decks):
-    """Each deck once, with all its rows, and a place for its results: the folders of the decks, from the one they have in common, are
-    mirrored."""
+    """List each deck once, with all its rows and the place of its results. The folders of the decks are mirrored, starting at
+    the deepest folder that they have in common."""
     single = {}
     for deck in decks:
         if not deck.path.strip("/"):
-            raise Refused("a deck without a name")
+            raise Refused("a deck has no name: give one")
         first = single.setdefault(os.path.abspath(deck.path), deck)
         if first is not deck:
             first.rows += deck.rows
@@ -103,13 +103,13 @@ def arrange(decks):
         if deck.path.startswith(NO_NAME):
             deck.path = "./" + deck.path
         if deck.place in places:
-            raise Refused(f"{places[deck.place].path} and {deck.path} would write the same files: another name for one of them")
+            raise Refused(f"{places[deck.place].path} and {deck.path} would write the same files: rename one of them")
         places[deck.place] = deck
     return list(single.values())
 
 
 def contents(path, depth=0, seen=None):
-    """All bytes of a deck, file by file, those it includes behind it; what cannot be read counts as nothing."""
+    """Read all bytes of a deck, then of its INCLUDE files; unreadable files count as empty."""
     seen = seen if seen is not None else []
     seen.append(path)
     try:
@@ -146,22 +146,22 @@ def stamp_of(path):
 
 
 def look_at(deck):
-    """Read a deck for the first time: its size, and what it holds."""
+    """Read a deck for the first time: its size and its digest."""
     deck.stamp = stamp_of(deck.path)
     digest, deck.size = fingerprint(deck.path)
-    alone = deck.stamp and deck.size == deck.stamp[1] + len(f"{deck.stamp[1]} ")   # it includes nothing
+    alone = deck.stamp and deck.size == deck.stamp[1] + len(f"{deck.stamp[1]} ")   # no INCLUDE
     deck.digest = digest if alone else ""
 
 
 def inputs_of(deck):
-    """What a deck holds now; read again unless its file is as it was."""
+    """Current digest of a deck; it is computed again only if the file has changed."""
     return deck.digest if deck.digest and stamp_of(deck.path) == deck.stamp else fingerprint(deck.path)[0]
 
 
 def fingerprint(path):
-    """What a deck and all it includes hold, in a word, and their bytes in all."""
+    """Digest of a deck with all its INCLUDE files, and their total size [bytes]."""
     digest, size = hashlib.blake2b(digest_size=16), 0
-    if not os.path.isfile(path):   # a pipe would be waited for
+    if not os.path.isfile(path):   # reading a pipe would block
         return "", 0
     for part in contents(path):
         digest.update(part)

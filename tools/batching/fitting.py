@@ -1,54 +1,54 @@
-"""Values of a table as text that the reader of decks takes: in 8 columns, in 16, or between commas."""
+"""Format values of a table for the fields of a deck: 8 columns, 16 columns, or between commas."""
 import re
 from decimal import Decimal
 
 import cards
 
-NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+))(?:[eEdD]?([+-]\d+)|[eEdD](\d+))?", re.ASCII)   # digits of other scripts are none
-MOST_ROUNDED = 1e-6   # of a value; most reals of seven digits fit a small field
+NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+))(?:[eEdD]?([+-]\d+)|[eEdD](\d+))?", re.ASCII)   # ASCII digits only
+MOST_ROUNDED = 1e-6   # relative to the value; most reals of seven digits fit a small field
 
 
 class Unfit(Exception):
-    """What is wrong, and what would be right."""
+    """A value does not fit its field; the text gives fault and remedy."""
 
 
 def fit(text, kind, width):
-    """`text` for a field of a kind (that of `epcont --cards`) and a width, or between commas (no width)."""
+    """Format `text` for a field of a given type (as in `epcont --cards`) and width; without a width it stands between commas."""
     text = text.strip()
     if text == "":
         return ""
     if kind == "":
-        raise Unfit("the field must be blank")
+        raise Unfit("the field must be blank: remove the value")
     if kind == "integer" or (kind == "any" and re.fullmatch("[+-]?[0-9]+", text)):
         text = whole(text)
     elif kind == "real" or (kind == "any" and NUMBER.fullmatch(text)):
         text = real(text, width)
     elif kind == "digits" and not re.fullmatch("[1-6]{1,6}", text):
-        raise Unfit("digits from 1 to 6 would be right")
+        raise Unfit("not a list of components: give digits from 1 to 6")
     elif kind in ("word", "any") and not re.fullmatch(r"[A-Za-z][!-+\--~]{0,7}", text):
-        raise Unfit("a word of at most 8 characters, first a letter, would be right")
+        raise Unfit("not a word: give at most 8 characters, first a letter")
     if width and len(text) > width:
-        raise Unfit(f"{len(text)} characters in a field of {width}; a large field (a * behind the card's name) has 16, "
-                    "a free one (commas) has room")
+        raise Unfit(f"{len(text)} characters in a field of {width}: use a large field (a * after the card's name; 16 characters) "
+                    "or free format (commas)")
     return text
 
 
 def whole(text):
-    """Tables often write whole numbers as reals."""
+    """Tables often contain whole numbers written as reals."""
     match = re.fullmatch(r"([+-]?[0-9]+)(\.0*)?", text)
     if not match:
-        raise Unfit("a whole number would be right")
+        raise Unfit("not a whole number: give one")
     return match[1]
 
 
 def real(text, width):
-    """As it stands where that has a point and fits; else with as many digits as there is room for."""
+    """Keep the text if it has a decimal point and fits; otherwise round it to the digits that fit."""
     match = NUMBER.fullmatch(text)
     if not match:
-        raise Unfit("a real such as 1.5, 1.5E-3 or 1.5-3 would be right")
+        raise Unfit("not a real: write it as 1.5, 1.5E-3 or 1.5-3")
     value = number(text)
     if not value.is_zero() and not -300 < value.adjusted() < 300:
-        raise Unfit("beyond what a real holds")
+        raise Unfit("out of the range of reals: give a value between 1E-300 and 1E300")
     if "." in match[1] and len(text) <= (width or len(text)):
         return text
     try:
@@ -57,17 +57,17 @@ def real(text, width):
         raise Unfit(str(error)) from None
     off = abs(number(short) - value)
     if off > abs(value) * Decimal(MOST_ROUNDED):
-        raise Unfit(f"{width} columns hold {short}, off by {float(off / abs(value)):.1g} of it; "
-                    "a large field (a * behind the card's name) or a free one (commas) holds it")
+        raise Unfit(f"{width} columns hold only {short}, with a relative error of {float(off / abs(value)):.1g}: "
+                    "use a large field (a * after the card's name) or free format (commas)")
     return short
 
 
 def number(text):
-    """The number that a text is, or none."""
+    """Number of a text; None if it is not a number."""
     match = NUMBER.fullmatch(text.strip())
     return match and Decimal(f"{match[1]}E{match[2] or match[3] or 0}")
 
 
 def digits(text):
-    """How many digits a real has."""
+    """Number of digits of a real."""
     return len(re.sub("[^0-9]", "", NUMBER.fullmatch(text.strip())[1]).lstrip("0"))

@@ -1,4 +1,4 @@
-"""What came of one deck: its row of the table, from how the run ended, what it said and what it wrote."""
+"""The result of one deck: its row of the table, from the end of the run, its messages and its files."""
 import csv
 import os
 import re
@@ -8,13 +8,13 @@ COLUMNS = ["deck", "status", "exit_status", "message", "seconds", "memory_MB", "
            "half_width", "half_width_error", "certificate", "certificate_part", "warnings", "first_warning"]
 #: Further columns of tables with load cases.
 CASE_COLUMNS = ["subcase", "subtitle", "label"]
-#: With --one-table: what stands before a figure of the summary, and those that have a column already.
+#: With --one-table: prefixes of summary values, and values that already have a column.
 SUMMARY = "summary_"
 TAKEN = ("status", "warnings", "max_pressure", "max_pressure_is")
 ANSWERED = {"valid", "no equilibrium", "overlap", "not converged", "limit load", "singular stiffness", "contact not found", "ill-conditioned",
-            "not certified"}   # words of a whole listing
+            "not certified"}   # last words of a complete listing
 NOT_RUN = "not run"
-KILLED = "killed"              # from outside: whoever has the right may run the deck again
+KILLED = "killed"              # sent from outside: the deck may be run again
 NO_FAULT = re.compile(r": warning: |: \d+ warnings?(?: \(\d+ shown\))?$")
 NODES = re.compile(r"^  (\d+) nodes?,", re.MULTILINE)
 CERTIFICATE = re.compile(r"^CERTIFICATE .*tolerance (\S+?)\).*\n((?:  .*\n)+)", re.MULTILINE)
@@ -22,7 +22,7 @@ FIGURE = re.compile(r"^  (\S.*?)  +(< )?([+-]?\d[\d.E+-]*)$")
 
 
 def row_of(deck, stem, ended, one_table=False):
-    """The row of a deck whose run has ended (`ended`: see running.Ended); with `one_table` all figures of its summary are in it."""
+    """Make the row of a deck whose run has ended (`ended`: see running.Ended); `one_table` adds all values of its summary."""
     row = dict.fromkeys(COLUMNS, "")
     row.update(deck=deck.path, exit_status=ended.code if ended.code >= 0 else "",
                seconds=f"{ended.seconds:.3f}", memory_MB=f"{ended.memory / 1024:.1f}" if ended.memory else "")
@@ -37,7 +37,7 @@ def row_of(deck, stem, ended, one_table=False):
 
 
 def case_row(case, listing, summary, ended, one_table):
-    """The columns of a load case; `case`: its number, empty where the deck has not several."""
+    """Make the columns of a load case; `case`: its number, empty if there is only one."""
     row = {}
     if case:
         row = {"subcase": case, "status": summary.get("status", ""),
@@ -50,7 +50,7 @@ def case_row(case, listing, summary, ended, one_table):
 
 
 def titles(path):
-    """SUBTITLE and LABEL of each SUBCASE, by its number; those before the first SUBCASE are for all."""
+    """Read SUBTITLE and LABEL of each SUBCASE, by number; those before the first SUBCASE apply to all."""
     found, now = {}, {"subtitle": "", "label": ""}
     of_all = now
     for line in re.split(r"(?im)^\s*BEGIN", read_text(path), maxsplit=1)[0].splitlines():
@@ -64,19 +64,19 @@ def titles(path):
 
 
 def part_of(listing, case):
-    """What a listing says of all load cases, and of one."""
+    """Read the results of a listing that belong to all load cases, and those of one."""
     parts = re.split(r"^(?=SUBCASE \d+$)", listing, flags=re.MULTILINE)
     return parts[0] + next((part for part in parts[1:] if part.startswith(f"SUBCASE {case}\n")), "")
 
 
 def judge(ended, listing, word):
-    """Status and message; `word`: the status of a summary, of several load cases that of the first that is not valid."""
+    """Status and message; `word`: the status in the summary. With several load cases it is that of the first that is not valid."""
     said = first_fault(ended.said)
     if ended.limit:
         return "timed out", f"no end within {ended.limit:g} s"
     if ended.code == -signal.SIGKILL:
         return KILLED, "by SIGKILL: out of memory, or somebody's doing"
-    if ended.code == -signal.SIGTERM:   # Slurm's first word at a time limit goes to the program, too
+    if ended.code == -signal.SIGTERM:   # at a time limit Slurm's first signal also goes to the program
         return KILLED, "by SIGTERM: out of time, or somebody's doing"
     if ended.code < 0:
         return "crashed", f"by {name_of(-ended.code)}" + (f": {said}" if said else "")
@@ -99,14 +99,14 @@ def name_of(number):
 
 
 def whole(listing, word):
-    """Has the listing its end? The program renames it when it is written, so that only another one would leave a half."""
+    """Is the listing complete? The program renames it when it is finished, so an incomplete one is from another writer."""
     if word not in ANSWERED or not listing.startswith("epcont ") or not listing.endswith("\n"):
         return False
     return "\nACCURACY" in listing if word == "valid" else "\n  *NOT VALID*  " in listing
 
 
 def first_fault(said):
-    """The first message that is no warning, with its place."""
+    """First message that is not a warning, with its position."""
     for line in said.splitlines():
         if line.strip() and not line.startswith(" ") and not NO_FAULT.search(line):
             return line.strip()
@@ -114,7 +114,7 @@ def first_fault(said):
 
 
 def figures(listing, summary):
-    """The columns that need a listing."""
+    """Make the columns that need a listing."""
     found = {}
     nodes = NODES.search(listing, max(0, listing.find("\nPLAN")))
     if nodes:
@@ -134,7 +134,7 @@ def figures(listing, summary):
 
 
 def half_width(listing, summary):
-    """Of the zone with the largest pressure, and its error, relative."""
+    """Pressure of the zone with the largest pressure, and its relative error."""
     section = re.search(r"^CONTACT ZONES .*\n.*\n((?:  .*\n)+)", listing, re.MULTILINE)
     rows = [line.split() for line in section[1].splitlines()] if section else []
     zone = max(rows, key=lambda row: number(row[4]) or -1.0, default=[""])
@@ -143,14 +143,14 @@ def half_width(listing, summary):
 
 
 def first_warning(listing):
-    """With its place, in one line again; of a load case its own before that of the deck."""
+    """First warning, with its position, on one line; warnings of the load case come before those of the deck."""
     sections = re.findall(r"^WARNINGS AND NOTES .*\n((?:  .*\n)+)", listing, re.MULTILINE)
     lines = re.sub(r"\n {4}(?! )", " ", "".join(reversed(sections))).splitlines()
     return next((line.strip() for line in lines if re.match(r"  (?:.*?\d+:\d+(?:-\d+)?: )?warning: ", line)), "")
 
 
 def worst_of_certificate(listing, summary):
-    """The figure that takes most of what it may, and how much of it: above 1 it does not hold."""
+    """Certificate value that is closest to its limit, and their ratio: above 1 the limit is exceeded."""
     block = CERTIFICATE.search(listing, max(0, listing.rfind("\nCERTIFICATE ")))
     if not block:
         return "", ""
@@ -170,8 +170,8 @@ def number(text):
 
 
 def read_summary(path):
-    """Values by key, by load case; the number of the only one is empty. Few values are words that a comma could be in; the others need no
-    reader of tables, which is slow."""
+    """Read values by key, for each load case; the number of a single one is empty. Only lines with a quotation mark need the
+    csv reader, which is slow."""
     text, cases = read_text(path), {}
     try:
         rows = [line.split(",") for line in text.splitlines()] if '"' not in text else list(csv.reader(text.splitlines()))
@@ -193,7 +193,7 @@ def read_text(path):
 
 
 def forget(stem):
-    """What an earlier run has left must not be taken for this one's."""
+    """Remove the results of an earlier run, so that they are not taken for this one's."""
     for suffix in (".lst", ".summary.csv"):
         try:
             os.unlink(stem + suffix)

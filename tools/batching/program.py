@@ -1,4 +1,4 @@
-"""The program that decks are run by."""
+"""The program that runs the decks."""
 import mmap
 import os
 import pathlib
@@ -12,10 +12,10 @@ USUAL = str(pathlib.Path(__file__).resolve().parents[2] / "build" / "release" / 
 
 
 def found(program):
-    """Path of an epcont that works, and which one it is: its version, and a word for the bytes that it is made of."""
+    """Check that an epcont works; return its path and identity: version and checksum of its bytes."""
     path = shutil.which(program)
     if not path:
-        raise Refused(f"{program}: no such program: tools/build makes it, or --program PATH")
+        raise Refused(f"{program}: no such program: run tools/build, or give --program PATH")
     try:
         said = subprocess.run([path, "--version"], capture_output=True, text=True, errors="replace", timeout=60, check=False)
         with open(path, "rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
@@ -23,5 +23,5 @@ def found(program):
     except (OSError, ValueError, subprocess.TimeoutExpired) as error:
         raise Refused(f"{program}: cannot be started: {error}") from None
     if said.returncode or not said.stdout.startswith("epcont "):
-        raise Refused(f"{program} --version: exit status {said.returncode}: a working epcont would be right")
+        raise Refused(f"{program} --version: exit status {said.returncode}: give a working epcont with --program")
     return os.path.abspath(path), f"{said.stdout.strip()}, {build}"

@@ -1,9 +1,9 @@
-"""Runs of decks, several at once, in processes of their own: what one does is no other's concern.
+"""Run decks, several at once, in separate processes, so that a crash does not affect other decks.
 
-To start a process takes longer than to solve a small deck. So small decks share one, and only what is valid is taken from it, if it
-ended in order: every other deck of it is run again alone.
+Starting a process takes longer than solving a small deck. So small decks share a process, and only valid results of a process that
+ended normally are used: all its other decks are run again alone.
 
-One thread waits for signals: a child that has ended, or that the batch is to stop. `posix_spawn` and `wait4` cost little and tell
+One thread waits for signals: a child has ended, or the batch is to stop. `posix_spawn` and `wait4` are cheap and report
 processor time and memory of each child; its messages go to a file in memory.
 """
 import collections
@@ -17,21 +17,21 @@ from .book import size_of
 from .decks import inputs_of
 from .outcome import ANSWERED, forget, row_of
 
-GRACE = 5.0             # s between asking a run to end and ending it
-SMALL = 100000          # bytes of a deck that may share a process: some 700 nodes
-TOGETHER = 48           # decks in a process, at most
-MOST_SAID = 1 << 16     # of messages read
-IN_ORDER = (0, 1, 2, 4)   # exit statuses of answers and refused decks; beyond them files may be missing
-IGNORED = (signal.SIGPIPE, signal.SIGXFSZ)   # by Python; not for its children
+GRACE = 5.0             # time between SIGTERM and SIGKILL [s]
+SMALL = 100000          # largest deck that may share a process [bytes]: about 700 nodes
+TOGETHER = 48           # largest number of decks in a process
+MOST_SAID = 1 << 16     # bytes of messages that are read
+IN_ORDER = (0, 1, 2, 4)   # exit statuses of solved and rejected decks; with any other, files may be missing
+IGNORED = (signal.SIGPIPE, signal.SIGXFSZ)   # ignored by Python; children get the default
 STOPPING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 @dataclass
 class Ended:
     code: int          # exit status, or minus the signal
-    said: str          # on standard error
-    seconds: float     # by the clock
-    memory: float      # largest resident set [kB]; 0 where it is not known
+    said: str          # text on standard error
+    seconds: float     # wall-clock time
+    memory: float      # largest resident set [kB]; 0 if unknown
     limit: float = 0   # time limit that was exceeded
 
 
@@ -41,15 +41,15 @@ class Run:
     inputs: list
     said: int
     begun: float
-    over: float = 0.0     # when it was asked to end
+    over: float = 0.0     # time when it was asked to end
 
 
 class Stopped(Exception):
-    """Somebody wants the batch to end; the signal is the argument."""
+    """The batch is to end; the signal is the argument."""
 
 
 class Runner:
-    """`settings`: program, version, seconds and memory [GB] (or none) for each deck; `tell` is called now and then."""
+    """`settings`: program, version, seconds and memory [GB] (or None) for each deck; `tell` is called regularly."""
 
     def __init__(self, book, journal, settings, tell=lambda: None):
         self.book, self.journal, self.settings, self.tell = book, journal, settings, tell
@@ -58,7 +58,7 @@ class Runner:
         self.watched = {signal.SIGCHLD} | {each for each in STOPPING if signal.getsignal(each) != signal.SIG_IGN}
 
     def run(self, decks, processes, together=TOGETHER):
-        """All decks; `together`: how many small ones may share a process."""
+        """Run all decks; `together`: number of small decks that may share a process."""
         signal.signal(signal.SIGCHLD, signal.SIG_DFL)
         mask = signal.pthread_sigmask(signal.SIG_BLOCK, self.watched)
         waiting = collections.deque(groups(decks, min(together, len(decks) // (4 * processes))))
@@ -99,7 +99,7 @@ class Runner:
         self.running[child] = run
 
     def wait(self):
-        """Wait for the next event; end what has run for too long."""
+        """Wait for the next event; stop runs that exceed the time limit."""
         now, limit = time.monotonic(), self.settings["seconds"]
         due = min(run.over + GRACE if run.over else run.begun + limit for run in self.running.values()) - now
         event = signal.sigtimedwait(self.watched, max(0.0, min(due, 1.0)))
@@ -124,17 +124,17 @@ class Runner:
                 continue
             seconds = time.monotonic() - run.begun
             if run.over:
-                kill(child, signal.SIGKILL)   # what it may have begun itself
+                kill(child, signal.SIGKILL)   # its own children, if it has any
             said = os.pread(run.said, MOST_SAID, 0).decode("latin-1")
             os.close(run.said)
             code = os.waitstatus_to_exitcode(status)
-            limit = self.settings["seconds"] if run.over and code < 0 else 0   # it may have ended by itself just then
-            # A child begins as its parent was: the system tells no peak below the parent's own.
+            limit = self.settings["seconds"] if run.over and code < 0 else 0   # it may just have ended by itself
+            # A child begins with its parent's memory: the system reports no peak below that.
             memory = usage.ru_maxrss if usage.ru_maxrss > resource.getrusage(resource.RUSAGE_SELF).ru_maxrss else 0
             self.settle(run, Ended(code, said, seconds, memory, limit))
 
     def settle(self, run, ended):
-        """Enter what has ended; what shared a process and is not valid is to be run alone."""
+        """Record the results of an ended process; decks of a shared process that are not valid are run again alone."""
         shared, one_table = len(run.decks) > 1, self.settings.get("one_table", False)
         if shared and ended.code not in IN_ORDER:
             self.again.extend([deck] for deck in run.decks)
@@ -153,7 +153,7 @@ class Runner:
                                   "version": self.settings["version"], "listing": size_of(stem + ".lst")})
 
     def end_all(self):
-        """Nothing of what was begun runs on; it is not entered, so that it counts as not run."""
+        """Stop all runs. They are not recorded, so they count as not run."""
         for child in self.running:
             kill(child, signal.SIGTERM)
         until = time.monotonic() + GRACE
@@ -170,7 +170,7 @@ class Runner:
 
 
 def groups(decks, most):
-    """Small decks whose results go to one folder, `most` of them at once; each of the others alone."""
+    """Group small decks whose results go to one folder, `most` at once; each other deck is alone."""
     small, folders = [], {}
     for deck in decks:
         if most < 2 or not 0 < deck.size <= SMALL:

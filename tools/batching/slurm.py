@@ -1,7 +1,7 @@
-"""A batch as an array job of Slurm: each task runs a share of the decks, and nothing but files tells what has ended.
+"""A batch as an array job of Slurm: each task runs a share of the decks and reports through files only.
 
-`sbatch`, `squeue` and `scontrol` are all that is asked for: no database of accounts. A task that is no longer in the queue and
-whose journal lacks ends was killed; it is submitted again with what was asked, and goes on where it was.
+Only `sbatch`, `squeue` and `scontrol` are needed, no accounting database. A task that has left the queue and
+whose journal is incomplete was killed; it is submitted again with the same options, and continues.
 """
 import os
 import re
@@ -16,14 +16,14 @@ from wording import counted
 from .decks import Refused
 from .outcome import KILLED
 
-CHUNK = 50             # decks a task, where nothing else is asked
-MOST_TASKS = 1000      # Slurm's MaxArraySize is 1001 where nobody changed it
-TRIES = 3              # a task is submitted at most so often, but for decks that were not tried alone yet
-SHORTEST, LONGEST = 2.0, 30.0   # s between looks at the queue
+CHUNK = 50             # default number of decks per task
+MOST_TASKS = 1000      # Slurm's default MaxArraySize is 1001
+TRIES = 3              # largest number of submissions of a task, unless some decks have not been tried alone
+SHORTEST, LONGEST = 2.0, 30.0   # time between queries of the queue [s]
 
 
 def shares(decks, chunk):
-    """Tasks of about `chunk` decks each; they are dealt like cards, so that the first, long ones do not meet in one task."""
+    """Divide the decks into tasks of about `chunk` decks. They are dealt in turn, so that the long ones at the beginning go to different tasks."""
     chunk = chunk or max(CHUNK, -(-len(decks) // MOST_TASKS))
     tasks = -(-len(decks) // chunk)
     return [[deck.place for deck in decks[k::tasks]] for k in range(tasks)]
@@ -34,8 +34,8 @@ def ask(*command, **more):
 
 
 def submit(book, plan, tasks, script):
-    """One array job of these tasks."""
-    for task in tasks:   # there from the beginning, so that no node's memory of the folder hides it
+    """Submit one array job with these tasks."""
+    for task in tasks:   # create them now, so that no node caches that they are missing
         open(book.journal(f"task{task}"), "ab").close()
     folder = os.path.abspath(book.folder)
     command = ["sbatch", "--parsable", "--job-name=epcont", f"--array={','.join(map(str, tasks))}", f"--chdir={plan['cwd']}",
@@ -44,12 +44,12 @@ def submit(book, plan, tasks, script):
     text = f"#!/bin/sh\nexec {shlex.quote(script)} --task {shlex.quote(os.path.abspath(book.directory))} " \
            f"\"$SLURM_ARRAY_TASK_ID\" {plan['id']}\n"
     try:
-        with tempfile.TemporaryFile("w+") as job:   # not a pipe: an sbatch that ends without reading it would end the batch, too (SIGPIPE)
+        with tempfile.TemporaryFile("w+") as job:   # not a pipe: if sbatch ended without reading it, SIGPIPE would end the batch
             job.write(text)
             job.seek(0)
             done = ask(*command, stdin=job)
     except OSError as error:
-        raise Refused(f"sbatch cannot be started: {error.strerror}; without Slurm leave --slurm out") from None
+        raise Refused(f"sbatch cannot be started: {error.strerror}: leave --slurm out if there is no Slurm") from None
     if done.returncode:
         raise Refused(f"sbatch: {done.stderr.strip() or done.stdout.strip()}")
     job = done.stdout.strip().split(";")[0]
@@ -59,7 +59,7 @@ def submit(book, plan, tasks, script):
 
 
 def queued():
-    """(job, task) of all that wait or run, or nothing where Slurm does not answer."""
+    """(job, task) of all waiting or running tasks; None if Slurm does not answer."""
     try:
         done = ask("squeue", "--noheader", "--array", f"--user={os.getuid()}", "--format=%F %K")
     except OSError:
@@ -70,7 +70,7 @@ def queued():
 
 
 def reason(job, task):
-    """Why a task has ended, as long as Slurm knows."""
+    """Reason why a task has ended, while Slurm remembers it."""
     try:
         done = ask("scontrol", "--oneliner", "show", "job", f"{job}_{task}")
     except OSError:
@@ -80,12 +80,12 @@ def reason(job, task):
 
 
 class Watch:
-    """Looks after the tasks of a plan until each deck has ended or is lost."""
+    """Watches the tasks of a plan until each deck has ended or is lost."""
 
     def __init__(self, book, plan, script):
         self.book, self.plan, self.script = book, plan, script
-        self.missing = set()    # tasks that were not in the queue when it was last looked at
-        self.untried = {}       # of tasks how far their decks were from having been tried alone when they were last looked after
+        self.missing = set()    # tasks missing from the queue at the last query
+        self.untried = {}       # for each task: attempts alone still missing for its decks, at the last look
 
     def unfinished(self, ends):
         """Places without an end that are not lost, by task."""
@@ -101,12 +101,12 @@ class Watch:
         return [job["id"] for job in self.plan["jobs"] if task in job["tasks"]]
 
     def wait(self, show):
-        """`show(ends)` is given the state now and then."""
+        """`show(ends)` is called regularly with the current state."""
         pause, answered = SHORTEST, True
         while True:
-            queue = queued()            # before the journals: what has left the queue has written them
+            queue = queued()            # before the journals: a task that has left the queue has written its journal
             if queue is None and answered:
-                print("squeue does not answer: waiting for it, and for what ends meanwhile", file=sys.stderr)
+                print("squeue does not answer: waiting for it, and for running tasks", file=sys.stderr)
             answered = queue is not None
             ends, begun = self.book.entries()
             show(ends)
@@ -119,14 +119,14 @@ class Watch:
             time.sleep(pause)
 
     def given_up(self, task, places, begun, why):
-        """After some tries, unless the last one has brought decks nearer to one of their own: none is lost for another's sake."""
+        """Give a task up after some attempts, unless the last one ran decks alone: no deck is lost because of another."""
         untried, before = sum(2 - (place in begun) - (begun[place] > 0) for place in places), self.untried.get(task)
         self.untried[task] = untried
         hopeful = 0 < untried and (before is None or untried < before) and not why.startswith("CANCELLED")
         return len(self.jobs_of(task)) >= TRIES and not hopeful
 
     def look_after(self, left, queue, begun):
-        """Submit again what was killed; what was killed too often is lost. Missing twice, that is: files may be late."""
+        """Submit killed tasks again; give up those killed too often. A task counts as killed if it is missing twice: files may be late."""
         gone = {task for task in left if not any((job, str(task)) in queue for job in self.jobs_of(task))}
         killed, self.missing = sorted(gone & self.missing), gone - self.missing
         again = []

@@ -1,4 +1,4 @@
-"""A deck with places, `%name%`: where they stand, and the deck when they are filled."""
+"""A deck with placeholders `%name%`: their positions, and the deck with values inserted."""
 import os
 import re
 from dataclasses import dataclass
@@ -10,22 +10,22 @@ from .fitting import Unfit, digits, fit, number
 
 PLACE = re.compile(r"%([A-Za-z_]\w*)%")
 INCLUDE = re.compile(r"""([ ]*include[ ]*)(['"])(.*?)\2(.*)""", re.IGNORECASE)
-LONGEST = 256   # characters of a free line
+LONGEST = 256   # longest free-format line [characters]
 
 
 @dataclass
 class Place:
     name: str
     line: int            # from 0
-    first: int           # characters of the line that are replaced
+    first: int           # characters of the line to replace
     last: int
-    kind: str = "text"   # of the field
-    width: int = 0       # 0: none
+    kind: str = "text"   # type of the field
+    width: int = 0       # width of the field; 0 in free format
     what: str = ""       # `MAT1 field 3 (E)`
 
 
 class Template:
-    """`faults` has what is wrong with the deck itself, with file, line and columns."""
+    """`faults` collects the errors of the deck itself, with file, line and columns."""
 
     def __init__(self, path, text, catalogue):
         self.path, self.lines, self.catalogue = path, re.sub(r"\r?\n?\Z", "", text).replace("\r\n", "\n").split("\n"), catalogue
@@ -45,7 +45,7 @@ class Template:
             if name:
                 card, slot = name.rstrip("*"), 0
             elif slot % 8 and not wide:
-                slot += 4   # a row of large fields that ends with its first half
+                slot += 4   # a large-field row that ends after its first half
             self.cut(k, code, card, slot)
             slot += 4 if wide else 8
 
@@ -53,17 +53,17 @@ class Template:
         self.faults.append(f"{self.path}:{k + 1}:{first + 1}-{last}: {what}")
 
     def plain(self, k, text, start):
-        """Places in comments, titles and names of files: any text."""
+        """Find placeholders in comments, titles and file names: any text is allowed."""
         self.places += [Place(match[1], k, *match.span()) for match in PLACE.finditer(text, start)]
 
     def cut(self, k, code, card, slot):
-        """Places in the fields of a card, which they must fill."""
+        """Find placeholders in the fields of a card; each must fill its field."""
         fields = cards.places(code)
         for match in PLACE.finditer(code):
             index = next((i for i, each in enumerate(fields) if each.start <= match.start() < each.stop), -1)
             if index < 0 or code[fields[index]].strip() != match[0]:
-                self.fault(k, *match.span(), f"{match[0]} does not fill a field of its own: a shorter name, a large field "
-                           "(a * behind the card's name) or a free one (commas) would be right")
+                self.fault(k, *match.span(), f"{match[0]} does not fill a field: use a shorter name, a large field "
+                           "(a * after the card's name) or free format (commas)")
                 continue
             first, last = fields[index].start, fields[index].stop
             width = 0 if "," in code else last - first
@@ -79,7 +79,7 @@ class Template:
         return self.catalogue.column(card, field)
 
     def fill(self, values, folder, faults):
-        """The deck of these values, as it must be to stand in `folder`; what does not fit is added to `faults`."""
+        """Make the deck with these values, for storage in `folder`; values that do not fit are added to `faults`."""
         lines = list(self.lines)
         for place in sorted(self.places, key=lambda place: (place.line, -place.first)):
             value = values[place.name]
@@ -99,7 +99,7 @@ class Template:
         return "\n".join(lines) + "\n"
 
     def meaning(self, values):
-        """What the program reads in the places of a row that fits: rows that mean the same give the same deck, whatever its comments."""
+        """Values as the program reads them: rows with equal values give equal decks, whatever their comments."""
         found = []
         for place in self.places:
             text = self.text_of(place, values[place.name]).strip()
@@ -111,13 +111,13 @@ class Template:
         return tuple(found)
 
     def lost(self, values, others):
-        """Of two rows that mean the same: the first place whose numbers are unlike, and how many digits it holds; or nothing."""
+        """For two rows with equal values: the first placeholder whose texts differ, and the digits that it holds; None if all are equal."""
         for place in self.places:
             one, two = number(others[place.name]), number(values[place.name])
             if place.kind != "text" and None not in (one, two) and one != two:
                 text = self.text_of(place, values[place.name]).strip()
                 held = f"{place.width} columns hold {counted(digits(text), 'digit')}" if place.width else "a real holds 16 digits"
-                wider = "; a large field (a * behind the card's name) or a free one (commas) holds more" if place.width else ""
+                wider = ": use a large field (a * after the card's name) or free format (commas)" if place.width else ""
                 return (f"column {place.name}, {others[place.name].strip()!r} and {values[place.name].strip()!r}: {self.path}:{place.line + 1}:"
                         f"{place.first + 1}-{place.last}: {place.what}: both are {text}: {held}{wider}")
         return ""
@@ -125,12 +125,12 @@ class Template:
     def text_of(self, place, value):
         if place.kind == "text":
             if not value.isascii() or not value.isprintable():
-                raise Unfit("printable ASCII would be right")
+                raise Unfit("not printable ASCII: remove other characters")
             return value
         return fit(value, place.kind, place.width).ljust(place.width)
 
     def moved(self, k, line, folder, faults):
-        """An INCLUDE as seen from the folder of the deck."""
+        """Path of an INCLUDE file relative to the folder of the deck."""
         match = INCLUDE.match(line)
         if not match or os.path.isabs(match[3]):
             return line

@@ -1,18 +1,18 @@
-"""epcont's time, memory and errors beside those of other programs, on this machine.
+"""Compare epcont's time, memory and errors with those of other programs, on this machine.
 
-    tools/bench --quick     3 turns, beyond yield up to 11 000 nodes: about half an hour
-    tools/bench             up to 42 000 nodes, 5 turns: about an hour, most of it CalculiX's
+    tools/bench --quick     3 turns, plastic models up to 11 000 nodes: about half an hour
+    tools/bench             up to 42 000 nodes, 5 turns: about an hour, mostly for CalculiX
     tools/bench --part 2    one part only; --quick --part 4: half a minute
-    tools/bench --part 5 --beside OLD/epcont    large scenes, in turns with another epcont, such as the release before
+    tools/bench --part 5 --beside OLD/epcont    large models, alternating with another epcont, for example the previous release
 
-Part 1: two cylinders (`tools/decks hertz N`, CTRIA3), whole programs, against CalculiX and scikit-fem. Part 2: the dense
-contact problem alone, against packages for quadratic programs. Part 3: the factorization's part of dgemm's rate, how
-time and memory grow to 170 000 unknowns, and what the deck of 44 nodes costs beside an empty program. Part 4: the solve part,
-numbering to displacements, stage by stage beside the best libraries bare. Part 5: many pairs, bodies and unknowns, growth to
-2 000 000 unknowns, order, factor and solves beside PARDISO and CHOLMOD, many pairs beside CalculiX. Everything on one thread, but
-one scene of part 5; the programs take turns, times are medians, ratios the medians of those of each turn.
-What a part measured is kept in build/benchmark/part*.json. Once all are there, their tables go to
-tools/benchmark/results.md and with a picture to results.png, each with its own command and load; to standard output in any case.
+Part 1: two cylinders (`tools/decks hertz N`, CTRIA3), whole programs, compared with CalculiX and scikit-fem. Part 2: the dense
+contact problem alone, compared with packages for quadratic programs. Part 3: rate of the factorization relative to dgemm, growth of
+time and memory up to 170 000 unknowns, and the deck of 44 nodes compared with an empty program. Part 4: the solver from
+numbering to displacements, stage by stage, compared with the best libraries alone. Part 5: many pairs, bodies and unknowns, growth to
+2 000 000 unknowns; order, factor and solves compared with PARDISO and CHOLMOD, many pairs with CalculiX. Everything uses one thread, except
+one model of part 5. The programs run in turns; times are medians, ratios are medians over the turns.
+The results of each part are kept in build/benchmark/part*.json. If all parts exist, their tables go to
+tools/benchmark/results.md and a picture to results.png, each with its own command and load; they are always printed.
 """
 import json
 import os
@@ -39,7 +39,7 @@ from process import ONE_THREAD  # noqa: E402
 from wording import parser_of, run  # noqa: E402
 
 NODES, UNKNOWNS = (330, 1000, 3000, 11000, 42000), (50, 100, 200, 500, 1000, 2000)
-#: Of part 4 and of growth: nodes of meshes with twice as many unknowns.
+#: For part 4 and growth: nodes of meshes, each with twice as many unknowns as the one before.
 SOLVED, GROWING = (330, 930, 3080, 11100, 42500), (3080, 7600, 20200, 42500, 85000)
 RELEASE = TOP / "build/release"
 PARTS = (1, 2, 3, 4, 5)
@@ -77,7 +77,7 @@ def part3(place, sizes, growing, turns):
 
 
 def factors(place, sizes, turns):
-    """Of the first body of each mesh: nodes, equations, half-bandwidth, seconds, operations, rate, part of dgemm's."""
+    """For the first body of each mesh: nodes, equations, half-bandwidth, seconds, operations, rate, fraction of dgemm's rate."""
     matrices, nodes = [], []
     for n in sizes:
         mesh = cylinders.mesh_of(n)
@@ -96,7 +96,7 @@ def part4(place, sizes, turns):
 
 
 def part5(place, turns, options):
-    """What `--only` names, else all of it."""
+    """Parts named by `--only`; without it all."""
     program = RELEASE / "epcont"
     does = {"scenes": lambda: large.scenes(place, program, options.beside, turns, options.quick, say),
             "growth": lambda: growth.growth(place, program, turns, options.quick, say),
@@ -130,9 +130,9 @@ def main():
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--part", type=int, choices=PARTS)
     parser.add_argument("--turns", type=int)
-    parser.add_argument("--nodes", type=int, nargs="+", help="of parts 1, 3 and 4")
-    parser.add_argument("--beside", type=pathlib.Path, metavar="PROGRAM", help="of part 5: another epcont that takes turns with this one")
-    parser.add_argument("--only", nargs="+", choices=("scenes", "growth", "peers", "calculix"), help="of part 5; its other tables stay as they were")
+    parser.add_argument("--nodes", type=int, nargs="+", help="mesh sizes of parts 1, 3 and 4")
+    parser.add_argument("--beside", type=pathlib.Path, metavar="PROGRAM", help="for part 5: another epcont to compare with")
+    parser.add_argument("--only", nargs="+", choices=("scenes", "growth", "peers", "calculix"), help="for part 5: only these tables; the others stay unchanged")
     options = parser.parse_args()
     if options.beside:
         options.beside = options.beside.resolve()

@@ -6,15 +6,15 @@ import tables
 from process import peak, settled, timed
 from scenes import many
 
-#: Name, deck, yielding; as many times faster is wanted.
+#: Name, deck, plastic or not; required speed ratio.
 SCENES = (("dovetail, 852 pairs", many.dovetail, False, 60.0), ("dovetail, 852 pairs", many.dovetail, True, 50.0),
           ("blocks, 1 500 pairs", many.blocks, False, 60.0), ("blocks, 1 500 pairs", many.blocks, True, 50.0))
 SOLVERS = ("SPOOLES", "ITERATIVE CHOLESKY")
-#: First increment of the load: the whole; where that does not converge CalculiX takes less by itself.
+#: First load increment: the full load; if it does not converge CalculiX reduces it.
 INCREMENT = 1.0
-#: Approach, of epcont's: CalculiX has flow theory, and a penalty.
+#: Allowed difference of the approach, relative to epcont's: CalculiX has flow theory, and a penalty.
 WITHIN = {False: 0.01, True: 0.06}
-#: Seconds: of a run of CalculiX that is given up, and with --quick; of one that takes a single turn.
+#: Seconds: limit of a run of CalculiX, and with --quick; above the third, one turn only.
 MOST, MOST_QUICK, LONG, SHORT = 1800, 300, 60.0, 5.0
 
 
@@ -24,7 +24,7 @@ def run(command, place, first):
 
 
 def scout(place, text, contact, solver, approach, within, most):
-    """Command, seconds, MB and a note, which is empty where the answer is sound."""
+    """Command, seconds, MB and a note, which is empty if the answer is correct."""
     name = f"{contact}_{solver}".lower().replace(" ", "_")
     calculix_deck.write(place / f"{name}.inp", text, contact, solver, INCREMENT)
     command = ["timeout", str(most), "ccx", name]
@@ -66,6 +66,6 @@ def one(place, program, scene, turns, most, say):
 
 
 def beside_calculix(place, program, turns, quick, say):
-    """With `quick` the dovetail alone, elastic."""
+    """With `quick` only the elastic dovetail."""
     chosen = [scene for scene in SCENES if not quick or scene[1] is many.dovetail and not scene[2]]
     return [one(place / f"ccx{k}", program, scene, turns, MOST_QUICK if quick else MOST, say) for k, scene in enumerate(chosen)]

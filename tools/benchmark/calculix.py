@@ -1,13 +1,13 @@
-"""The two cylinders as an input of CalculiX, and its answer.
+"""The two cylinders as input of CalculiX, and its results.
 
 The same nodes and elements as epcont's deck (CTRIA3: CPE3, plane strain), the same bilinear steel, line of symmetry and
-load. The platen is one *EQUATION for each further node of it; the rigid plane is one of:
+load. The platen is one *EQUATION for each of its other nodes; the rigid plane is one of:
 
-gap     GAPUNI elements from fixed nodes to the contact nodes, with the gaps of the deck as clearance. CalculiX iterates only
-        where the material is nonlinear (or NLGEOM is on): the elastic inputs have a *PLASTIC card that is never reached.
-pair    *CONTACT PAIR, NODE TO SURFACE, linear pressure-overclosure, against one held quadrilateral.
+gap     GAPUNI elements from fixed nodes to the contact nodes, with the initial gaps of the deck as clearance. CalculiX iterates only
+        if the material is nonlinear (or NLGEOM is on): the elastic inputs have a *PLASTIC card that is never reached.
+pair    *CONTACT PAIR, NODE TO SURFACE, linear pressure-overclosure, with one fixed quadrilateral.
 
-Closed gaps are 1e5 E stiff in both. Plasticity is flow theory in CalculiX, total theory in epcont.
+Closed gaps have stiffness 1e5 E in both. Plasticity is flow theory in CalculiX, total theory in epcont.
 """
 import pathlib
 
@@ -66,7 +66,7 @@ def write(path, mesh, touch, plastic, contact="gap", solver="SPOOLES", increment
 
 
 def answer(path, touch, contact):
-    """Forces at the contact nodes and the platen's displacement at full load; None: not reached."""
+    """Forces at the contact nodes and the platen's displacement at full load; None if it was not reached."""
     block, platen, force = "", None, {}
     for line in path.read_text(encoding="ascii").splitlines() if path.exists() else []:
         words = line.split()
@@ -80,5 +80,5 @@ def answer(path, touch, contact):
         return None
     if contact == "gap":
         return list(force.values()), platen
-    whole = sum(force.values())  # CSTR is the force over an area that is the same for all
+    whole = sum(force.values())  # CSTR is the force over an area that is equal for all nodes
     return [LOAD * force.get(node + 1, 0.0) / whole for node in touch], platen

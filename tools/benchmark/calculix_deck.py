@@ -1,24 +1,24 @@
-"""A deck of three-node elements with contact between lines as an input of CalculiX, and a displacement of its answer.
+"""Translate a deck of three-node elements with contact between lines to an input of CalculiX, and read one displacement of its results.
 
-The same nodes, elements, supports, platens, loads and bilinear steel; penalty contact between the same lines, closed gaps 50 E a mm stiff.
+The same nodes, elements, supports, platens, loads and bilinear steel; penalty contact between the same lines, with stiffness 50 E per mm.
 """
 import re
 
 from cards import fields
 
 STIFFNESS_OF_YOUNG = 50.0
-#: NODE TO SURFACE takes the slave's nodes, the other its sides.
+#: NODE TO SURFACE takes the slave's nodes, SURFACE TO SURFACE its edges.
 CONTACTS = ("NODE TO SURFACE", "SURFACE TO SURFACE")
 
 
 
 def real(field):
-    """As a deck writes it: `1.5-7` too."""
+    """A real in the format of a deck, `1.5-7` too."""
     return float(re.sub(r"(?<=[\d.])([+-]\d+)$", r"E\1", field)) if field else 0.0
 
 
 class Cards:
-    """Fields of all cards by name, lines that go on added up."""
+    """Fields of all cards by name, with continuation lines joined."""
 
     def __init__(self, text):
         self.of = {}
@@ -34,7 +34,7 @@ class Cards:
                 self.of.setdefault(name.rstrip("*"), []).append(current)
 
     def whole(self, name, begin, end=None):
-        """The whole numbers of each card of a name, from one field on."""
+        """Integers of each card of a name, starting at a field."""
         return [[int(field) for field in card[begin:end] if field] for card in self.of.get(name, [])]
 
 
@@ -51,7 +51,7 @@ def corners(cards):
 
 
 def sides(element):
-    """Element and number of each side, by its two nodes in either order; of two elements one."""
+    """Element and number of each edge, by its two nodes in either order; one element per edge."""
     return {frozenset((nodes[k], nodes[(k + 1) % 3])): (number, k + 1) for number, (_, nodes) in element.items() for k in range(3)}
 
 
@@ -60,7 +60,7 @@ def listed(numbers):
 
 
 def materials(cards):
-    """Of each property."""
+    """Value of each property."""
     curve = {int(card[0]): (real(card[6]), real(card[3])) for card in cards.of.get("MATS1", [])}
     for number, young, _, nu in (card[:4] for card in cards.of["MAT1"]):
         yield f"*MATERIAL, NAME=M{number}\n*ELASTIC\n{real(young)},{real(nu)}\n"
@@ -94,7 +94,7 @@ def loads(cards, side):
 
 
 def write(path, text, contact, solver, increment):
-    """The input of a deck's text; gives the node whose displacement is compared."""
+    """Translate a deck's text; return the input and the node whose displacement is compared."""
     cards = Cards(text)
     point, element = corners(cards)
     side = sides(element)
@@ -115,6 +115,6 @@ def write(path, text, contact, solver, increment):
 
 
 def answer(path):
-    """Displacement along y at full load; None: not reached."""
+    """Displacement along y at full load; None if it was not reached."""
     found = re.findall(r"displacements .* time +(\S+)\s+\d+ +\S+ +(\S+)", path.read_text(encoding="ascii")) if path.exists() else []
     return next((float(value) for time, value in found if float(time) == 1.0), None)

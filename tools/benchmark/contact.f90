@@ -1,8 +1,8 @@
-!> Times epcont's contact solver alone: bench_contact PROBLEM FORCES RULE REPEATS
+!> Measure the time of epcont's contact solver alone: bench_contact PROBLEM FORCES RULE REPEATS
 !>
 !> PROBLEM is a stream: n, m (4-byte integers), then doubles: F [n, n], A [n, m], g0 [n], P [m]. FORCES gets R [n], q [m].
-!> RULE: CONRY, WARM (CONRY from the right set), or DGEMM, one product of matrices as large as F and nothing else.
-!> Prints: seconds of processor (median of the repeats, after one that does not count), largest violation of the
+!> RULE: CONRY, WARM (CONRY from the correct active set), or DGEMM, only one product of matrices as large as F.
+!> Prints: processor seconds (median of the repeats, without the first), largest violation of the
 !> conditions, pairs exchanged, and state.
 program bench_contact
   use, intrinsic :: iso_fortran_env, only: int32
@@ -17,12 +17,12 @@ program bench_contact
   type(contact_problem) :: problem
   type(contact_solution) :: solution
   character(:), allocatable :: rule
-  logical, allocatable :: start(:)   !! guess of the set, where there is one
+  logical, allocatable :: start(:)   !! initial active set, if any
   real(wp), allocatable :: product(:, :), seconds(:)
   real(wp) :: begun, ended
   integer :: k, repeats
 
-  call prepare_heap()   ! as the program does
+  call prepare_heap()   ! as in the program
   call read_problem(argument(1), problem)
   rule = argument(3)
   repeats = number(argument(4))
@@ -80,7 +80,7 @@ contains
     close (unit)
   end subroutine write_forces
 
-  !> Of w = g0 + F R - A q >= 0, R >= 0, R.w = 0 and A'R = P: largest |min(R/rho, w/omega)| and |A'R - P|/|P|, with rho the
+  !> Violation of w = g0 + F R - A q >= 0, R >= 0, R.w = 0 and A'R = P: largest |min(R/rho, w/omega)| and |A'R - P|/|P|, with rho the
   !! largest force and omega = rho max|F|. As in contact.py, but with the solver's own q.
   real(wp) function violation(problem, solution)
     type(contact_problem), intent(in) :: problem

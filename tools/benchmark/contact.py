@@ -1,12 +1,12 @@
 """Part 2: the dense contact problem alone, in one process: epcont's contact solver and packages for quadratic programs.
 
-    min 1/2 R'F R + g0'R,  1'R = P,  R >= 0        (one motion; the multiplier of 1'R = P is the approach q)
+    min 1/2 R'F R + g0'R,  1'R = P,  R >= 0        (one rigid-body mode; the multiplier of 1'R = P is the approach q)
 
     python contact.py BENCH_CONTACT DIRECTORY REPEATS LIMIT N...      prints a JSON row for each problem, size and program
 
-epcont is timed with its simplex (CONRY), from the start and from the right active set (WARM); beside it stands one dgemm of the size of F.
-F is that of strips of uniform pressure on a half-plane; two problems take it some strips deep. A program that takes longer than LIMIT seconds gets no further size of
-that problem. Data are in memory before the clock starts; it is the processor's.
+epcont is timed with its simplex (CONRY), from the start and from the correct active set (WARM), and compared with one dgemm of the size of F.
+F is that of strips of uniform pressure on a half-plane; in two problems the displacement is that some strip widths below the surface. A program that takes longer than LIMIT seconds
+skips the larger sizes of that problem. Data are in memory before the clock starts; times are processor times.
 """
 import json
 import pathlib
@@ -29,7 +29,7 @@ MODULUS, TOLERANCE = 20400.0 / (2 * (1 - 0.29 ** 2)), 1e-9
 
 
 def half_plane(n, depth=0.0):
-    """n strips on (-1, 1): displacement of their middles, `depth` strips down (that smooths), zero four half-lengths away."""
+    """n strips on (-1, 1): displacement of their centres, `depth` strips below the surface (this smooths), zero at a distance of four half-lengths."""
     h = 2.0 / n
     d = h * abs(np.subtract.outer(np.arange(n), np.arange(n)))
     if depth:
@@ -42,26 +42,26 @@ def half_plane(n, depth=0.0):
 def problem(kind, n):
     """F, g0, P."""
     x = (2 * np.arange(n) + 1.0) / n - 1
-    if kind == "half-plane":  # a cylinder: two thirds of the nodes touch
+    if kind == "half-plane":  # a cylinder: two thirds of the nodes are in contact
         return half_plane(n), x * x / 100, np.pi * MODULUS * (2 / 3) ** 2 / 200
     if kind == "flat":
         return half_plane(n), np.zeros(n), 10.0
-    if kind == "ties":  # stairs: many nodes touch at one load
+    if kind == "ties":  # steps: many nodes come into contact at one load
         return half_plane(n), np.floor(8 * x * x + 1e-9) / 800, np.pi * MODULUS * (2 / 3) ** 2 / 200
-    flexibility = half_plane(n, depth=SMOOTHED[kind])  # half of the nodes are loaded, the others clear
+    flexibility = half_plane(n, depth=SMOOTHED[kind])  # half of the nodes are loaded, the others open
     force = np.where(abs(x) < 0.5, 1 + np.cos(2 * np.pi * x), 0.0)
     clear = np.where(abs(x) < 0.5, 0.0, 1e-4 * (0.1 + abs(x)))
     gap = clear - flexibility @ force
     return flexibility, gap - gap.min(), force.sum()
 
 
-#: Badly conditioned: how many strips deep the displacements are taken.
+#: Ill-conditioned: depth of the displacements in strips.
 SMOOTHED = {"half loaded, condition 1e6": 3.0, "half loaded, condition 1e10": 6.0}
 KINDS = ("half-plane", "flat", "ties", *SMOOTHED)
 
 
 def violation(flexibility, gap, load, force):
-    """Largest |min(R/|R|, w/(|F||R|))| and |sum R - P|/P, |R| the largest force, |F| the largest sum of a row; q is the force's mean of g0 + F R."""
+    """Largest |min(R/|R|, w/(|F||R|))| and |sum R - P|/P, with |R| the largest force and |F| the largest row sum; q is the force-weighted mean of g0 + F R."""
     w = gap + flexibility @ force
     w -= w @ force / force.sum()
     largest = abs(force).max()
@@ -70,7 +70,7 @@ def violation(flexibility, gap, load, force):
 
 
 class Stalled(RuntimeError):
-    """An end without answer, after so many seconds."""
+    """Result of a run that gave no answer after these seconds."""
 
     def __init__(self, seconds, pivots):
         super().__init__(f"stalled after {pivots} pivots")
@@ -78,7 +78,7 @@ class Stalled(RuntimeError):
 
 
 class Epcont:
-    """bench_contact by one rule; with DGEMM, one product of matrices."""
+    """Run bench_contact with one rule; with DGEMM, one product of matrices."""
 
     def __init__(self, program, place, rule):
         self.program, self.place, self.rule = program, place, rule
@@ -106,7 +106,7 @@ class Epcont:
 
 
 def scaled(package):
-    """What a package solves with forces in units of the mean one, so that its tolerances mean something: their sum is their number."""
+    """Input of a package: forces are divided by their mean, so that its tolerances are meaningful; their sum is their number."""
     def prepare(flexibility, gap, load):
         unit = load / len(gap)
         top = abs(flexibility).max() * unit

@@ -1,4 +1,4 @@
-"""Part 1: two cylinders, elastic and elastoplastic, by whole programs."""
+"""Part 1: two cylinders, elastic and elastoplastic, solved by whole programs."""
 import importlib.util
 import json
 import math
@@ -15,21 +15,21 @@ B, P, E, NU, R = 0.0239, 10.0, 20400.0, 0.29, 1.0
 HALF_WIDTH = math.sqrt(4 * P * (R / 2) * 2 * (1 - NU * NU) / (math.pi * E))
 P_MAX = {False: 2 * P / (math.pi * HALF_WIDTH), True: 198.4}
 APPROACH = {False: P * (1 - NU * NU) / (math.pi * E) * (2 * math.log(4 * R / HALF_WIDTH) - 1), True: 0.001419}
-#: A run counts as sound where it ends at full load with these of epcont's: flow theory has 4 % less pressure.
+#: A run is valid if it reaches full load and these values agree with epcont's: flow theory has 4 % less pressure.
 APPROACH_WITHIN, P_MAX_WITHIN = 0.01, {False: 0.01, True: 0.06}
 
-#: Seconds. Short runs are settled, and where all are short there are three times as many turns; where one is long, one turn.
+#: Seconds. Short runs are repeated; if all are short there are three times as many turns; if one is long, one turn.
 SHORT, LONG = 5.0, 60.0
-#: Beyond so many nodes elastoplastic runs of CalculiX take minutes: those settings alone that are the fastest below.
+#: Above these nodes elastoplastic runs of CalculiX take minutes: only its settings that are fastest on smaller meshes run.
 LARGE = 20000
 
-#: Ways with scikit-fem: as contact is written with it, and the fastest that we could make of its parts, by other factorizations;
-#: CHOLMOD where it could be installed.
+#: Variants with scikit-fem: the usual way to write contact with it, and the fastest that its parts allow, with other factorizations;
+#: CHOLMOD if it is installed.
 KINDS = ("condense", "splu", "cholmod") if importlib.util.find_spec("sksparse") else ("condense", "splu")
 
 
 def mesh_of(wanted):
-    """As `tools/decks hertz N`, and beyond what that makes."""
+    """Deck of `tools/decks hertz N`, also for larger N."""
     if wanted <= 12000:
         return cylinders.disc_of(R, B, wanted)
     across = 30.0
@@ -40,13 +40,13 @@ def mesh_of(wanted):
 
 
 def pressures(mesh, touch, force):
-    """Forces over the halves of the sides beside each node."""
+    """Nodal forces over the half edges beside each node."""
     side = [math.dist(mesh.point[a], mesh.point[b]) for a, b in zip(touch, touch[1:])]
     return [f / ((side[i - 1] if i else 0.0) / 2 + side[i] / 2) for i, f in enumerate(force[:-1])]
 
 
 class Program:
-    """A program and a setting; `command` in a directory, `answer` as (p_max, approach), or None where there is none."""
+    """A program and a setting; `command` in a directory, `answer` as (p_max, approach), or None if there is none."""
 
     def __init__(self, name, setting, command, answer):
         self.name, self.setting, self.command, self.read = name, setting, command, answer
@@ -110,7 +110,7 @@ def sound(program, reference, plastic):
 
 
 def save_mesh(path, mesh, touch):
-    import numpy as np  # not in the head: what drives the runs stays small
+    import numpy as np  # imported here, so that the driving process stays small
 
     point = np.array(mesh.point)
     np.savez(path, point=point, element=np.array(list(calculix.counterclockwise(mesh))), axis=mesh.line["axis"],
@@ -118,12 +118,12 @@ def save_mesh(path, mesh, touch):
 
 
 def one(top, place, wanted, plastic, repeats, say):
-    """All programs on one mesh: the settings once each, then epcont and the fastest sound one of each in turn."""
+    """Run all programs on one mesh: all settings once, then epcont and the fastest valid setting of each program in turn."""
     place.mkdir()
     mesh = mesh_of(wanted)
     touch = cylinders.touching(mesh, (1.9 if plastic else 1.5) * B)
     ours = epcont(top, place, mesh, plastic)
-    if plastic:  # of first increments 1, 0.5, 0.25, 0.125, 0.1 and 0.05, 0.1 was the fastest at 11 000 nodes
+    if plastic:  # of the first increments 1, 0.5, 0.25, 0.125, 0.1 and 0.05, 0.1 was fastest at 11 000 nodes
         settings = [("gap", s, i) for s in ("SPOOLES", "ITERATIVE CHOLESKY") for i in ((1.0, 0.1) if wanted < LARGE else (0.1,))]
         settings += [("pair", "SPOOLES", 1.0)] if wanted <= 3000 else []
     else:
@@ -139,7 +139,7 @@ def one(top, place, wanted, plastic, repeats, say):
             f"{program.answer} {program.note}")
     if not ours.answer:
         sys.exit(f"epcont: {ours.out}")
-    # One run may mislead: those near the fastest take their turns too. So does CalculiX's default, the direct solver.
+    # One run may mislead: settings near the fastest take turns too, and so does CalculiX's default, the direct solver.
     chosen = [ours]
     for name, among, near in (("CalculiX", "", 2.0), ("CalculiX", "SPOOLES", 1.0), *((name, "", 2.0) for name in SCIKIT_FEM)):
         found = [p for p in others if p.name == name and among in p.setting and sound(p, ours, plastic)]
@@ -157,7 +157,7 @@ def one(top, place, wanted, plastic, repeats, say):
 
 
 def row(program, ours, mesh, plastic, best):
-    """What is shown of a program; ratios are medians of those of each turn."""
+    """Table rows of a program; ratios are medians over the turns."""
     repeated = bool(program.cpu)
     cpu, wall = (program.cpu, program.wall) if repeated else ([program.first], [])
     p, d = program.answer or (math.nan, math.nan)

@@ -1,4 +1,4 @@
-!> Does nothing: what a process costs that loads epcont and its libraries.
+!> Do nothing: measure a process that loads epcont and its libraries.
 program bench_empty
   implicit none
 end program bench_empty

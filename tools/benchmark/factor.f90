@@ -1,7 +1,7 @@
 !> Operations a second of dgemm at n = 1000, and of epcont's factorization: factor REPEATS N1 W1 [N2 W2 ...]
 !>
-!> N, W: equations and half-bandwidth, as `epcont --plan` gives them. Each repeat takes all in turn. Prints for dgemm and for
-!> each matrix: N, W, seconds of processor (median), operations, operations a second, and their part of dgemm's.
+!> N, W: equations and half-bandwidth, as `epcont --plan` reports them. Each repeat takes all in turn. Prints for dgemm and for
+!> each matrix: N, W, processor seconds (median), operations, operations per second, and the fraction of dgemm's rate.
 program bench_factor
   use epcont_base_kinds, only: wp
   use epcont_linalg_lapack, only: dgemm
@@ -10,7 +10,7 @@ program bench_factor
   use statistics, only: median
   implicit none
   integer, parameter :: dense = 1000
-  real(wp), parameter :: least = 0.05_wp   !! seconds that are timed at once
+  real(wp), parameter :: least = 0.05_wp   !! shortest time to measure [s]
   integer, allocatable :: order(:), width(:)
   real(wp), allocatable :: seconds(:, :)   !! [sizes + 1, repeats]
   real(wp) :: fastest, operations, taken
@@ -60,7 +60,7 @@ contains
     dgemm_time = (ended - begun)/3
   end function dgemm_time
 
-  !> A matrix of the band, factored as often as it takes to be timed.
+  !> Factor a band matrix as often as needed for a measurable time.
   real(wp) function factor_time(n, w)
     integer, intent(in) :: n, w
     type(panel_matrix) :: matrix

@@ -1,7 +1,7 @@
-"""Part 5: how time and memory of whole runs grow from 6 000 to 2 000 000 unknowns, with pairs as the square root of the unknowns and as
-their twentieth part.
+"""Part 5: growth of time and memory of whole runs from 6 000 to 2 000 000 unknowns, with the number of pairs as the square root of the unknowns
+and as a twentieth of them.
 
-A size that `--plan` forecasts more for than a run may take ends its row; so does one that is refused.
+A row ends at a size that exceeds the limits according to `--plan`, or that is rejected.
 """
 import re
 import statistics
@@ -11,24 +11,24 @@ from process import peak, settled, timed
 from scenes import many
 
 SIZES = (6000, 20000, 63000, 200000, 630000, 2000000)
-#: What is wanted of the powers.
+#: Required exponents.
 TIME_POWER, MEMORY_POWER = 1.15, 1.05
-#: Pairs for so many unknowns.
+#: Number of pairs for a number of unknowns.
 KINDS = {"pairs as the square root": lambda unknowns: round(unknowns ** 0.5), "pairs a twentieth": lambda unknowns: unknowns // 20}
-#: What a run may take by its plan: operations, MB; and with --quick.
+#: Limits of a run according to its plan: operations, MB; and with --quick.
 MOST, MOST_QUICK = (3e12, 16000.0), (1.6e11, 4000.0)
 SHORT, LONG = 5.0, 30.0
 
 
 def forecast(program, deck, place):
-    """Operations and MB by --plan; None where the deck is refused."""
+    """Operations and MB by --plan; None if the deck is rejected."""
     status, _, _, out = timed([program, "--plan", deck], place)
     found = re.search(r"^  memory (\d+) MB.*, operations ([\d.E+]+)", out, re.MULTILINE)
     return None if status or not found else (float(found[2]), float(found[1]))
 
 
 def size(program, place, unknowns, pairs, turns, most):
-    """A row; None where there is none."""
+    """One row; None if the run is not possible."""
     deck = place / "growth.dat"
     deck.write_text(many.blocks(pairs, unknowns // 2, load=19000.0).text(), encoding="ascii")
     expected = forecast(program, deck.name, place)
@@ -44,7 +44,7 @@ def size(program, place, unknowns, pairs, turns, most):
 
 
 def growth(place, program, turns, quick, say):
-    """Rows of each kind, from the smallest size to the largest that can be had."""
+    """Rows of each series, from the smallest to the largest possible size."""
     found = {}
     for kind, pairs in KINDS.items():
         found[kind] = []

@@ -1,7 +1,7 @@
-"""Part 5: many pairs, many bodies, many unknowns, by whole runs of epcont and of another program beside it, in turns.
+"""Part 5: many pairs, many bodies, many unknowns, solved by whole runs of epcont and of another program, in turns.
 
-What is wanted of each scene is what issue and release before have set: processor seconds and MB, and both as parts of what the
-program beside takes (version 0.4.0).
+The required values of each model were set by the issue and the previous release: processor seconds and MB, and the ratios of both to
+the other program (version 0.4.0).
 """
 import pathlib
 import re
@@ -13,9 +13,9 @@ from cylinders import mesh_of
 from process import peak, settled, timed
 from scenes import cylinders, many
 
-#: Seconds: shorter runs follow one that is not timed; longer ones take a single turn; what takes more by the clock is given up.
+#: Seconds: shorter runs follow one that is not timed; longer ones have only one turn; a run that exceeds the wall-clock limit is stopped.
 SHORT, LONG, MOST, MOST_QUICK = 5.0, 60.0, 1200, 60
-#: GB that runs may take.
+#: Memory limit of a run [GB].
 MEMORY = "20"
 
 
@@ -30,16 +30,16 @@ def cylinder(nodes, plastic=False, steps=1):
 
 @dataclass
 class Scene:
-    """A deck, what is wanted of it, and whether `--quick` has it."""
+    """A deck, its required values, and whether `--quick` includes it."""
     name: str
     make: object
-    seconds: float = None   # of the processor
+    seconds: float = None   # processor seconds
     memory: float = None    # MB
-    part: float = None      # of the seconds of the release before
-    lean: float = None      # of its memory
+    part: float = None      # ratio of seconds to the previous release
+    lean: float = None      # ratio of memory
     quick: bool = True
-    threads: int = 1        # more: the ratio is that of wall clock on one over that on so many, and `part` its least
-    cases: int = 1          # more: load cases from 1/cases of the loads to all; the ratio is to all loads alone, and `part` its largest
+    threads: int = 1        # if above 1: the ratio is wall-clock time on one thread over that on this many, and `part` its lower limit
+    cases: int = 1          # if above 1: load cases from 1/cases of the loads to all; the ratio is to a run with all loads only, and `part` its upper limit
 
 
 SCENES = (
@@ -61,14 +61,14 @@ SCENES = (
 
 
 class Program:
-    """One that takes decks as epcont does: what its runs of a scene took."""
+    """A program with epcont's options; keeps the measured runs of a model."""
 
     def __init__(self, path, deck, threads=1):
         self.command, self.threads = [str(path), "--memory", MEMORY, deck.name], threads
         self.cpu, self.wall, self.memory, self.status, self.first = [], [], None, None, 0.0
 
     def scout(self, place, most):
-        """Memory, and how long a run takes; one that gives no answer takes no turns."""
+        """Measure memory and run time; a run without an answer gets no turns."""
         self.status, self.memory, self.first, self.out = peak(["timeout", str(most), *self.command], place, self.threads)
 
     def run(self, place):
@@ -85,12 +85,12 @@ class Program:
 
 
 def of(one, other):
-    """Median of the ratios of each turn."""
+    """Median of the ratios over the turns."""
     return statistics.median(a / b for a, b in zip(one, other)) if one and other else None
 
 
 def in_turns(programs, place, turns, most):
-    """All once for their memory; those with an answer in turns."""
+    """Run all once for their memory, then those with an answer in turns."""
     for program in programs:
         program.scout(place, most)
     able = [program for program in programs if program.status == 0]
@@ -101,7 +101,7 @@ def in_turns(programs, place, turns, most):
 
 
 def size_of(program, place):
-    """Nodes, pairs and bodies, as its plan has them."""
+    """Nodes, pairs and bodies according to its plan."""
     _, _, _, plan = timed([*program.command, "--plan"], place)
     found = re.search(r"^  (\d+) nodes, \d+ elements, (\d+) pairs?; bodies: (\d+)", plan, re.MULTILINE)
     return dict(zip(("nodes", "pairs", "bodies"), map(int, found.groups())))
@@ -118,7 +118,7 @@ def in_cases(text, cases):
 
 
 def one(scene, place, program, other, turns, most, say):
-    """A scene by both programs: times, ratios to the other's, and what is wanted."""
+    """Run a model with both programs: times, ratios, and required values."""
     place.mkdir()
     deck = place / "scene.dat"
     text = scene.make().text()

@@ -1,11 +1,11 @@
-!> The solve part of epcont, stage by stage: bench_ours DECK [SYSTEM]
+!> Measure epcont's solver stage by stage: bench_ours DECK [SYSTEM]
 !>
-!> Prints the number of equations; seconds of processor of numbering, factor, F, gaps that the loads open (N K^-1 f), contact,
-!> displacements; of all these; of seven times more from the factor on; of assembly (it clears the storage of the factor, too)
-!> and the estimate of the condition, which are in no sum. Fronts are factored while they are assembled: there the factor's time is
-!> that of both less that of the elements' matrices alone, which counts as assembly. All bodies, elastic. Medians of as many runs as
-!> fit into three tenths of a second, the first of several left out.
-!> SYSTEM gets what tools/benchmark/bare reads, in the order of the nodes.
+!> Prints the number of equations; processor seconds of numbering, factor, F, gaps due to the loads (N K^-1 f), contact,
+!> displacements; of their sum; of seven repetitions starting at the factor; of assembly (including clearing the factor's storage)
+!> and of the condition estimate, which are not in a sum. Fronts are factored during assembly: the time of the factor is
+!> that of both minus that of the element matrices alone, which counts as assembly. All bodies are elastic. Medians of as many runs as
+!> fit into three tenths of a second, without the first of several.
+!> SYSTEM receives the input of tools/benchmark/bare, in the order of the nodes.
 program bench_ours
   use epcont_assembly_bodies, only: factored_bodies, new_bodies
   use epcont_assembly_strain_operator, only: new_strain_operator, strain_operator
@@ -46,17 +46,17 @@ program bench_ours
   type(model_materials) :: materials
   type(numbering_type) :: numbering
   type(incidence) :: pairs
-  type(planned_model) :: scene   ! of both
+  type(planned_model) :: scene   ! for both
   type(factored_bodies) :: bodies
   type(contact_problem) :: problem
   type(contact_solution) :: solution
   type(iteration_plan) :: plan
-  real(wp), allocatable, save :: displacement(:, :)   ! said, since gfortran 12 puts it where no leak detector looks at the end
+  real(wp), allocatable, save :: displacement(:, :)   ! saved: otherwise gfortran 12 puts it where leak detectors find no reference at the end
   real(wp) :: seconds(times, most_runs), condition, spent
-  real(wp) :: begun = 0.0_wp   !! of what `lap` measures
+  real(wp) :: begun = 0.0_wp   !! of the last `lap`
   integer :: first, k, runs
 
-  call prepare_heap()   ! as the program does
+  call prepare_heap()   ! as in the program
   call read_scene(argument(1))
   runs = 0
   spent = 0.0_wp
@@ -91,7 +91,7 @@ contains
     call see_motions(model, motions, problem%motion, problem%resultant)
   end subroutine read_scene
 
-  !> Everything once, then seven times more with the same numbers.
+  !> Run everything once, then seven more times with the same numbering.
   subroutine run_once(spent)
     real(wp), intent(out) :: spent(times)
     real(wp) :: again(times)
@@ -116,11 +116,11 @@ contains
     end do
   end subroutine run_once
 
-  !> From assembly to displacements.
+  !> Run from assembly to displacements.
   subroutine solve_once(spent)
     real(wp), intent(inout) :: spent(times)
-    logical, allocatable :: start(:)   !! no guess
-    real(wp) :: alone                  !! seconds of the elements' matrices alone
+    logical, allocatable :: start(:)   !! none
+    real(wp) :: alone                  !! seconds of the element matrices alone
     type(body_flexibility) :: part
     integer :: b
 
@@ -159,7 +159,7 @@ contains
     spent(displacing) = lap()
   end subroutine solve_once
 
-  !> The matrices of elements, for nothing.
+  !> Compute the element matrices only.
   subroutine make_elements(element)
     integer, intent(in) :: element(:)
     real(wp) :: k((2*most_nodes)**2)
@@ -170,12 +170,12 @@ contains
     end do
   end subroutine make_elements
 
-  !> Seconds of processor.
+  !> Processor time [s].
   real(wp) function now()
     call cpu_time(now)
   end function now
 
-  !> Seconds since it was called last.
+  !> Seconds since the last call.
   real(wp) function lap()
     real(wp) :: ended
 
@@ -184,7 +184,7 @@ contains
     begun = ended
   end function lap
 
-  !> All bodies as one matrix, its equations along the nodes.
+  !> Write all bodies as one matrix, with equations in the order of the nodes.
   subroutine write_system(path)
     character(*), intent(in) :: path
     integer, allocatable :: column(:), equation(:, :), n_equation(:), n_start(:), row(:)
@@ -202,7 +202,7 @@ contains
     close (unit)
   end subroutine write_system
 
-  !> One number for each equation of a body, band or border, in the order of the nodes; 0: held.
+  !> A number for each equation of a body, band or border, in the order of the nodes; 0 if fixed.
   subroutine number_along_nodes(equation, n)
     integer, allocatable, intent(out) :: equation(:, :)
     integer, intent(out) :: n
@@ -222,7 +222,7 @@ contains
     end do
   end subroutine number_along_nodes
 
-  !> Lower triangle, element by element: those of one place add up.
+  !> Write the lower triangle, element by element: entries of one position are to be summed.
   subroutine list_entries(equation, row, column, value)
     integer, intent(in) :: equation(:, :)
     integer, allocatable, intent(out) :: row(:), column(:)
@@ -253,7 +253,7 @@ contains
     value = value(:last)
   end subroutine list_entries
 
-  !> N: the entries start(k) to start(k+1)-1 of pair k.
+  !> Write N: pair k has entries start(k) to start(k+1)-1.
   subroutine list_rows(equation, start, number, weight)
     integer, intent(in) :: equation(:, :)
     integer, allocatable, intent(out) :: start(:), number(:)
@@ -274,7 +274,7 @@ contains
     end do
   end subroutine list_rows
 
-  !> Sums of nodal values over what shares an equation [n].
+  !> Sums of nodal values over the DOFs that share an equation [n].
   function gathered(equation, n, nodal) result(values)
     integer, intent(in) :: equation(:, :), n
     real(wp), intent(in) :: nodal(:, :)

@@ -1,8 +1,8 @@
-"""Order, factor and two solves by PARDISO (Intel's MKL) on a system that bench_ours has written: one thread.
+"""Order, factor and two solves by PARDISO (Intel's MKL), one thread, for a system written by bench_ours.
 
-    python pardiso.py SYSTEM        prints seconds of processor of ordering, factor, two solves, and the largest error
+    python pardiso.py SYSTEM        prints processor seconds of ordering, factor, two solves, and the largest error
 
-Medians of as many runs as fit into three tenths of a second, the first of several left out.
+Medians of as many runs as fit into three tenths of a second, without the first of several.
 """
 import statistics
 import sys
@@ -17,7 +17,7 @@ POSITIVE_DEFINITE, ORDER, FACTOR, SOLVE = 2, 11, 22, 33
 
 
 def read(path):
-    """The upper triangle by rows (the file has the lower one, its entries to be added up), and displacements."""
+    """The upper triangle by rows (the file has the lower one; its entries are to be summed), and displacements."""
     with open(path, "rb") as file:
         n, entries = np.fromfile(file, np.int32, 5)[:2]
         row, column = np.fromfile(file, np.int32, entries) - 1, np.fromfile(file, np.int32, entries) - 1
@@ -31,7 +31,7 @@ def read(path):
 
 
 def run(matrix, force):
-    """Seconds of the three, and the last solution."""
+    """Seconds of the three stages, and the last solution."""
     solver = pypardiso.PyPardisoSolver(mtype=POSITIVE_DEFINITE)
     seconds, found = [], None
     for phases in ((ORDER,), (FACTOR,), (SOLVE, SOLVE)):

@@ -1,4 +1,4 @@
-"""Part 5: order, factor and two solves beside PARDISO (MKL) and CHOLMOD on the same systems."""
+"""Part 5: order, factor and two solves compared with PARDISO (MKL) and CHOLMOD on the same systems."""
 import os
 import pathlib
 import statistics
@@ -10,16 +10,16 @@ from solve_part import bare, deck_of, ours
 
 HERE = pathlib.Path(__file__).resolve().parent
 NODES = (42000, 170000)
-#: Of theirs, what ours may take.
+#: Largest ratio of our time to theirs.
 WANTED = 0.5
-#: CHOLMOD's best ways, by the names of bench_bare; F is left out, which takes minutes there.
+#: CHOLMOD's best methods, by their names in bench_bare; without F, which takes minutes there.
 WAYS = tuple(f"CHOLMOD supernodal, {ordering}, forward" for ordering in ("AMD", "METIS", "NESDIS"))
-#: PARDISO refines what it solves, and errors grow with the condition.
+#: Allowed difference of the displacements: PARDISO refines its solution, and errors grow with the condition.
 SAME = 1e-6
 
 
 def pardiso(system):
-    """Seconds of processor; None where MKL is not to be had."""
+    """Processor seconds; None if MKL is not available."""
     run = subprocess.run([sys.executable, HERE / "pardiso.py", system], env={**os.environ, **ONE_THREAD, "MKL_NUM_THREADS": "1"},
                          capture_output=True, text=True, check=False)
     if run.returncode:
@@ -31,13 +31,13 @@ def pardiso(system):
 
 
 def mine(release, deck, *system):
-    """Whole solves: of the loads and of the loads with contact."""
+    """Seconds of whole solves: of the loads, and of the loads with contact."""
     found = ours(release, deck, *system)
     return found["equations"], sum(found[what] for what in ("ordering", "factor", "load_gap", "displacements"))
 
 
 def theirs(release, system, say):
-    """Seconds of each."""
+    """Seconds of each program."""
     found = {name: seconds["ordering"] + seconds["factor"] + 2 * seconds["displacements"]
              for name, seconds in bare(release, system, ("--solves", *WAYS)).items()}
     by_mkl = pardiso(system)

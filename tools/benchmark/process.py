@@ -1,10 +1,10 @@
-"""Runs of whole programs: processor time, wall time, peak memory.
+"""Run whole programs: processor time, wall time, peak memory.
 
-A short run is timed right after one of the same program that is not: what another program left in caches, and pages that
-the host of a virtual machine took back after it (they cost more than clearing them does), are not its own.
+A short run is timed directly after an untimed run of the same program, so that it does not pay for caches filled by another program, or
+for pages that the host of a virtual machine has taken back (they cost more than clearing).
 
-Memory is that of a run under GNU time (wait4's ru_maxrss: of a child of this process it would be this process's own, if
-that is larger). Processor time, user and system, is wait4's of a run of its own.
+Memory is that of a run under GNU time: wait4's ru_maxrss of a child is at least the size of this process. Processor time (user and
+system) is wait4's, of a separate run.
 """
 import os
 import subprocess
@@ -15,7 +15,7 @@ ONE_THREAD = {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1",
 
 
 def timed(command, place, threads=1):
-    """(exit status, seconds of processor, seconds of wall, standard output)."""
+    """(exit status, processor seconds, wall seconds, standard output)."""
     environment = {**ONE_THREAD, "OMP_NUM_THREADS": str(threads)}
     with open(place / "stdout", "w+", encoding="utf-8", errors="replace") as out:
         start = time.perf_counter()
@@ -28,12 +28,12 @@ def timed(command, place, threads=1):
 
 
 def settled(command, place, threads=1):
-    """As `timed`, of a run that follows another of the same."""
+    """As `timed`, after an untimed run of the same command."""
     timed(command, place, threads)
     return timed(command, place, threads)
 
 
 def peak(command, place, threads=1):
-    """(exit status, peak memory in MB, seconds of processor, standard output)."""
+    """(exit status, peak memory in MB, processor seconds, standard output)."""
     status, cpu, _, out = timed(["/usr/bin/time", "-q", "-f", "%M", "-o", "memory", *command], place, threads)
     return status, int((place / "memory").read_text().split()[-1]) / 1024, cpu, out

@@ -133,7 +133,7 @@ def page(parts, about):
 
 
 def draw(rows, path):
-    from drawing.style import plt  # here: what drives the runs stays small
+    from drawing.style import plt  # imported here, so that the driving process stays small
 
     figure, panels = plt.subplots(2, 2, figsize=(10.0, 7.6), layout="constrained")
     for axes, kind, what, title in ((panels[0][0], "elastic", "cpu", "two cylinders, elastic"), (panels[0][1], "elastoplastic", "cpu", "two cylinders, elastoplastic"),

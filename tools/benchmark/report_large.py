@@ -1,22 +1,22 @@
-"""The section of part 5."""
+"""Page section of part 5."""
 from growth import MEMORY_POWER, TIME_POWER
 from report_words import exponent, short, table
 
 
 def result(side, what):
-    """A figure of a program's runs; of one without an answer its exit status."""
+    """Measured value of a program; the exit status if it gave no answer."""
     if side is None:
         return ""
     return short(side[what]) if side["status"] == 0 else f"status {side['status']}"
 
 
 def own(side, what, wanted):
-    """A figure of our own runs, and what was wanted where that was not met."""
+    """Measured value of epcont, with the required one if it is not met."""
     return verdict(side[what], wanted) if side["status"] == 0 else result(side, what)
 
 
 def verdict(found, wanted, least=False):
-    """What was found, and what was wanted where that was not met."""
+    """Measured value, with the required one if it is not met."""
     if found is None or wanted is None:
         return short(found) if found is not None else ""
     met = found >= wanted if least else found <= wanted
@@ -70,7 +70,7 @@ def calculix(rows):
 
 
 def large(rows):
-    """All that there is of part 5."""
+    """All available tables of part 5."""
     text = ["## Many pairs, many bodies, many unknowns"]
     text += scenes(rows["scenes"], rows.get("beside")) if "scenes" in rows else []
     text += growth(rows["growth"]) if "growth" in rows else []

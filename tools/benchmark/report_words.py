@@ -22,7 +22,7 @@ def best(rows, kind, program):
 
 
 def exponent(points):
-    """Slope of the logarithms, least squares."""
+    """Slope of the logarithms by least squares."""
     logs = [(math.log(x), math.log(y)) for x, y in points]
     mx, my = (sum(values) / len(logs) for values in zip(*logs))
     return sum((x - mx) * (y - my) for x, y in logs) / sum((x - mx) ** 2 for x, _ in logs)

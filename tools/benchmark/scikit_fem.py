@@ -1,15 +1,15 @@
-"""The two cylinders, elastic, by scikit-fem: the whole program that is timed.
+"""Solve the two cylinders, elastic, with scikit-fem: the whole program is timed.
 
     python scikit_fem.py MESH condense|cholmod|splu
 
-MESH: numpy's .npz of the nodes, elements and lines. scikit-fem assembles the stiffness. An active set gives forces and
+MESH: nodes, elements and lines in numpy's .npz. scikit-fem assembles the stiffness. An active set method gives forces and
 approach, which are printed as JSON with the seconds after the imports. No stresses, no tables.
 
-`condense` is how contact is written with what scikit-fem has: in each step the nodes of the active set are held on the
-plane, the rest is condensed and solved, by scipy's SuperLU as it comes, and the set is that of the reactions. The others do
-what epcont does, as fast as scikit-fem's parts allow: one integration point an element, one factorization with the platen
-held, by CHOLMOD or by SuperLU with an order and pivots for symmetric matrices, one solution for each contact node, and the
-active set on their flexibility alone.
+`condense` is the usual way to write contact with scikit-fem: in each step the nodes of the active set are fixed on the
+plane, the system is condensed and solved by scipy's SuperLU with its defaults, and the next set follows from the reactions. The others use
+epcont's method, as fast as scikit-fem's parts allow: one integration point per element, one factorization with fixed
+platen, by CHOLMOD or by SuperLU with order and pivots for symmetric matrices, one solution for each contact node, and the
+active set method on their flexibility alone.
 """
 import sys
 import time
@@ -48,7 +48,7 @@ def contact(flexibility, gap):
         if not wrong.any():
             return force, q
         active ^= wrong
-    sys.exit("no set of contacts found")
+    sys.exit("no active set found")
 
 
 def by_flexibility(stiffness, dof, data, kind):
@@ -73,7 +73,7 @@ def by_condensing(stiffness, dof, data):
     axis, top, pairs = dof[0, data["axis"]], dof[1, data["top"]], dof[1, touch]
     active = np.ones(len(touch), bool)
     for _ in range(10 * len(touch)):
-        # what an approach of 1 does, and what closing the gaps does: the load tells how much of the first
+        # solutions for unit approach and for closed gaps: the load determines the approach
         given = np.zeros((2, stiffness.shape[0]))
         given[0, top] = -1.0
         given[1, pairs[active]] = -gap[active]
@@ -89,7 +89,7 @@ def by_condensing(stiffness, dof, data):
         if not wrong.any():
             return force, q, displacement
         active ^= wrong
-    sys.exit("no set of contacts found")
+    sys.exit("no active set found")
 
 
 def main():

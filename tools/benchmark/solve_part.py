@@ -1,6 +1,6 @@
-"""Part 4: numbering to displacements, by epcont's own stages and by the best libraries bare (bare/), on the same systems.
+"""Part 4: numbering to displacements, by epcont's own stages and by the best libraries alone (bare/), on the same systems.
 
-Part 3 takes from here how time and memory grow, and what the smallest deck costs.
+Part 3 takes the growth of time and memory, and the time of the smallest deck, from here.
 """
 import pathlib
 import statistics
@@ -11,15 +11,15 @@ from cylinders import mesh_of
 from process import ONE_THREAD, peak, settled, timed
 from scenes import cylinders
 
-#: What bench_ours and bench_bare print: seconds.
+#: Seconds printed by bench_ours and bench_bare.
 OURS = ("equations", "ordering", "factor", "flexibility", "load_gap", "contact", "displacements", "all", "more", "assembly",
         "condition")
 BARE = ("ordering", "factor", "flexibility", "contact", "displacements", "all", "more")
-#: Methods so many times slower than the fastest take no further turns.
+#: Methods slower than the fastest by this factor get no further turns.
 NEAR = 1.3
-#: Runs of fewer seconds take more turns: the processor's pace changes between them.
+#: Shorter runs [s] get more turns: the processor's speed varies between them.
 SHORT = 0.01
-#: Displacements of the libraries that differ by more than this part of the largest are those of another system.
+#: Larger relative differences of the libraries' displacements mean that the systems differ.
 SAME = 1e-8
 
 
@@ -42,7 +42,7 @@ def ours(release, deck, *system):
 
 
 def bare(release, system, methods=()):
-    """Times of each method; all methods where none is named."""
+    """Times of each method; all methods if none is named."""
     found = {}
     for line in output(release / "bench_bare", system, *methods).splitlines():
         name, *seconds, error = line.split("; ")
@@ -61,7 +61,7 @@ def middle(turns):
 
 
 def one(release, place, nodes, repeats, say):
-    """Both on one mesh: all methods once, then epcont and those near the fastest in turn."""
+    """Run both on one mesh: all methods once, then epcont and the fastest in turn."""
     deck, system = deck_of(place, nodes), place / "system"
     ours(release, deck, system)
     found = bare(release, system)
@@ -80,7 +80,7 @@ def one(release, place, nodes, repeats, say):
 
 
 def growth(release, place, nodes, repeats, say):
-    """Of one mesh: equations, seconds of the whole process and of the solve part, peak memory in MB."""
+    """Measure one mesh: equations, seconds of the whole process and of the solver, peak memory in MB."""
     deck, cpu, wall, part = deck_of(place, nodes), [], [], []
     command = [str(release / "epcont"), deck.name]
     _, memory, _, _ = peak(command, place)
@@ -98,7 +98,7 @@ def growth(release, place, nodes, repeats, say):
 
 
 def smallest(release, deck, place, repeats):
-    """Medians in ms: a process that does nothing, epcont on the deck, and the difference."""
+    """Medians in ms: an empty process, epcont on the deck, and the difference."""
     (place / deck.name).write_text(deck.read_text(encoding="ascii"), encoding="ascii")
     turns = [[1e3 * timed(command, place)[1] for command in ([str(release / "bench_empty")], [str(release / "epcont"), deck.name])]
              for _ in range(repeats)]

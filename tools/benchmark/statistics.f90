@@ -1,4 +1,4 @@
-!> What the benchmark programs share: their arguments, and what they make of repeated times.
+!> Arguments of the benchmark programs, and statistics of repeated times.
 module statistics
   use epcont_base_kinds, only: wp
   implicit none
@@ -17,7 +17,7 @@ contains
     call get_command_argument(k, text)
   end function argument
 
-  !> The middle one, or the lower of the two.
+  !> Median; of an even number of values the lower middle one.
   pure real(wp) function median(values)
     real(wp), intent(in) :: values(:)
     logical :: left(size(values))

@@ -1,4 +1,4 @@
-# CPack, before the package is closed: Debian wants manual pages and changes compressed, without a time in them.
+# CPack, before the package is closed: compress manual pages and changes without a timestamp, as Debian requires.
 file(GLOB_RECURSE pages "${CPACK_TEMPORARY_DIRECTORY}/*.1" "${CPACK_TEMPORARY_DIRECTORY}/CHANGELOG.md")
 foreach(page IN LISTS pages)
   get_filename_component(name "${page}" NAME)

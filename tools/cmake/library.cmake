@@ -1,5 +1,5 @@
-# The library for other programs, a part of its own ("development") of what `cmake --install` puts: the archive, the module `epcont` and
-# what find_package(epcont) reads. A .mod file of gfortran holds all that it takes from other modules.
+# The library for other programs, an install component of its own ("development"): the archive, the module `epcont` and
+# the files of find_package(epcont). A .mod file of gfortran contains all that it uses from other modules.
 include(CMakePackageConfigHelpers)
 set(modules "${CMAKE_INSTALL_LIBDIR}/fortran/epcont")
 set(config "${CMAKE_INSTALL_LIBDIR}/cmake/epcont")

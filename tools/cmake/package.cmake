@@ -1,9 +1,9 @@
-# What `cmake --install` puts where, and the Debian package that `cpack -G DEB` makes of it.
+# Files that `cmake --install` copies, and the Debian package that `cpack -G DEB` makes from them.
 include(GNUInstallDirs)
-# What is installed is the program with its pages, and the library (tools/cmake/library.cmake): tests need not be built for it.
+# Only the program with its pages and the library (tools/cmake/library.cmake) are installed: tests need not be built.
 set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)
 
-# The program prints its own manual page, from the table of options that it reads by.
+# The program prints its own manual page, from its table of options.
 set(man_page "${PROJECT_BINARY_DIR}/epcont.1")
 add_custom_command(TARGET epcont POST_BUILD COMMAND epcont --man > "${man_page}" BYPRODUCTS "${man_page}" VERBATIM)
 
@@ -11,8 +11,8 @@ install(TARGETS epcont RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
 install(FILES "${man_page}" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1")
 install(FILES README.md CHANGELOG.md DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 file(GLOB manual "${PROJECT_SOURCE_DIR}/input/*.md")
-install(FILES ${manual} DESTINATION "${CMAKE_INSTALL_DOCDIR}/input")   # where README.md says that they are
-# Where Debian looks for it; with the notices of what is linked statically.
+install(FILES ${manual} DESTINATION "${CMAKE_INSTALL_DOCDIR}/input")   # where README.md expects them
+# The place that Debian requires; with the notices of statically linked libraries.
 set(copyright LICENSE)
 if(is_static)
   list(APPEND copyright tools/cmake/openblas.txt)
@@ -34,8 +34,8 @@ every answer is certified by code of its own.")
 set(CPACK_PACKAGE_CONTACT "The epcont authors" CACHE STRING "Whom the package names as its maintainer: NAME <ADDRESS>")
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
-set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)   # the libraries that it was linked with, by their packages
-# Folders that anyone may enter, whatever the umask of whoever packs.
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)   # packages of the linked shared libraries
+# Folders are readable for all users, whatever the umask of the packager.
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 set(CPACK_PRE_BUILD_SCRIPTS "${PROJECT_SOURCE_DIR}/tools/cmake/compress.cmake")
 include(CPack)

@@ -1,21 +1,21 @@
-# OpenBLAS and the runtime of Fortran as parts of the program: to load and bind shared ones takes two milliseconds, a small deck three.
-# libquadmath, which that runtime calls, stays shared: its licence (LGPL) asks something of whoever passes it on within a program.
-# Any other BLAS and LAPACK are linked as CMake found them. Sets linear_algebra, for target_link_libraries; what has the property
-# LINKED_SHARED is linked with shared libraries all the same.
+# Link OpenBLAS and the Fortran runtime statically: loading shared ones takes two milliseconds, a small deck three.
+# libquadmath, which the runtime calls, stays shared: its licence (LGPL) has conditions for static linking.
+# Other BLAS and LAPACK libraries are linked as CMake found them. Sets linear_algebra, for target_link_libraries; targets with the property
+# LINKED_SHARED are linked with shared libraries.
 set(EPCONT_STATIC AUTO CACHE STRING "OpenBLAS and the runtime of Fortran linked statically: AUTO (where they can be), ON or OFF")
 set_property(CACHE EPCONT_STATIC PROPERTY STRINGS AUTO ON OFF)
 set(linear_algebra LAPACK::LAPACK BLAS::BLAS)
 set(is_static FALSE)
 if(NOT EPCONT_STATIC STREQUAL "OFF" AND CMAKE_Fortran_COMPILER_ID STREQUAL "GNU" AND
    LAPACK_LIBRARIES MATCHES "^([^;]*/libopenblas[^/;]*\\.so)")
-  # The archive of the OpenBLAS that was found: beside the file that Debian's alternatives lead to. It may want threads of one kind or other.
+  # The archive of the OpenBLAS that was found: beside the target of Debian's alternatives. It may need pthreads or OpenMP.
   get_filename_component(shared "${CMAKE_MATCH_1}" REALPATH)
   get_filename_component(folder "${shared}" DIRECTORY)
   find_library(GOMP_ARCHIVE libgomp.a HINTS ${CMAKE_Fortran_IMPLICIT_LINK_DIRECTORIES})
   mark_as_advanced(GOMP_ARCHIVE)
   set(archives "${folder}/libopenblas.a" $<$<BOOL:${GOMP_ARCHIVE}>:${GOMP_ARCHIVE}> pthread ${CMAKE_DL_LIBS})
   set(options -static-libgfortran -static-libgcc -Wl,--as-needed)
-  foreach(name openblas_set_num_threads openblas_get_parallel)   # what src/system/threads.f90 looks for, in the program's own table of names
+  foreach(name openblas_set_num_threads openblas_get_parallel)   # symbols that src/system/threads.f90 looks up in the program's own table
     list(APPEND options "-Wl,--undefined=${name},--export-dynamic-symbol=${name}")
   endforeach()
 
@@ -36,7 +36,7 @@ if(NOT EPCONT_STATIC STREQUAL "OFF" AND CMAKE_Fortran_COMPILER_ID STREQUAL "GNU"
     set(is_static TRUE)
     add_library(linked_statically INTERFACE)
     target_link_libraries(linked_statically INTERFACE ${archives})
-    # prepare_start of src/app/process.f90 goes before OpenBLAS, which begins before the main program does.
+    # prepare_start of src/app/process.f90 runs before OpenBLAS, which starts before the main program.
     target_link_options(linked_statically INTERFACE ${options} -Wl,--undefined=epcont_prepare_start,-init=epcont_prepare_start)
     set(linear_algebra $<IF:$<BOOL:$<TARGET_PROPERTY:LINKED_SHARED>>,LAPACK::LAPACK,linked_statically>)
     message(STATUS "Linked statically: ${folder}/libopenblas.a, libgfortran, libgcc")

@@ -1,4 +1,4 @@
-"""Families of scenes whose outlines have corners where they touch: family(pick, n) draws one and meshes it n times finer than drawn."""
+"""Families of models whose outlines have corners in contact: family(pick, n) draws one and meshes it n times finer."""
 import math
 
 from deceiving.drawing import Draw, base, family
@@ -7,7 +7,7 @@ from deceiving.shapes import cells, profiled
 
 @family
 def block_on_block(pick, n):
-    """A punch on a wider, or a wide block on a narrower one; no node of one at a corner of the other."""
+    """A punch on a wider block, or a wide block on a narrower one; no node of one is at a corner of the other."""
     d = Draw(pick, n)
     width, shift = pick.uniform(0.5, 1.5), pick.uniform(-0.4, 0.4)
     left, right = -pick.uniform(1.2, 2.0), pick.uniform(1.2, 2.0)
@@ -23,7 +23,7 @@ def block_on_block(pick, n):
 
 @family
 def closed_outlines(pick, n):
-    """The same with the whole outline as one line, of one body or of both; thin ones among them."""
+    """The same with the whole outline as one line, for one body or both; some are thin."""
     d = Draw(pick, n)
     width, shift = pick.uniform(0.5, 1.5), pick.uniform(-0.4, 0.4)
     left, right = -pick.uniform(1.2, 2.0), pick.uniform(1.2, 2.0)
@@ -42,7 +42,7 @@ def closed_outlines(pick, n):
 
 @family
 def wedge_on_flat(pick, n):
-    """A wedge of any angle whose tip comes down between nodes, or on one."""
+    """A wedge of any angle whose tip meets the block between nodes, or at one."""
     d = Draw(pick, n)
     slopes = [math.tan(math.radians(pick.choice([5, 12, 17, 20, 30, 40, 50]))) for _ in range(2)]
     if pick.random() < 0.5:
@@ -65,7 +65,7 @@ def wedge_on_flat(pick, n):
 
 @family
 def chamfers(pick, n):
-    """A flat foot with chamfers of 10 to 45 degrees, one or several sides long, in its line."""
+    """A flat foot with chamfers of 10 to 45 degrees, one or several edges long, in its line."""
     d = Draw(pick, n)
     angle = math.tan(math.radians(pick.choice([10, 15, 20, 25, 30, 34, 36, 40, 45])))
     flat, length = pick.uniform(0.3, 0.8), pick.choice([0.1, 0.25, 0.5])
@@ -85,7 +85,7 @@ def chamfers(pick, n):
 
 @family
 def steps(pick, n):
-    """A wide block over a floor with a step: the upper level carries it, its corner between nodes of the block."""
+    """A wide block over a floor with a step: the upper level carries it, with its corner between nodes of the block."""
     d = Draw(pick, n)
     step = pick.choice([0.05, 0.2, 0.5])
     at, more = pick.uniform(-0.5, 0.5), pick.random() < 0.4
@@ -128,7 +128,7 @@ def concave_corner(pick, n):
 
 @family
 def keyway(pick, n):
-    """A key pushed into a U: its lower side, its flanks, or its whole outline against the groove."""
+    """A key pushed into a U: its lower side, its flanks, or its whole outline in contact with the groove."""
     d = Draw(pick, n)
     half, deep = pick.uniform(0.3, 0.8), pick.uniform(0.4, 1.0)
     side, below = pick.choice([0.0, 0.0, 0.005, 0.1]), pick.choice([0.0, 0.01, 0.1])
@@ -173,7 +173,7 @@ def t_in_slot(pick, n):
 
 @family
 def feet(pick, n):
-    """A body on two or three feet of unlike length: those that begin beyond SEARCH come down too."""
+    """A body on two or three feet of different length: those that start farther than SEARCH come into contact too."""
     d = Draw(pick, n, h=(0.12, 0.35))
     count = pick.choice([2, 3])
     hang = [0.0] + [pick.choice([0.0, 0.2, 0.5, 1.0]) for _ in range(count - 1)]
@@ -197,7 +197,7 @@ def feet(pick, n):
 
 @family
 def two_masters(pick, n):
-    """One line over two bodies: side by side, apart, or of unlike height."""
+    """One line over two bodies: adjacent, apart, or of different height."""
     d = Draw(pick, n)
     apart, lower = pick.choice([0.0, 0.05, 0.4]), pick.choice([0.0, 0.0, 0.01])
     at = pick.uniform(-0.3, 0.3)
@@ -247,7 +247,7 @@ def line_twice(pick, n):
 
 @family
 def wall_and_floor(pick, n):
-    """A block on a floor near a wall of it, with play: the wall must not carry what the floor does."""
+    """A block on a floor near a wall of it, with clearance: the wall must not carry the floor's load."""
     d = Draw(pick, n)
     play = pick.choice([0.001, 0.02, 0.1, 0.3])
     width = pick.uniform(0.6, 1.2)
@@ -267,7 +267,7 @@ def wall_and_floor(pick, n):
 
 @family
 def edge_on_edge(pick, n):
-    """Two blocks that overlap by a part of their width."""
+    """Two blocks that overlap over a part of their width."""
     d = Draw(pick, n)
     lap = pick.uniform(0.15, 0.8)
     low = d.master()
@@ -283,7 +283,7 @@ def edge_on_edge(pick, n):
 
 @family
 def stack(pick, n):
-    """Three or four bodies on each other, of unlike width and fineness."""
+    """A stack of three or four bodies with different widths and mesh sizes."""
     d = Draw(pick, n)
     below, right = base(d, -1.4, 1.5), 1.5
     upper = below.line((1.5, 0.0), (-1.4, 0.0))
@@ -296,7 +296,7 @@ def stack(pick, n):
         d.either(body.line((a, y), (b, y)), upper)
         y += height
         upper = body.line((b, y), (a, y))
-        if k < count - 1:   # between walls, and free to come down
+        if k < count - 1:   # between walls, and unconstrained vertically
             wall = d.scene.corners(body.line((a, y), (a, y - height)))
             d.hold(body, (a, y), (a, y - height), "1")
             d.scene.free.append((wall[(len(wall) - 1) // n // 2 * n], "2"))
@@ -324,7 +324,7 @@ def beam_over_bump(pick, n):
 
 @family
 def polygon_block(pick, n):
-    """A block turned by any angle that comes down with a corner, whole outline or two sides."""
+    """A block rotated by any angle that comes down on a corner, with its whole outline or two sides as line."""
     d = Draw(pick, n)
     floor = base(d, -1.6, 1.7)
     angle = math.radians(pick.choice([5, 20, 35, 45, 60]))
@@ -367,7 +367,7 @@ def pockets(pick, n):
 
 @family
 def flush(pick, n):
-    """Bodies of one width, or wider by a hair at either end."""
+    """Bodies of equal width, or slightly wider at either end."""
     d = Draw(pick, n)
     left, right = (pick.choice([0.0, 0.0, 1e-9, 1e-7, 1e-6, 1e-5, 1e-3, 0.03]) * pick.choice([-1.0, 1.0]) for _ in range(2))
     floor = base(d, -1.0, 1.1)

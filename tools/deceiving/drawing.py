@@ -1,4 +1,4 @@
-"""What families of random scenes share: what is drawn, how a body is pressed, a block to stand on."""
+"""Parts shared by families of random models: random parameters, loads on a body, a block as base."""
 from deceiving.scenes import PLANE, Scene
 from deceiving.shapes import cells
 
@@ -11,7 +11,7 @@ def family(function):
 
 
 class Draw:
-    """A scene and what most families draw: kinds, moduli, sizes of elements (slave h, master h / ratio)."""
+    """A model and the parameters that most families draw: element types, moduli, element sizes (slave h, master h / ratio)."""
 
     def __init__(self, pick, n, kinds=PLANE, ratios=(1.0, 1.0, 1.3, 2.0, 3.0, 5.0, 8.0, 0.75, 0.5, 0.33), h=(0.15, 0.5)):
         self.pick = pick
@@ -47,7 +47,7 @@ class Draw:
         self.scene.hold(body.line(a, b), *how)
 
     def press(self, body, right, left, top, travel, width):
-        """The upper side of the body moves down by a travel (and aside), or under a force that gives strains as drawn."""
+        """Move the upper side of the body by a prescribed displacement (down and sideways), or load it with a force that gives the drawn strains."""
         nodes = body.line((right, top), (left, top))
         if self.force:
             self.scene.platen(nodes, self.strain * min(body.young, self.young) * width)
@@ -55,14 +55,14 @@ class Draw:
             self.scene.hold(nodes, "12", (self.sway * travel, -travel))
 
     def either(self, slave, master, turn=0.5):
-        """The two lines in contact, one of them the slave by chance."""
+        """Put the two lines in contact; the slave is chosen at random."""
         if self.pick.random() < turn:
             slave, master = master, slave
         self.scene.contact(slave, master)
 
 
 def base(draw, left, right, depth=1.0):
-    """A block below y = 0, held at its lower side."""
+    """A block below y = 0, fixed at its lower side."""
     body = draw.master()
     cells(body, [left, right], [-depth, 0.0], draw.h_master, up=max(draw.h_master, depth / 5))
     draw.hold(body, (left, -depth), (right, -depth))

@@ -1,4 +1,4 @@
-"""Random scenes and their twins are run, and what is said of them is held against each other."""
+"""Run random models and their twins, and compare their results."""
 import math
 import pathlib
 import random
@@ -11,16 +11,16 @@ from deceiving.families import FAMILIES  # noqa: E402
 from deceiving.scenes import Twin, deck  # noqa: E402
 from tables import rows, summary  # noqa: E402
 
-SAME = 1e-7      # what rounding leaves between twins, of the largest
-CLOSE = 0.05     # what a figure may be off without an estimate
-DEEP = 0.105     # of the largest displacement: the program tells of a tenth, at other places of the sides
-TOLD = "bodies penetrate each other by"    # unless the program says so, and where: their forces are off by about as much
-NOTHING = "nothing touches"             # a mesh that touches nothing is not held against one that does: it says so
-FACETS = "pressures and approaches will be those of facets"   # approaches are not compared, then
-LARGE = "displacements too large for small-displacement theory"   # where master and slave exchanged need not say the same
-SMOOTH = math.radians(35.0)   # turns of an outline up to here may be those of a curve in chords
-CHORDS = 8       # of a side with a middle node
-LARGEST = 350    # nodes of a scene; larger ones are drawn again
+SAME = 1e-7      # rounding differences between twins, relative to the largest value
+CLOSE = 0.05     # allowed difference of a value without an estimate
+DEEP = 0.105     # relative to the largest displacement: the program warns at a tenth, at other points of the edges
+TOLD = "bodies penetrate each other by"    # unless the program warns of it, with the position: the forces have errors of about this size
+NOTHING = "nothing touches"             # a mesh without contact is not compared with one in contact: its warning says so
+FACETS = "pressures and approaches will be those of facets"   # then approaches are not compared
+LARGE = "displacements too large for small-displacement theory"   # then master and slave exchanged may give different results
+SMOOTH = math.radians(35.0)   # smaller rotations of an outline may belong to a curve made of chords
+CHORDS = 8       # for an edge with a mid-side node
+LARGEST = 350    # largest number of nodes; larger models are drawn again
 
 
 def number(text):
@@ -29,17 +29,17 @@ def number(text):
 
 @dataclass
 class Answer:
-    """What one run says, in the frame of the scene."""
+    """Results of one run, in the axes of the original model."""
     word: str = "rejected"
     message: str = ""
     total: float = 0.0
     total_error: float | None = None
     energy_error: float = 0.0
-    resultant: list = field(default_factory=list)       # of contact on each body
+    resultant: list = field(default_factory=list)       # contact force on each body
     resultant_error: list = field(default_factory=list)
     displacement: list = field(default_factory=list)
     reaction: list = field(default_factory=list)
-    approach: dict = field(default_factory=dict)        # place in scene.free -> value, estimate
+    approach: dict = field(default_factory=dict)        # point in scene.free -> value, estimate
     p_max: tuple = (None, None)
     half_width: tuple = (None, None)
     pairs: int = 0
@@ -50,7 +50,7 @@ class Answer:
 
 
 def read(scene, twin, numbers, folder, name, said):
-    """The answer of deck `name`; `said` are the lines on standard error."""
+    """Results of deck `name`; `said` are the lines on standard error."""
     answer = Answer()
     own = [line for line in said if f"{name}.dat" in line]
     answer.message = " / ".join(line.split(".dat", 1)[1].lstrip(":0123456789 ") for line in own)
@@ -74,7 +74,7 @@ def read(scene, twin, numbers, folder, name, said):
     for body in scene.bodies:
         sums = [0.0, 0.0]
         for k in body.at.values():
-            for c in range(1 if scene.rings else 0, 2):   # a radial sum is no force: hoops take it, and contact's share is in the total
+            for c in range(1 if scene.rings else 0, 2):   # a radial sum is not a force: hoop stresses contribute, and the contact part is in the total
                 sums[c] -= answer.reaction[k][c] + forces.get(k, (0.0, 0.0))[c]
         answer.resultant.append(sums)
     answer.resultant_error = errors_of_bodies(scene, numbers, folder / f"{name}.bodies.csv")
@@ -85,7 +85,7 @@ def read(scene, twin, numbers, folder, name, said):
 
 
 def errors_of_bodies(scene, numbers, path):
-    """What the resultant on each body of the scene may be off by, by the answer itself; 0 where it says nothing."""
+    """Uncertainty of the resultant on each body, according to the answer itself; 0 if it reports none."""
     said = {}
     try:
         for row in rows(path):
@@ -101,7 +101,7 @@ def estimate_of_approach(values, node):
 
 
 def read_zones(answer, values, path):
-    """Largest pressure of all, and the half-width of the zone that has it, with their estimates."""
+    """Largest pressure of all zones, and the half-width of its zone, with their estimates."""
     try:
         zones = [row for row in rows(path) if number(row["max_pressure"])]
     except OSError:
@@ -114,7 +114,7 @@ def read_zones(answer, values, path):
 
 
 def solve(program, folder, jobs, seconds):
-    """Answers by name, of (name, scene, twin) run as one process, or where that breaks one by one; the decks stay in the folder."""
+    """Results by name, for (name, scene, twin) run as one process, or one by one if that fails; the decks stay in the folder."""
     numbers = {}
     for name, scene, twin in jobs:
         text, numbers[name] = deck(scene, twin)
@@ -133,7 +133,7 @@ def solve(program, folder, jobs, seconds):
 
 
 def run(program, folder, names, seconds):
-    """How the process broke, None if it did not; and the lines it wrote on standard error."""
+    """Reason why the process failed (None if it did not), and its lines on standard error."""
     try:
         ended = subprocess.run([program, *(f"{name}.dat" for name in names), "-o", "out", "--tables", "all", "--quiet"], cwd=folder,
                                capture_output=True, text=True, timeout=seconds)
@@ -143,13 +143,13 @@ def run(program, folder, names, seconds):
 
 
 def off(one, other):
-    """Largest difference of vectors, of the largest of them."""
+    """Largest difference of vectors, relative to the largest of them."""
     scale = max((abs(c) for v in one + other for c in v), default=0.0)
     return max((abs(a - b) for v, w in zip(one, other) for a, b in zip(v, w)), default=0.0) / scale if scale else 0.0
 
 
 def same(one, other):
-    """What is wrong with a rotated, mirrored, moved or renumbered twin; None if nothing."""
+    """Fault of a rotated, mirrored, moved or renumbered twin; None if there is none."""
     if one.word != other.word:
         return f"{one.word}, twin {other.word}"
     if not one.valid:
@@ -162,7 +162,7 @@ def same(one, other):
 
 
 def differences(one, other):
-    """Figures that differ, as (name, of the scale, of what is allowed)."""
+    """Values that differ, as (name, difference over scale, difference over tolerance)."""
     scale = max(one.total, other.total)
     found = []
     if not scale:
@@ -182,26 +182,26 @@ def differences(one, other):
 
 
 def estimates(one, other):
-    """Of p_max and half-width, where both give them with an estimate: does it cover what they differ by?"""
+    """For p_max and half-width, if both give them with an estimate: does it cover their difference?"""
     for (a, e), (b, f) in ((one.p_max, other.p_max), (one.half_width, other.half_width)):
         if None not in (a, b, e, f):
             yield abs(a - b) <= max(e + f, CLOSE * abs(b))
 
 
 def unlike(one, other):
-    """The worst figure off by more than allowed, as words; None if there is none."""
+    """Worst value that differs by more than allowed, as text; None if there is none."""
     name, part, beyond = max(differences(one, other), key=lambda each: each[2], default=("", 0.0, 0.0))
     return f"{name} off by {100 * part:.1f} %" if beyond > 1.0 else None
 
 
 def warned(of, one, other):
-    """Does one of two answers say itself why they may differ?"""
+    """Does one of two answers itself warn of their difference?"""
     said = one.message + other.message
     return NOTHING in said or TOLD in said or of == "exchanged" and LARGE in said
 
 
 def outlines(scene, answer):
-    """Points as drawn and displaced, and each body's outline as chords (a, b) of them: eight of a side with a middle node, which bends."""
+    """Points undeformed and displaced, and each body's outline as chords (a, b) between them: eight for an edge with a mid-side node, which bends."""
     drawn = [tuple(x) for x in scene.nodes]
     now = [(x[0] + u[0], x[1] + u[1]) for x, u in zip(scene.nodes, answer.displacement)]
     found = []
@@ -218,12 +218,12 @@ def outlines(scene, answer):
 
 
 def on_parabola(a, middle, c, s):
-    """Where the parabola through three nodes is after a part of it."""
+    """Point of the parabola through three nodes at a fraction of its length."""
     return tuple((1 - s) * (1 - 2 * s) * p + 4 * s * (1 - s) * q - s * (1 - 2 * s) * r for p, q, r in zip(a, middle, c))
 
 
 def sagitta(x, sides):
-    """Largest height of a smooth curve over its chord, by the turn at nodes where that is less than 35 degrees."""
+    """Largest height of a smooth curve over its chord, from the rotation at nodes if it is less than 35 degrees."""
     after, most = {a: b for a, b in sides}, 0.0
     for a, b in sides:
         c = after[b]
@@ -235,7 +235,7 @@ def sagitta(x, sides):
 
 
 def depth(point, place, sides):
-    """How deep a point lies within an outline; 0 outside."""
+    """Depth of a point within an outline; 0 if outside."""
     turns, least = 0, math.inf
     for a, b in sides:
         (ax, ay), (bx, by) = place[a], place[b]
@@ -248,7 +248,7 @@ def depth(point, place, sides):
 
 
 def through(scene, answer):
-    """Where one body lies deepest inside another once displaced, beyond what chords explain: (depth, of what moved, place)."""
+    """Deepest penetration of two displaced bodies, beyond the effect of chords: (depth, depth over displacement, point)."""
     drawn, place, sides = outlines(scene, answer)
     moved = max((math.hypot(*u) for u in answer.displacement), default=0.0)
     worst = (0.0, 0.0, None)
@@ -270,7 +270,7 @@ def through(scene, answer):
 
 
 def twins_of(scene, pick):
-    """Ways to write the same scene that must give the same, and those that are another model of it."""
+    """Equivalent forms of the same model that must give the same results, and forms that are another discretization."""
     angle = math.radians(pick.uniform(0.0, 360.0) if scene.turns() else 90.0 * pick.choice([1, 2, 3]))
     far = [scene.size * pick.choice([-1e3, 1e3]) for _ in range(2)]
     equal = [Twin("renumbered", mix=random.Random(pick.random())), Twin("reversed", reverse=True)]
@@ -295,14 +295,14 @@ class Verdict:
     answers: dict
     faults: list
     covered: list    # of p_max and half-width
-    told: int        # answers that say themselves what they cannot be trusted in
+    told: int        # answers whose own warnings cover a finding
 
     @property
     def base(self):
         return self.answers["base"]
 
     def counts(self):
-        """What it adds to the table."""
+        """Counts for the table."""
         kinds = {fault.kind: 1 for fault in self.faults}
         return {"scenes": 1, "valid": self.base.valid, "refused": not self.base.valid, "wrong": bool(kinds), **kinds,
                 "told": self.told, "finer": not self.base.valid and self.answers["finer"].valid, "estimates": len(self.covered),
@@ -320,17 +320,17 @@ class Judge:
         self.program, self.seed, self.seconds = program, seed, seconds
 
     def scenes(self, name, number):
-        """The scene as drawn, and three times finer."""
+        """The original model, and three times finer."""
         for again in range(1000):
             def drawn(n):
                 return FAMILIES[name](random.Random(f"{self.seed} {name} {number} {again}"), n)
 
             if len(drawn(1).nodes) <= LARGEST:
                 return drawn(1), drawn(3)
-        raise ValueError(f"{name}: no scene of at most {LARGEST} nodes")
+        raise ValueError(f"{name}: no model with at most {LARGEST} nodes")
 
     def __call__(self, name, number, folder):
-        """The verdict on one scene, its decks left in the folder."""
+        """Judge one model; its decks stay in the folder."""
         scene, finer = self.scenes(name, number)
         equal, other = twins_of(scene, random.Random(f"{self.seed} {name} {number} twins"))
         jobs = [("base", scene, Twin("base")), ("finer", finer, Twin("finer"))] + [(twin.name, scene, twin) for twin in equal + other]
@@ -351,12 +351,12 @@ class Judge:
                 if part > DEEP and TOLD in answers[of].message:
                     told += 1
                 elif part > DEEP:
-                    faults.append(Fault("through", of, f"through by {100 * part:.0f} % of the largest displacement at {place[0]:.3f} {place[1]:.3f}"))
+                    faults.append(Fault("through", of, f"penetration of {100 * part:.0f} % of the largest displacement at {place[0]:.3f} {place[1]:.3f}"))
         covered = list(estimates(base, fine)) if base.valid and fine.valid else []
         return Verdict(len(scene.nodes), answers, faults, covered, told)
 
 
 def unlike_pressure(one, other):
-    """p_max of the same scene whose lines are named more than once, and once."""
+    """p_max of the same model with its lines named once, and more than once."""
     (p, _), (q, _) = one.p_max, other.p_max
     return f"p_max {p:.4g}, once {q:.4g}" if p and q and abs(p - q) > CLOSE * max(p, q) else None

@@ -1,6 +1,6 @@
-"""Scenes of bodies that may touch along lines: meshed from patches, n times finer if asked, and written as decks.
+"""Models of bodies in contact along lines: meshed from patches, n times finer if asked, and written as decks.
 
-What is drawn at random is drawn before the fineness n has a say, so that the same draws give the same scene on a finer mesh.
+All random values are drawn before the fineness n is used, so that the same draws give the same model on a finer mesh.
 """
 import math
 
@@ -9,7 +9,7 @@ SIX = ("CTRIA6", "CTRAX6")
 
 
 def written(value):
-    """A field: a word, a whole number, or a real with its point and all its digits."""
+    """A field: a word, an integer, or a real with a decimal point and all its digits."""
     if isinstance(value, (int, str)):
         return str(value)
     text = repr(float(value))
@@ -23,7 +23,7 @@ def card(*fields):
 
 
 class Body:
-    """Nodes (numbers in the scene) and elements of one kind; patches share the nodes of their common sides."""
+    """Nodes (numbers in the model) and elements of one type; patches share the nodes of their common sides."""
 
     def __init__(self, scene, kind, young, poisson):
         self.scene, self.kind, self.young, self.poisson = scene, kind, young, poisson
@@ -37,7 +37,7 @@ class Body:
         return self.at[key]
 
     def patch(self, place, across, up):
-        """A mesh of the unit square, carried over by place(s, t)."""
+        """A mesh of the unit square, mapped by place(s, t)."""
         n = self.scene.n
         m, k = across * n, up * n
         six = self.kind in SIX
@@ -60,7 +60,7 @@ class Body:
         return self
 
     def sides(self):
-        """Sides of one element each, body to the left: (start, middle or None, end) by start."""
+        """Edges of the boundary, body to the left: (start, mid-side node or None, end) by start."""
         found = {}
         for nodes in self.elements:
             corners, middles = (nodes[:3], nodes[3:]) if self.kind in SIX else (nodes, [None] * 4)
@@ -78,7 +78,7 @@ class Body:
         return min(nodes or self.at.values(), key=lambda k: (x[k][0] - point[0]) ** 2 + (x[k][1] - point[1]) ** 2)
 
     def line(self, start, end=None):
-        """Nodes of the outline counter-clockwise from near one point to near another; the whole of it without the other."""
+        """Nodes of the outline counter-clockwise from near one point to near another; the whole outline without a second point."""
         sides = self.sides()
         here = self.near(start, list(sides))
         last = here if end is None else self.near(end, list(sides))
@@ -101,9 +101,9 @@ class Scene:
         self.rotating = []            # (master node, dependent nodes, moment) of platens that rotate
         self.springs = []             # (node, direction, stiffness) to the ground
         self.equations = []           # terms (node, direction, coefficient) of one direction; the first is dependent
-        self.gravity, self.spins = [], []   # accelerations; (node of the axis, turns in a unit of time)
+        self.gravity, self.spins = [], []   # accelerations; (node of the axis, rotations per unit of time)
         self.lines, self.contacts, self.parameters = {}, [], {}
-        self.needed = None            # contacts; those behind say again what these have said
+        self.needed = None            # contacts; later ones repeat these
         self.note = ""
 
     def cross(self, a, b):
@@ -115,7 +115,7 @@ class Scene:
         return self.bodies[-1]
 
     def corners(self, nodes):
-        """Of a line's nodes those at corners of elements."""
+        """Nodes of a line at corners of elements."""
         body = next(body for body in self.bodies if nodes[0] in body.at.values())
         return nodes[::2] if body.kind in SIX else nodes
 
@@ -129,7 +129,7 @@ class Scene:
                 self.supports.setdefault(node, {})[int(d)] = value[int(d) - 1]
 
     def platen(self, nodes, force, sideways=True):
-        """Nodes that go down as one, free, under a force; held sideways."""
+        """Nodes with a common vertical displacement, unconstrained, under a force; fixed sideways."""
         leader = nodes[0]
         self.platens.append((leader, "2", nodes[1:]))
         self.free.append((leader, "2"))
@@ -138,7 +138,7 @@ class Scene:
             self.hold(nodes, "1")
 
     def contact(self, slave, master):
-        """Between two lines of nodes; equal ones are one line."""
+        """Add contact between two lines of nodes; equal ones are one line."""
         numbers = []
         for nodes in (slave, master):
             known = [k for k, line in self.lines.items() if line == nodes]
@@ -147,12 +147,12 @@ class Scene:
         self.contacts.append(tuple(numbers))
 
     def turns(self):
-        """May it be rotated by any angle? Only where supports hold both directions, and nothing is tied or free."""
+        """May it be rotated by any angle? Only if supports fix both directions and there are no ties or platens."""
         return not (self.rings or self.platens or self.springs or self.equations) and all(len(held) == 2 for held in self.supports.values())
 
 
 class Twin:
-    """Another way to write the same scene."""
+    """Another form of the same model."""
 
     def __init__(self, name, angle=0.0, mirror=False, shift=(0.0, 0.0), mix=None, exchange=False, split=None, reverse=False,
                  once=False):
@@ -160,7 +160,7 @@ class Twin:
         self.exchange, self.split, self.reverse, self.once = exchange, split, reverse, once
         c, s = (round(math.cos(angle)), round(math.sin(angle))) if angle % (math.pi / 2) == 0 else (math.cos(angle), math.sin(angle))
         f = -1.0 if mirror else 1.0
-        self.matrix = ((f * c, -s), (f * s, c))   # mirror x first, then turn
+        self.matrix = ((f * c, -s), (f * s, c))   # mirror x first, then rotate
 
     def vector(self, v):
         (a, b), (c, d) = self.matrix
@@ -179,7 +179,7 @@ class Twin:
 
 
 def lines_of(scene, twin):
-    """Lines and contacts as the twin wants them: split at a node, exchanged, walked backwards."""
+    """Lines and contacts of the twin: split at a node, exchanged, in the opposite direction."""
     contacts = scene.contacts[:scene.needed] if twin.once else list(scene.contacts)
     lines = {k: nodes for k, nodes in scene.lines.items() if any(k in each for each in contacts)}
     if twin.split is not None:
@@ -200,7 +200,7 @@ def lines_of(scene, twin):
 
 
 def deck(scene, twin):
-    """Text, and the number of each node."""
+    """Text of the deck, and the number of each node."""
     numbers = list(range(1, len(scene.nodes) + 1))
     if twin.mix:
         numbers = [7 * k for k in twin.mix.sample(range(1, 3 * len(numbers)), len(numbers))]

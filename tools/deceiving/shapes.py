@@ -7,7 +7,7 @@ def number_of(length, h):
 
 
 def cells(body, xs, ys, h, full=lambda i, j: True, shape=lambda x, y: (x, y), up=None):
-    """Blocks between lines x and y, where full; each as many elements as its length over h, its height over `up`; places moved by shape."""
+    """Blocks between lines x and y, if full; the number of elements is length over h and height over `up`; points are moved by shape."""
     for i, (x0, x1) in enumerate(zip(xs, xs[1:])):
         for j, (y0, y1) in enumerate(zip(ys, ys[1:])):
             if full(i, j):

@@ -1,4 +1,4 @@
-"""Families of scenes whose outlines are round where they touch, or conform: family(pick, n) draws one and meshes it n times finer than drawn."""
+"""Families of models whose outlines are round in contact, or conform: family(pick, n) draws one and meshes it n times finer."""
 import math
 
 from deceiving.drawing import Draw, base, family
@@ -24,8 +24,8 @@ def cylinder_on_block(pick, n):
 
 @family
 def sprung_platen(pick, n):
-    """A round nose under a platen that rotates (RBE2, MOMENT): an eccentric force, and two springs that stand on the ground; what is between
-    each spring and the platen is an equation (MPC)."""
+    """A round nose under a platen that rotates (RBE2, MOMENT), with an eccentric force and two springs to the ground; an equation (MPC) connects
+    each spring to the platen."""
     d = Draw(pick, n, h=(0.1, 0.3))
     half, radius = pick.uniform(0.4, 0.7), pick.uniform(0.8, 4.0)
     floor = base(d, -1.6, 1.7)
@@ -92,7 +92,7 @@ def far_travel(pick, n):
     profiled(body, xs, top, profile, d.h_slave)
     if soft:
         body.young = d.young * 1e-2
-    d.force, d.sway = False, 0.0   # a slide by more than a side is beyond linear kinematics
+    d.force, d.sway = False, 0.0   # a relative tangential displacement of more than an edge is beyond linear kinematics
     d.press(body, half, -half, top, gap + pick.choice([0.05, 0.3]), half)
     d.either(body.line((-half, profile(half)), (half, profile(half))), floor.line((1.7, 0.0), (-1.6, 0.0)), 0.3)
     return d.scene
@@ -119,7 +119,7 @@ def nose_in_groove(pick, n):
     def profile(x):
         return shape(x) + lift
     xs, top = [-w, 0.0, w], profile(w) + 0.6
-    # A curve whose sides turn by over 35 degrees is one with corners, as drawn: three times finer it would be another scene.
+    # If edges turn by more than 35 degrees, the curve has corners: three times finer it would be another model.
     profiled(body, xs, top, profile, min(d.h_slave, w / 3 / n) if kind == "round" else d.h_slave, d.h_slave)
     d.sway = pick.choice([0.0, 0.0, 0.3])
     d.press(body, w, -w, top, 0.02, w)
@@ -150,7 +150,7 @@ def roller(pick, n):
 
 @family
 def rings(pick, n):
-    """Rings: a shrink fit, a ring on a ring, a punch on the axis."""
+    """Axisymmetric bodies: a shrink fit, a ring on a ring, a punch on the axis."""
     d = Draw(pick, n, RINGS)
     kind = pick.choice(["fit", "punch", "ring"])
     d.force = kind != "fit" and pick.random() < 0.5
@@ -190,7 +190,7 @@ def rings(pick, n):
 
 @family
 def shrink_fit(pick, n):
-    """A disc in a ring too narrow for it; whole outlines that conform."""
+    """A disc in a ring that is too narrow for it; whole outlines that conform."""
     d = Draw(pick, n, h=(0.15, 0.4))
     over, outer = pick.choice([0.001, 0.005, 0.02]), pick.uniform(1.5, 2.5)
     body = d.slave()
@@ -211,7 +211,7 @@ def shrink_fit(pick, n):
 
 @family
 def spun_fit(pick, n):
-    """The same, while both spin about its centre."""
+    """The same, while both rotate about its centre."""
     scene = shrink_fit(pick, n)
     scene.nodes.append((0.0, 0.0))
     scene.hold([len(scene.nodes) - 1])
@@ -221,7 +221,7 @@ def spun_fit(pick, n):
 
 @family
 def own_weight(pick, n):
-    """A body on a floor, pressed by its weight alone, which may lean; its upper side stays level."""
+    """A body on a floor, pressed by its weight alone, unconstrained in rotation; its upper side stays level."""
     d = Draw(pick, n, h=(0.12, 0.3))
     radius, half, lean = pick.uniform(0.8, 4.0), pick.uniform(0.4, 0.7), pick.choice([0.0, 0.0, 0.2, -0.5])
     floor = base(d, -1.6, 1.7)
@@ -239,7 +239,7 @@ def own_weight(pick, n):
 
 @family
 def half_of_it(pick, n):
-    """Half of a symmetric scene: lines end on the line of symmetry, at a tip, on a flat or on an arc."""
+    """Half of a symmetric model: lines end on the symmetry line, at a tip, on a flat or on an arc."""
     d = Draw(pick, n, h=(0.12, 0.35))
     kind = pick.choice(["flat", "round", "tip", "hollow"])
     floor = base(d, 0.0, 1.7)

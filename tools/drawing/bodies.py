@@ -1,19 +1,19 @@
-"""Panels of bodies: the whole deformed scene, surroundings of contacts, and what has yielded."""
+"""Panels of bodies: the whole deformed model, contact regions, and yielded zones."""
 import numpy as np
 from matplotlib.collections import LineCollection, PolyCollection
 
 from drawing.style import DARK, GREY, RED
 
-#: Displacements are enlarged until the largest is this part of the scene's size ...
+#: Displacements are enlarged until the largest is this fraction of the model's size ...
 SEEN = 0.08
-#: ... but no farther than that closed gaps, which grow as well, make bodies overlap by this part of it.
+#: ... but no farther than the overlap of bodies, due to closed gaps that are enlarged too, is this fraction of it.
 OVERLAP = 0.01
-#: Elements below this part of a panel's size have fainter sides, and soon none.
+#: Elements below this fraction of a panel's size have fainter edges, and then none.
 FAINT = 0.05
 
 
 def factor(run):
-    """Enlargement of the displacements: 1, 2 or 5 times a power of ten, 1 at least."""
+    """Enlargement of the displacements: 1, 2 or 5 times a power of ten, at least 1."""
     largest = np.hypot(*run.u.T).max()
     if largest == 0.0:
         return 1
@@ -28,7 +28,7 @@ def factor(run):
 
 
 def windows(run):
-    """Surroundings of the two zones that carry most, where these are small in the scene: (centre, half width)."""
+    """Regions of the two zones with the largest forces, if these are small in the model: (centre, half width)."""
     found = []
     for _, first, last in sorted(run.zones, reverse=True)[:2]:
         ends = (run.x + run.u)[[first, last]]
@@ -40,20 +40,20 @@ def windows(run):
 
 
 def largest_side(run, node):
-    """Of the elements at a node; of any element, where it has none."""
+    """Longest edge of the elements at a node; of any element if it has none."""
     near = [nodes for nodes in run.around if node in nodes] or run.around
     return max(np.hypot(*(run.x[a] - run.x[b])) for nodes in near for a, b in zip(nodes, nodes[1:] + nodes[:1]))
 
 
 def yielded_window(run):
-    """Centre and half width of a square round the elements that have yielded."""
+    """Centre and half width of a square around the yielded elements."""
     place = (run.x + run.u)[sorted({node for nodes, yes in zip(run.around, run.plastic) if yes for node in nodes})]
     low, high = place.min(axis=0), place.max(axis=0)
     return (low + high) / 2, 0.65 * (high - low).max()
 
 
 def frame(place, window):
-    """Limits of x and y: the window as far as there is something in it."""
+    """Limits of x and y: the window, without its empty margins."""
     low, high = place.min(axis=0), place.max(axis=0)
     margin = 0.02 * (high - low).max()
     if window:
@@ -64,13 +64,13 @@ def frame(place, window):
 
 
 def proportion(run, window=None):
-    """Width over height of what a panel shows."""
+    """Width over height of a panel's content."""
     wide, high = np.ptp(frame(run.x + run.u, window), axis=1)
     return wide / high
 
 
 def draw(figure, run, heading, scale=1, window=None, yielded=False):
-    """Equivalent stress on the bodies, displaced; the yielded elements enclosed; undeformed outlines if enlarged."""
+    """Equivalent stress on the displaced bodies; yielded elements outlined; undeformed outlines if enlarged."""
     axes = figure.subplots()
     place = run.x + scale * run.u
     limits = frame(place if window else np.concatenate([place, run.x]), window)
@@ -86,7 +86,7 @@ def draw(figure, run, heading, scale=1, window=None, yielded=False):
         bar = [1.04, 0.0, 0.05 * high / wide, 1.0] if beside else [0.0, -0.25 - 0.03 * wide / high, 1.0, 0.02 * wide / high]
         figure.colorbar(drawn, cax=axes.inset_axes(bar), extend="max", orientation="vertical" if beside else "horizontal",
                         label=f"equivalent stress, {run.stress_unit()}")
-    # Sides of elements too small to be told apart would hide the colours: the smaller, the fainter.
+    # Edges of very small elements would hide the colours: they are drawn fainter.
     sizes = np.array([np.ptp(shape, axis=0).min() for shape in shapes]) / max(wide, high)
     faint = np.clip((sizes / FAINT)**2, 0.0, 1.0)
     large = [shape for shape, part in zip(shapes, faint) if part > 0.1]

@@ -1,9 +1,9 @@
-"""Panels drawn by ParaView; only its own Python (pvpython) has what is imported here."""
+"""Panels drawn by ParaView; only its own Python (pvpython) has the imported modules."""
 from paraview import simple
 
 BLACK, WHITE = [0.0, 0.0, 0.0], [1.0, 1.0, 1.0]
-WIDTH, HEIGHT = 550, 440   # of a panel, pixels; of two, together 1000
-LOW, HIGH = 0.24, 0.92     # parts of the height between which the whole is drawn: scales of colours below it, a heading above
+WIDTH, HEIGHT = 550, 440   # size of a panel [pixels]; two have a total width of 1000
+LOW, HIGH = 0.24, 0.92     # fractions of the height that bound the drawing: colour scales below, a heading above
 
 
 def show(view, path, scale, field, bars, **properties):
@@ -26,7 +26,7 @@ def show(view, path, scale, field, bars, **properties):
 
 
 def panel(place, stem, scale, near, wide):
-    """A view of what is near, or of the whole; `wide`: its width over its height."""
+    """A view of a detail, or of the whole; `wide`: its width over its height."""
     view = simple.CreateView("RenderView", OrientationAxesVisibility=0, UseColorPaletteForBackground=0, Background=WHITE,
                              InteractionMode="2D", CameraParallelProjection=1)
     bounds = show(view, place / f"{stem}.vtu", scale, ("CELLS", "equivalent_stress"), not near,
@@ -43,14 +43,14 @@ def panel(place, stem, scale, near, wide):
 
 
 def whole(bounds, wide):
-    """Centre and half height of a view in which these bounds have their place."""
+    """Centre and half height of a view that contains these bounds."""
     x = [(bounds[0] + bounds[1]) / 2, (bounds[2] + bounds[3]) / 2]
     half = 0.5 * max((bounds[3] - bounds[2]) / (HIGH - LOW), (bounds[1] - bounds[0]) / (0.94 * wide))
     return x[0], x[1] - half * (HIGH + LOW - 1.0), half
 
 
 def draw(place, stem, scale, near, path):
-    """The whole, and what is near a place (x, y, half height), if one is given."""
+    """The whole, and the detail near a point (x, y, half height), if given."""
     layout = simple.CreateLayout("panels")
     width = 1000 if near else WIDTH
     if near:
@@ -60,4 +60,4 @@ def draw(place, stem, scale, near, path):
     if near:
         simple.AssignViewToLayout(panel(place, stem, 1.0, near, shape), layout, 2)
     simple.SaveScreenshot(str(path), layout, ImageResolution=[width, HEIGHT], CompressionLevel="9")
-    simple.Disconnect()   # else it may crash as it ends
+    simple.Disconnect()   # otherwise it may crash at its end

@@ -1,4 +1,4 @@
-"""One figure with the panels that a run has."""
+"""One figure with all panels of a run."""
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -7,11 +7,11 @@ from drawing.run import Refused
 from drawing.style import SMALL
 
 KINDS = ("contact", "shape", "yielded", "history")
-WIDTH, HEIGHT = 9.2, 3.0  # of a row of panels, inches
+WIDTH, HEIGHT = 9.2, 3.0  # height of a row of panels [inches]
 
 
 def panels(run, formulas):
-    """(kind, share of the width, drawing) of each panel that this run has."""
+    """(type, share of the width, drawing) of each panel of this run."""
     scale = bodies.factor(run)
     found = [("shape", width(bodies.proportion(run)),
               lambda figure: bodies.draw(figure, run, f"displacements x {scale:g}" if run.solved else "as it was before the load", scale))]
@@ -32,7 +32,7 @@ def panels(run, formulas):
 
 
 def width(proportion):
-    """Share of the width for bodies of this width over height, the scale of colours beside them included."""
+    """Share of the width for bodies of this width over height, including the colour scale."""
     return float(np.clip(0.3 + 0.75 * proportion, 0.65, 1.5))
 
 
@@ -45,7 +45,7 @@ def draw(run, only=None, formulas=()):
         why = {"contact": "no pair touches" if run.lines else "it has no contact", "yielded": "nothing yields",
                "history": "it is solved at once, without iteration"}[only]
         there = ", ".join(kind for kind in KINDS if kind in {kind for kind, *_ in every})
-        raise Refused(f"{run.path}: nothing to draw for --only {only}: {why}; there is: {there}")
+        raise Refused(f"{run.path}: nothing to draw for --only {only}: {why}; available: {there}")
     rows = [list(part) for part in np.array_split(np.array(shown, object), -(-len(shown) // 3))]
     figure = plt.figure(figsize=(WIDTH if len(shown) > 1 else WIDTH / 2, HEIGHT * len(rows) + 0.3), layout="constrained")
     heading = f"{run.path.name}: {run.title}" if run.title else run.path.name

@@ -1,4 +1,4 @@
-"""A panel of the iteration: what changes, stress errors, what touches and has yielded."""
+"""A panel of the iteration: changes, stress errors, number of pairs in contact and of yielded elements."""
 import numpy as np
 from matplotlib.ticker import LogLocator, NullLocator
 
@@ -6,7 +6,7 @@ from drawing.style import BLUE, DARK, GREEN, GREY, RED
 
 
 def draw(figure, run):
-    """Two plots on logarithmic scales, one above the other; grey lines where a load step begins."""
+    """Two plots on logarithmic scales, one above the other; grey lines mark the start of load steps."""
     above, below = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
     n = run.history["iteration"]
     mark = "o-" if len(n) <= 40 else "-"
@@ -24,7 +24,7 @@ def draw(figure, run):
         low, high = below.get_ylim()
     low, high = low / 1.5, high * 1.5
     below.set(xlabel="iteration", ylim=(low, high))
-    if high < 100 * low:   # powers of ten would be too few
+    if high < 100 * low:   # powers of ten alone would be too few
         below.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
         below.yaxis.set_minor_locator(NullLocator())
     below.yaxis.set_major_formatter("{x:g}")

@@ -1,4 +1,4 @@
-"""The pictures that are kept, one beside each deck below input, and the closed forms that are drawn into them."""
+"""The kept pictures, one beside each deck below input, and the closed forms drawn into them."""
 from drawing import figure, style
 from drawing.run import TOP, Refused, Run
 
@@ -9,14 +9,14 @@ NAFEMS = "3585.36*sqrt(1-(s/6.21463)**2)"
 
 
 def persson(pressure, half):
-    """Pressure in a hole over the angle, that of the load being -90 degrees; `pressure`: P/R; `half`: to which it touches."""
+    """Pressure in a hole over the angle; the load is at -90 degrees; `pressure`: P/R; `half`: half-angle of contact."""
     b, y = f"tan(radians({half})/2)", "tan(radians(s+90)/2)"
     rest = f"sqrt({b}**2-{y}**2)"
     whole = f"sqrt(1+{b}**2)"
     return (f"{pressure}*(2*{rest}/(pi*{whole}*(1+{y}**2)) + log(({whole}+{rest})/({whole}-{rest}))/(2*pi*{b}**2*(1+{b}**2)))")
 
 
-#: Formulas in s, the abscissa of the panel, by scene or deck; what the heads of the decks call known.
+#: Formulas in s, the abscissa of the panel, by model or deck: the known results in the heads of the decks.
 KNOWN = {
     "hertz/hertz44_elastic.dat": [HERTZ], "hertz/hertz330_elastic.dat": [HERTZ], "hertz/hertz900_elastic.dat": [HERTZ],
     "hertz/hertz_ctria6.dat": [HERTZ], "hertz/hertz_cquad4.dat": [HERTZ],
@@ -37,12 +37,12 @@ KNOWN = {
 
 
 def picture(deck):
-    """Where the picture of a deck is kept."""
+    """Path of the kept picture of a deck."""
     return deck.parent / "pictures" / f"{deck.stem}.png"
 
 
 def draw_all():
-    """Draws every deck below input; those that are rejected have no picture."""
+    """Draw every deck below input; rejected ones have no picture."""
     for deck in sorted(INPUT.glob("*/*.dat")):
         name = deck.relative_to(INPUT).as_posix()
         try:

@@ -1,7 +1,7 @@
-"""The paper's Fig. 6 and Fig. 7: two runs of one mesh, elastic and yielding, and Hertz's closed form.
+"""The paper's Fig. 6 and Fig. 7: an elastic and a plastic run of one mesh, and Hertz's closed form.
 
-Of a body with a line of symmetry x = 0 that touches a rigid plane (a quarter of two equal cylinders), three-node triangles. Stresses
-are those of the elements, averaged nowhere; Hertz's closed form is drawn from E, NU, the load carried and the curvature of the gaps.
+For a body with symmetry line x = 0 in contact with a rigid plane (a quarter of two equal cylinders), three-node triangles. Stresses
+are element stresses, without averaging; Hertz's closed form uses E, NU, the load carried and the curvature of the gaps.
 """
 import matplotlib.pyplot as plt
 import numpy as np
@@ -15,11 +15,11 @@ from drawing.style import RED as PLASTIC
 
 
 def check(run):
-    """Refuses what is no such scene, or has no valid answer."""
+    """Reject other models, and runs without a valid answer."""
     if run.exit_status:
-        raise Refused(f"{run.path}: {run.status}; wanted are two valid runs\n{run.message}", run.exit_status)
+        raise Refused(f"{run.path}: {run.status}: give two decks with valid runs\n{run.message}", run.exit_status)
     if len(run.lines) != 1 or not run.lines[0].touching.any() or any(len(nodes) != 3 for nodes in run.around) or not run.lines[0].x[:, 0].any():
-        raise Refused(f"{run.path}: wanted is a quarter of two cylinders of CTRIA3 in one contact, as `tools/decks hertz` writes it; for any "
+        raise Refused(f"{run.path}: not a quarter of two cylinders of CTRIA3 in one contact, as `tools/decks hertz` writes it; for any "
                       f"other deck: tools/plot {run.path}", 2)
 
 
@@ -77,7 +77,7 @@ def contact(elastic, plastic):
 
 
 def section(elastic, plastic):
-    """Fig. 7: equivalent stress and yielded zone, the elastic section mirrored beside it."""
+    """Fig. 7: equivalent stress and yielded zone, with the elastic section mirrored beside it."""
     b, _ = hertz(elastic)
     width, height = 3.6 * b, 5 * b
     figure, axes = plt.subplots(figsize=(7.2, 4.5), layout="constrained")
@@ -87,7 +87,7 @@ def section(elastic, plastic):
     for run, side in ((elastic, -1), (plastic, 1)):
         corner = np.array(run.around)
         near = (abs(run.x[corner]).min(axis=1) < (width, height)).all(axis=1)
-        # Thousands of triangles: an image in the SVG. Not antialiased: or the background shows between them.
+        # Thousands of triangles: an image in the SVG. Without antialiasing, so that the background does not show between them.
         filled = axes.tripcolor(side * run.x[:, 0], run.x[:, 1], corner[near], facecolors=run.stress["equivalent_stress"][near],
                                 cmap=colours, norm=BoundaryNorm(levels, colours.N), edgecolors="none", antialiased=False,
                                 rasterized=True)

@@ -1,19 +1,19 @@
-"""Panels of contact pressures over the place along each contact line."""
+"""Panels of contact pressures along each contact line."""
 import numpy as np
 
 from drawing.run import Refused
 from drawing.style import COLOURS, RED
 
-#: A line round a circle for more than so many degrees is shown over the angle.
+#: A line that covers more than this angle of a circle [degrees] is shown over the angle.
 BENT = 20.0
-#: A pressure, or two, above so many times all others is cut off.
+#: Up to two pressures above this multiple of all others are cut off.
 ALONE = 3.0
-#: What a --known formula may use beside s.
+#: Functions that a --known formula may use.
 NAMES = {name: getattr(np, name) for name in ("sqrt", "log", "tan", "radians", "pi", "maximum", "minimum", "sin", "cos", "exp", "abs")}
 
 
 class Curve:
-    """Pressures of the touching part of a line and its first open neighbours, in order."""
+    """Pressures of the part of a line in contact and its first open neighbours, in order."""
 
     def __init__(self, line):
         self.name = line.name
@@ -25,7 +25,7 @@ class Curve:
 
 
 def abscissa(x, touching):
-    """What a line is shown over, and its value at each pair: an angle, x, y, or the length along it."""
+    """Abscissa of a line, and its value at each pair: an angle, x, y, or the length along it."""
     used = x[touching] if touching.sum() > 1 else x
     if len(used) >= 5:
         # The circle |x|^2 + a.x + c = 0 through the points, by least squares.
@@ -48,7 +48,7 @@ def abscissa(x, touching):
 
 
 def curves_together(run):
-    """Curves that fit into one panel: over the same, and not far apart for their widths."""
+    """Curves that fit into one panel: with the same abscissa, and not far apart for their widths."""
     panels = []
     for curve in (Curve(line) for line in run.lines if line.touching.any()):
         for panel in panels:
@@ -62,12 +62,12 @@ def curves_together(run):
 
 
 def known_values(formula, s):
-    """A formula of the command line at the places s."""
+    """Values of a formula of the command line at the points s."""
     try:
         with np.errstate(invalid="ignore", divide="ignore"):
             return np.broadcast_to(eval(formula, {"__builtins__": {}}, {**NAMES, "s": s}), s.shape).astype(float)
-    except Exception as error:  # whatever is wrong with it, it is the user's formula
-        raise Refused(f'--known "{formula}": {error}; a formula in s is wanted, such as "3585.36*sqrt(1-(s/6.21463)**2)", of {", ".join(NAMES)}') from error
+    except Exception as error:  # any exception is an error in the user's formula
+        raise Refused(f'--known "{formula}": {error}; give a formula in s, such as "3585.36*sqrt(1-(s/6.21463)**2)", with {", ".join(NAMES)}') from error
 
 
 def draw(figure, run, curves, formulas):
@@ -84,7 +84,7 @@ def draw(figure, run, curves, formulas):
             label = ""
     highest = np.sort(np.concatenate([curve.pressure for curve in curves]))[::-1]
     top = highest[0]
-    if len(highest) > 5 and top > ALONE * highest[2]:  # a sharp edge: no result, and it would hide the others
+    if len(highest) > 5 and top > ALONE * highest[2]:  # a sharp edge: not a result, and it would hide the others
         top = 1.5 * highest[2]
         axes.annotate(f"largest: {highest[0]:.4g}, at an edge", (0.5, 0.98), xycoords="axes fraction", ha="center", va="top", color=RED)
     length = "" if "angle" in curves[0].over else run.length_unit()

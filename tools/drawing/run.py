@@ -1,4 +1,4 @@
-"""A deck and what epcont gives for it, as arrays."""
+"""A deck and its results, as arrays."""
 import pathlib
 import subprocess
 import sys
@@ -12,12 +12,12 @@ PROGRAM = TOP / "build/release/epcont"
 sys.path.insert(0, str(TOP / "tests" / "independent"))
 from deck import DeckError, at, ids, read, real  # noqa: E402
 
-#: Nodes of each kind of element in their order round it, as positions among the nodes of its card.
+#: Nodes of each element type in order around it, as positions among the nodes of its card.
 ROUND = {"CTRIA3": [0, 1, 2], "CTRAX3": [0, 1, 2], "CQUAD4": [0, 1, 2, 3], "CTRIA6": [0, 3, 1, 4, 2, 5], "CQUAD8": [0, 4, 1, 5, 2, 6, 3, 7], "CTRAX6": [0, 1, 2, 3, 4, 5]}
 
 
 class Refused(Exception):
-    """No picture: the message says why, `status` is the exit status."""
+    """There is no picture: the message says why, `status` is the exit status."""
 
     def __init__(self, message, status=3):
         super().__init__(message)
@@ -25,9 +25,9 @@ class Refused(Exception):
 
 
 class Run:
-    """Places and displacements of the nodes, elements round about, stresses, contact lines, history.
+    """Coordinates and displacements of the nodes, elements counter-clockwise, stresses, contact lines, history.
 
-    What a run that failed does not give is absent: displacements and stresses are 0 then, lines and history empty.
+    If a run failed, displacements and stresses are 0, lines and history empty.
     """
 
     def __init__(self, path, case=None):
@@ -49,7 +49,7 @@ class Run:
         try:
             deck = read(self.path)
         except DeckError as error:
-            raise Refused(f"{self.path}: epcont reads this deck, the reader of the pictures does not: {error}") from error
+            raise Refused(f"{self.path}: this deck cannot be drawn, although epcont reads it: {error}") from error
         self.exit_status = run.returncode
         self.take_mesh(deck, found["nodes"], found["elements"])
         self.take_contact(deck, found["contact"], found["zones"])
@@ -59,7 +59,7 @@ class Run:
         self.rings = bool(deck.of("PSOLID"))
 
     def take_mesh(self, deck, nodes, elements):
-        # The axis of a spin is far from the bodies, and nothing to see.
+        # The axis of a rotation is far from the bodies and shows nothing.
         of_elements = {int(card[3 + i]) for kind, order in ROUND.items() for card in deck.of(kind) for i in order}
         axes = {int(card[2]) for card in deck.of("RFORCE") if at(card, 2)} - of_elements
         grids = [card for card in deck.of("GRID") if int(card[1]) not in axes]
@@ -91,7 +91,7 @@ class Run:
         contacts = [(card[1], int(card[2]), int(card[3])) for card in deck.of("BCONP")]
         left, self.lines = list(pairs), []
         for name, slave, master in contacts:
-            alone = sum(other == slave for _, other, _ in contacts) == 1   # else the master's nodes tell its pairs
+            alone = sum(other == slave for _, other, _ in contacts) == 1   # else its pairs are those of the master's nodes
             own = [p for p in left if p["pair"] == p["gb"] and int(p["gb"]) in nodes[slave] and (alone or int(p["ga"]) in nodes[master])]
             left = [p for p in left if p not in own]
             self.lines += [Line(f"BCONP {name}", own)] if own else []
@@ -102,7 +102,7 @@ class Run:
         self.zones = [(float(z["force"]), node[z["first_pair"]], node[z["last_pair"]]) for z in zones]
 
     def neighbours(self):
-        """Ids of the nodes that a side connects with each id."""
+        """Ids of the nodes that an edge connects with each id."""
         number = {i: node for node, i in self.row.items()}
         beside = {}
         for a, b in self.sides():
@@ -111,7 +111,7 @@ class Run:
         return beside
 
     def sides(self, chosen=None):
-        """Sides that belong to one only of the chosen elements (all, if none are given)."""
+        """Edges that belong to only one of the chosen elements (all, if none are given)."""
         count = {}
         for nodes, wanted in zip(self.around, np.ones(len(self.around), bool) if chosen is None else chosen):
             if wanted:
@@ -121,23 +121,23 @@ class Run:
         return [ends for ends, times in count.items() if times == 1]
 
     def size(self):
-        """Larger extent of the scene."""
+        """Larger extent of the model."""
         return np.ptp(self.x, axis=0).max()
 
     def stress_unit(self):
-        """KGF-MM says kgf/mm2; other words say it themselves."""
+        """KGF-MM is shown as kgf/mm2; other names are shown unchanged."""
         force, _, length = self.unit.partition("-")
         names = {"KGF": "kgf", "N": "N", "MM": "mm", "M": "m"}
         return f"{names.get(force, force)}/{names.get(length, length)}$^2$" if length else "force/length$^2$"
 
     def length_unit(self):
-        """`, mm` for KGF-MM; nothing for other words."""
+        """`, mm` for KGF-MM; nothing for other names."""
         length = self.unit.partition("-")[2]
         return f", {length.lower()}" if length in ("MM", "M") else ""
 
 
 class Line:
-    """The pairs of one contact line: places, forces, pressures, gaps before the load."""
+    """The pairs of one contact line: coordinates, forces, pressures, initial gaps."""
 
     def __init__(self, name, pairs):
         self.name = name
@@ -147,18 +147,18 @@ class Line:
 
 
 def table(path):
-    """Rows of a table, none where the run wrote no such table."""
+    """Rows of a table; empty if the run wrote no such table."""
     return tables.rows(path) if path.exists() else []
 
 
 def title(listing):
-    """The TITLE of the deck, as the third line of its listing has it."""
+    """The TITLE of the deck, from the third line of its listing."""
     lines = listing.read_text(encoding="latin-1").splitlines() if listing.exists() else []
     return lines[2].strip() if len(lines) > 2 and lines[2].startswith("  ") and not lines[2].startswith("  units:") else ""
 
 
 def chains(pairs, beside):
-    """Sets of pairs connected by sides between their A nodes or between their B nodes."""
+    """Sets of pairs connected by edges between their A nodes or between their B nodes."""
     left = list(pairs)
     while left:
         chain, front = [], [left.pop(0)]

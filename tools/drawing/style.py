@@ -1,4 +1,4 @@
-"""How all pictures look, and how they are kept: the same bytes on every run."""
+"""Common style of all pictures, and their storage: the same bytes on every run."""
 import io
 
 import matplotlib
@@ -8,12 +8,12 @@ import matplotlib.pyplot as plt  # noqa: E402
 
 BLUE, RED, GREEN, PURPLE, DARK, GREY = "#4477aa", "#cc3311", "#228833", "#aa3377", "#222222", "#999999"
 COLOURS = [BLUE, RED, GREEN, PURPLE]
-#: Kinds of elements, where they are compared.
+#: Element types that are compared.
 ELEMENTS = {"ctria3": (BLUE, "o"), "cquad4": (GREEN, "s"), "ctria6": (RED, "^")}
 
 plt.rcParams.update({"font.size": 10, "axes.spines.top": False, "axes.spines.right": False, "axes.linewidth": 0.8,
                      "legend.frameon": False, "svg.hashsalt": "epcont", "svg.fonttype": "path", "figure.dpi": 110})
-#: Of the many panels of one deck.
+#: Colours of the panels of one deck.
 SMALL = {"font.size": 8, "axes.titlesize": 9, "axes.labelsize": 8, "legend.frameon": True, "legend.edgecolor": "none", "legend.framealpha": 0.8,
          "legend.borderpad": 0.2}
 
@@ -27,7 +27,7 @@ def save(figure, name):
 
 
 def save_small(figure, path, colours=255):
-    """A PNG of few colours: a third of the bytes, and no difference that is seen."""
+    """A PNG with few colours: a third of the bytes, and no visible difference."""
     from PIL import Image  # comes with matplotlib
 
     drawn = io.BytesIO()

@@ -1,1 +1,1 @@
-"""A deck from a Gmsh file whose groups have names, and a scene in TOML that says what they are."""
+"""Make a deck from a Gmsh file with named groups, and a model in TOML that gives them properties."""

@@ -1,12 +1,12 @@
-"""Write a deck from a Gmsh file with named groups and a scene in TOML.
+"""Write a deck from a Gmsh file with named groups and a model in TOML.
 
     tools/deck SCENE.toml [-o NAME.dat]
 
 NAME.dat (by default SCENE.dat beside the scene) has materials, supports, loads and contacts, and includes NAME.mesh.bdf with
-nodes and elements. If epcont has been built, its own check of the deck follows. input/README.md ("From Gmsh") says how to write a
-scene; input/from_gmsh has some.
+nodes and elements. If epcont has been built, it checks the deck afterwards. input/README.md ("From Gmsh") describes the
+model file; input/from_gmsh has examples.
 
-Exit status: 0 written; 2 the scene is rejected, or epcont rejects the deck; 3 usage or files.
+Exit status: 0 if written; 2 if the model or (by epcont) the deck is rejected; 3 for errors of usage or files.
 """
 import pathlib
 import re
@@ -23,24 +23,24 @@ REJECTED, UNUSABLE = 2, 3
 
 
 class Unusable(Exception):
-    """Files or the machine, not the scene."""
+    """An error of files or of the machine, not of the model."""
 
 
 def make(scene_path, path, faults):
-    """Writes deck and mesh; gives what made them."""
+    """Write deck and mesh; return their maker."""
     scene = read_scene(scene_path, faults)
     try:
         from .mesh import read_mesh
     except ImportError as error:
-        raise Unusable(f"no Gmsh for this Python ({error}); use tools/deck, or pip install --no-deps -r tools/requirements.txt") from error
+        raise Unusable(f"this Python has no Gmsh ({error}): use tools/deck, or pip install --no-deps -r tools/requirements.txt") from error
     except OSError as error:
-        raise Unusable(f"Gmsh does not load ({error}); remove build/venv/installed and try again") from error
+        raise Unusable(f"Gmsh does not load ({error}): remove build/venv/installed and try again") from error
     from .deck import Maker
     mesh_path = path.with_suffix(".mesh.bdf")
     source = scene_path.parent / scene.mesh
     taken = [p.resolve() for p in (scene_path, source)]
     if path.resolve() in taken or mesh_path.resolve() in taken:
-        raise Unusable(f"{path} or {mesh_path.name} is what the scene is made of; another name behind -o")
+        raise Unusable(f"{path} or {mesh_path.name} is an input of the model: give another name after -o")
     maker = Maker(scene, read_mesh(source, faults), faults)
     made = f"made by tools/deck from {scene_path.name} and {source.name}"
     write(mesh_path, maker.mesh_lines())
@@ -56,7 +56,7 @@ def write(path, lines):
 
 
 def check(path, maker):
-    """epcont's own opinion, if there is an epcont; the nodes that it names, in the terms of the scene."""
+    """epcont's check, if there is an epcont; its nodes are translated to names of the model."""
     program = next((p for p in (TOP / "build" / preset / "epcont" for preset in ("release", "debug", "sanitize")) if p.is_file()), None)
     if program is None:
         print("epcont is not built: tools/run DECK builds and runs it")
@@ -69,7 +69,7 @@ def check(path, maker):
         print(maker.freed(int(number), motions))
     if not run.returncode:
         return 0
-    print("mend the scene, not the deck; in the scene SPC1 and SPC are [support], SUPORT [free], RBE2 [platen], BLSEG and BCONP [[contact]]")
+    print("correct the model file, not the deck; in the model file SPC1 and SPC are [support], SUPORT [free], RBE2 [platen], BLSEG and BCONP [[contact]]")
     return REJECTED
 
 
@@ -85,9 +85,9 @@ def main(arguments=None):
     path = options.deck or options.scene.with_suffix(".dat")
     try:
         if options.scene.suffix.lower() in (".geo", ".msh", ".dat", ".bdf"):
-            raise Unusable(f'{options.scene} is no scene: that is a .toml, with mesh = "NAME.geo" (input/README.md, "From Gmsh")')
+            raise Unusable(f'{options.scene} is not a model file: give a .toml with mesh = "NAME.geo" (input/README.md, "From Gmsh")')
         if not path.suffix or not path.name.isascii() or set("'\"") & set(path.name):
-            raise Unusable(f"{path}: the name of a deck ends in .dat, say, and has no quotes; the deck includes a file of like name")
+            raise Unusable(f"{path}: not a name for a deck: give an ASCII name with a suffix such as .dat, without quotes")
         maker = make(options.scene, path, faults)
     except Rejected:
         print("\n".join(faults.notes + faults.errors), file=sys.stderr)
@@ -96,8 +96,8 @@ def main(arguments=None):
     except Unusable as error:
         print(f"tools/deck: {error}", file=sys.stderr)
         return UNUSABLE
-    except Exception as error:   # a user is not shown the inside of this program
-        print(f"tools/deck: a fault of its own, {type(error).__name__}: {error}; please report it with the scene", file=sys.stderr)
+    except Exception as error:   # the user sees no traceback of this program
+        print(f"tools/deck: internal error, {type(error).__name__}: {error}; please report it with the model", file=sys.stderr)
         return UNUSABLE
     print("\n".join(faults.notes + [f"{path}: {maker.told()}"]), flush=True)
     return check(path, maker)

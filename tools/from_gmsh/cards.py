@@ -1,4 +1,4 @@
-"""Cards in small fields where all digits of their reals fit, in large ones else."""
+"""Cards in small fields if all digits of their reals fit, otherwise in large ones."""
 
 from cards import written
 

@@ -1,4 +1,4 @@
-"""The cards of a scene on its mesh."""
+"""Make the cards of a model on its mesh."""
 from .cards import card
 from .faults import listed, spot
 from .lines import nodes_of, shares
@@ -10,7 +10,7 @@ RINGS = {3: "CTRAX3", 6: "CTRAX6"}
 
 
 class Maker:
-    """Checks a scene against its mesh, and makes the lines of the deck and of the mesh file that it includes."""
+    """Check a model against its mesh, and make the lines of the deck and of the mesh file that it includes."""
 
     def __init__(self, scene, mesh, faults):
         self.scene, self.mesh, self.faults = scene, mesh, faults
@@ -20,14 +20,14 @@ class Maker:
         self.held = self.find_held()
         self.platens = self.find_platens()
         self.free = self.find_free()
-        self.loads_of = [self.find_loads(case) for case in scene.cases]   # pressures and forces, case by case
+        self.loads_of = [self.find_loads(case) for case in scene.cases]   # pressures and forces of each load case
         self.moved_of = [self.find_moved(case) for case in scene.cases]
         self.check_temperatures()
         self.groups.note_unused()
         moved = any(value for own in self.held.values() for value, _ in own.values())
         heated = any(case.temperature is not None for case in scene.cases)
         if not (faults.errors or moved or heated or any(case.has_loads for case in scene.cases)):
-            faults.note("[load]", "there is none, and no support that moves: nothing but overlaps of the drawing gives forces")
+            faults.note("[load]", "there is no load and no prescribed displacement: only initial overlaps give forces")
         faults.end()
         self.number = self.numbers()
         self.first = {}   # number of the first element of each body
@@ -51,40 +51,40 @@ class Maker:
         return found
 
     def find_held(self):
-        """{node: {direction: (value, table)}}; on the axis of rings direction 1 is held."""
+        """{node: {direction: (value, table)}}; on the axis of axisymmetric bodies direction 1 is fixed."""
         held = {}
         for name, values in self.scene.supports.items():
             where = f"[support.{name}]"
             nodes = self.groups.find(where, name)
             given = [(node, digit, value, *held.setdefault(node, {}).setdefault(digit, (value, where))) for node in nodes for digit, value in values.items()]
             for node, digit, value, other, table in [each for each in given if each[2] != each[3]][:1]:
-                self.faults.add(where, f"{AXES[digit]} = {value:g} at {spot(self.mesh.place[node])}, where {table} says {other:g}",
-                                "one displacement for a node")
+                self.faults.add(where, f"{AXES[digit]} = {value:g} at {spot(self.mesh.place[node])}, but {table} has {other:g}",
+                                "give one displacement for each node")
         for node, place in self.mesh.place.items():
             if self.scene.rings and place[0] == 0.0:
                 held.setdefault(node, {}).setdefault("1", (0.0, "the axis of the rings"))
         return held
 
     def find_platens(self):
-        """{line: (directions, nodes)}; the first node leads."""
+        """{line: (directions, nodes)}; the first node is the master."""
         found, tied = {}, {}
         for name, digits in self.scene.platens.items():
             where = f"[platen] {name}"
             nodes = self.groups.find(where, name, points_too=False)
             tables = {(node, digit): self.held.get(node, {}).get(digit, (0.0, tied.get((node, digit))))[1] for node in nodes for digit in digits}
             for (node, digit), table in [each for each in tables.items() if each[1]][:1]:
-                self.faults.add(where, f"its node at {spot(self.mesh.place[node])} is held or tied in {AXES[digit]} by {table}, too",
-                                "each direction of a node in one of them only")
+                self.faults.add(where, f"its node at {spot(self.mesh.place[node])} is also fixed or tied in {AXES[digit]} by {table}",
+                                "give each direction of a node in one of them only")
             tied.update(dict.fromkeys(tables, where))
             found[name] = (digits, nodes)
         return found
 
     def leader(self, node, digit):
-        """The node whose motion this one's is."""
+        """The master node of a node, or itself."""
         return next((nodes[0] for digits, nodes in self.platens.values() if digit in digits and node in nodes), node)
 
     def find_free(self):
-        """(node, direction) of each SUPORT freedom."""
+        """(node, direction) of each SUPORT DOF."""
         found = []
         for name, digits in self.scene.free.items():
             where = f"[free] {name}"
@@ -93,35 +93,35 @@ class Maker:
                 leaders = dict.fromkeys(self.leader(node, digit) for node in nodes)
                 table = self.held.get(nodes[0], {}).get(digit, (0.0, ""))[1]
                 if len(leaders) > 1:
-                    self.faults.add(where, f"its {len(nodes)} nodes need not move alike in {AXES[digit]}, and a free motion is that of one",
-                                    f'a point in {self.mesh.file}, or a platen: [platen] {name} = "{AXES[digit]}"')
+                    self.faults.add(where, f"its {len(nodes)} nodes are not tied in {AXES[digit]}, but a SUPORT DOF belongs to one node",
+                                    f'use a point of {self.mesh.file}, or make it a platen: [platen] {name} = "{AXES[digit]}"')
                 elif table:
-                    self.faults.add(where, f"is held in {AXES[digit]} by {table}", "a direction in which nothing holds the body")
+                    self.faults.add(where, f"is fixed in {AXES[digit]} by {table}", "give a direction in which the body is unconstrained")
                 else:
                     found.append((*leaders, digit))
         return found
 
     def find_moved(self, case):
-        """{(node, direction): displacement} in place of what the scene's supports say."""
+        """{(node, direction): displacement} that replace those of the model's supports."""
         found = {}
         for name, values in case.moved.items():
             where = f"[{case.inside}support.{name}]"
             given = {(node, digit): value for node in self.groups.find(where, name) for digit, value in values.items()}
             for node, digit in [(node, digit) for node, digit in given if digit not in self.held.get(node, {})][:1]:
-                self.faults.add(where, f"{AXES[digit]} of the node at {spot(self.mesh.place[node])} is not held",
-                                f"[support] {name}.{AXES[digit]} = 0.0, since all load cases hold the same; or what is held there")
+                self.faults.add(where, f"{AXES[digit]} of the node at {spot(self.mesh.place[node])} is not fixed",
+                                f"add [support] {name}.{AXES[digit]} = 0.0: all load cases fix the same DOFs")
             found.update(given)
         return found
 
     def check_temperatures(self):
-        """Bodies that have some are those of the scene."""
+        """The bodies with temperatures are those of the model."""
         for case in self.scene.cases:
             for name in case.temperature if isinstance(case.temperature, dict) else ():
                 if name not in self.scene.bodies:
-                    self.faults.add(f"[{case.inside}temperature] {name}", f"there is no body '{name}'", f"one of: {listed(self.scene.bodies)}")
+                    self.faults.add(f"[{case.inside}temperature] {name}", f"there is no body '{name}'", f"use one of: {listed(self.scene.bodies)}")
 
     def find_loads(self, case):
-        """(body, element, a, b, pressure) of each side pressed; {node: [x, y]} of forces."""
+        """(body, element, a, b, pressure) of each loaded edge; {node: [x, y]} of forces."""
         pressures, forces, pressed = [], {}, {}
         for name, load in case.loads.items():
             where = f"[{case.inside}load.{name}]"
@@ -130,14 +130,14 @@ class Maker:
                 pressures += [(body, k, side[0], side[1], load["pressure"]) for side, body, k in sides]
                 twice = {pressed.setdefault(frozenset(side), where) for side, _, _ in sides} - {where}
                 if twice:
-                    self.faults.note(f"{where} pressure", f"presses sides that {listed(sorted(twice))} presses, too: the pressures are added")
+                    self.faults.note(f"{where} pressure", f"acts on edges of {listed(sorted(twice))} as well: the pressures are added")
             if "force" in load:
                 nodes = self.groups.find(f"{where} force", name)
                 parts = dict.fromkeys(nodes, 1.0 / max(len(nodes), 1))
                 if nodes and name in self.mesh.lines:
                     parts = shares(self.mesh.lines[name], self.mesh.place, self.scene.rings)
                 if parts is None:
-                    self.faults.add(f"{where} force", "lies on the axis, where a ring has no area", "a point on the axis")
+                    self.faults.add(f"{where} force", "acts on a line on the axis, which has no area", "load a point on the axis instead")
                 for node, part in (parts or {}).items():
                     for c, digit in enumerate("12"):
                         if load["force"][c] == 0.0:
@@ -146,7 +146,7 @@ class Maker:
         return pressures, forces
 
     def numbers(self):
-        """Numbers of the nodes: along the lines in contact first, so that they rise there (pyNastran sorts a BLSEG's nodes)."""
+        """Numbers of the nodes: first along the contact lines, so that they rise there (pyNastran sorts a BLSEG's nodes)."""
         found = {}
         for line in [line for pair in self.contacts for line in pair]:
             for node in line[::-1] if line[-1] in found and line[0] not in found else line:
@@ -163,14 +163,14 @@ class Maker:
         for section, (name, elements) in enumerate(self.mesh.bodies.items(), 1):
             lines.append(f"$ {name}")
             for k, (corners, nodes) in enumerate(elements):
-                if self.scene.rings and len(nodes) == 6:   # CTRAX6 goes round its sides
+                if self.scene.rings and len(nodes) == 6:   # CTRAX6 lists its nodes in order around the element
                     nodes = [nodes[i] for i in (0, 3, 1, 4, 2, 5)]
                 kind = (RINGS if self.scene.rings else ELEMENTS)[len(nodes)]
                 lines += card(kind, self.first[name] + k, section, *(self.number[node] for node in nodes))
         return lines + ["ENDDATA"]
 
     def deck_lines(self, made, mesh_file):
-        """Everything else; `made` says what of."""
+        """All other cards; `made` names the sources."""
         scene = self.scene
         lines = [f"$ {made}", "SOL 106", "CEND", f"TITLE = {scene.title}"]
         lines += ["SPC = 1"] if any(self.held.values()) else []
@@ -182,7 +182,7 @@ class Maker:
         return lines + [f"INCLUDE '{mesh_file}'", "ENDDATA"]
 
     def case_control(self):
-        """What each load case has; of the only one without SUBCASE."""
+        """Cards of each load case; a single one has no SUBCASE."""
         lines = ["CNTNLSUB = NO"] if len(self.scene.cases) > 1 else []
         for k, case in enumerate(self.scene.cases, 1):
             if len(self.scene.cases) > 1:
@@ -213,7 +213,7 @@ class Maker:
         return lines
 
     def supports(self):
-        """SPC1 where nothing moves, SPC where it is prescribed; one remark for each table."""
+        """SPC1 for zero displacements, SPC for prescribed ones; one remark for each table."""
         lines, sets = [], {}
         for node, own in self.held.items():
             for table in dict.fromkeys(table for _, table in own.values()):
@@ -265,7 +265,7 @@ class Maker:
         return lines
 
     def temperatures(self, k, case):
-        """TEMPD, or TEMP of every node: bodies without a temperature have that of no thermal strain."""
+        """TEMPD, or TEMP for every node: bodies without a temperature have that of zero thermal strain."""
         if case.temperature is None:
             return []
         lines = ["$ temperatures"]
@@ -293,7 +293,7 @@ class Maker:
         return lines
 
     def told(self):
-        """What has been made, in a line."""
+        """Summary of the deck in one line."""
         kinds = {}
         for elements in self.mesh.bodies.values():
             for _, nodes in elements:
@@ -303,7 +303,7 @@ class Maker:
             f"; bodies: {listed(self.mesh.bodies)}"
 
     def described(self, number):
-        """Where the node of a GRID is."""
+        """Position of the node of a GRID."""
         node, bodies = self.home(number)
         return f"GRID {number} is at {spot(self.mesh.place[node])}, on {listed(bodies)}"
 
@@ -313,19 +313,19 @@ class Maker:
         return node, [name for name, elements in self.mesh.bodies.items() if any(node in nodes for _, nodes in elements)]
 
     def freed(self, number, motions):
-        """What a scene says against free motions, in epcont's words, of the body of a GRID."""
+        """Remedies in terms of the model for an unconstrained rigid-body mode that epcont reports at a GRID."""
         _, bodies = self.home(number)
         own = {node for name in bodies for _, nodes in self.mesh.bodies[name] for node in nodes}
         lines = [name for name, sides in self.mesh.lines.items() if own & set(nodes_of(sides))]
         points = [name for name, nodes in self.mesh.points.items() if own & set(nodes)]
         axes = [axis for axis, shift in (("x", "shifts along (1.000, 0.0)"), ("y", "shifts along (0.0, 1.000)")) if shift in motions]
         turns = "turns" in motions
-        missing = [f"in {axis}" for axis in axes] + ["against turning"] * turns
+        missing = [f"in {axis}" for axis in axes] + ["in rotation"] * turns
         if axes or not turns:
             held = " and ".join(f"NAME.{axis} = 0" for axis in axes or "x")
-            remedy = f'{held}; or, where contact is to hold it, [free] NAME = "{"".join(axes) or "x"}", of a point or a [platen]' \
-                f"{'; against turning, one more point' * turns}"
+            remedy = f'{held}; or, if contact restrains it, [free] NAME = "{"".join(axes) or "x"}", for a point or a [platen]' \
+                f"{'; for the rotation one more point' * turns}"
         else:
-            remedy = 'NAME.x = 0 or NAME.y = 0 of one more point; or, where contact is to hold it, [free] NAME = "x" or "y" of one more'
-        return f"nothing holds {listed(bodies)} {', nor '.join(missing or ['in one direction'])}\n" \
+            remedy = 'NAME.x = 0 or NAME.y = 0 for one more point; or, if contact restrains it, [free] NAME = "x" or "y" of one more'
+        return f"unconstrained: {listed(bodies)} {' and '.join(missing or ['in one direction'])}\n" \
             f"  [support] {remedy}; its lines: {listed(lines)}; its points: {listed(points)}"

@@ -1,15 +1,15 @@
-"""What is wrong with a scene: where, what, and what would be right; all of it at once."""
+"""Collect all errors of a model: position, fault and remedy."""
 import difflib
 
 
 class Rejected(Exception):
-    """The scene cannot be made into a deck; the faults say why."""
+    """The model cannot be made into a deck; the faults give the reasons."""
 
 
 class Faults:
     def __init__(self, file):
         self.file, self.errors, self.notes = file, [], []
-        self.harmless = 0   # errors so far that leave what comes next to be checked
+        self.harmless = 0   # number of errors after which the next checks are still possible
 
     def add(self, where, what, right):
         self.errors.append(f"{self.file}: {where}: {what}\n  {right}")
@@ -18,11 +18,11 @@ class Faults:
         self.notes.append(f"{self.file}: note: {where}: {what}")
 
     def go_on(self):
-        """The errors so far do not keep the mesh from being checked against the scene."""
+        """The errors so far do not prevent the check of the mesh against the model."""
         self.harmless = len(self.errors)
 
     def end_stage(self):
-        """What comes next relies on what was checked since then."""
+        """The next checks rely on all checks since then."""
         if len(self.errors) > self.harmless:
             raise Rejected
 
@@ -36,7 +36,7 @@ def listed(names):
 
 
 def likely(name, names):
-    """A question behind a list of names, if one of them may have been meant."""
+    """A question after a list of names, if one of them may be meant."""
     near = difflib.get_close_matches(name.lower(), [n.lower() for n in names], n=1)
     return next((f"; did you mean '{n}'?" for n in names if near and n.lower() == near[0]), "")
 

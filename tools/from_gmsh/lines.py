@@ -1,16 +1,16 @@
-"""Lines of sides: end to end, and what of a force comes to each of their nodes."""
+"""Lines of edges: their order, and the distribution of a force to their nodes."""
 import math
 
 GAUSS = [(0.5 - math.sqrt(0.15), 5 / 18), (0.5, 8 / 18), (0.5 + math.sqrt(0.15), 5 / 18)]
 
 
 def nodes_of(sides):
-    """Each node once, as the sides come."""
+    """Each node once, in the order of the edges."""
     return list(dict.fromkeys(node for side in sides for node in (side[0], *side[2:], side[1])))
 
 
 def chains(sides):
-    """The nodes in their order along each piece; one that is closed ends with its first node. None where sides branch."""
+    """The nodes in order along each piece; a closed one ends with its first node. None if edges branch."""
     at = {}
     for side in sides:
         for node in side[:2]:
@@ -33,7 +33,7 @@ def chains(sides):
 
 
 def shares(sides, place, rings):
-    """What comes to each node of a force that is spread evenly over the sides; of a ring, over its area. None where there is none."""
+    """Nodal forces of a force that is uniform over the edges; if axisymmetric, over their area. None if there is none."""
     found = {}
     for side in sides:
         x = [place[node] for node in side]
@@ -48,7 +48,7 @@ def shares(sides, place, rings):
 
 
 def shape(count, s):
-    """Shape functions of start, end and middle, and their slopes, at a place from 0 to 1."""
+    """Shape functions of start, end and mid-side node, and their slopes, at a coordinate from 0 to 1."""
     if count == 2:
         return (1 - s, s), (-1.0, 1.0)
     return ((1 - s) * (1 - 2 * s), s * (2 * s - 1), 4 * s * (1 - s)), (4 * s - 3, 4 * s - 1, 4 - 8 * s)

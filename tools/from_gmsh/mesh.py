@@ -1,4 +1,4 @@
-"""What Gmsh has: nodes, elements of the named surfaces, sides of the named lines, named points."""
+"""Mesh of Gmsh: nodes, elements of the named surfaces, edges of the named lines, named points."""
 import multiprocessing
 import re
 from collections import Counter
@@ -8,7 +8,7 @@ import gmsh
 
 from .faults import Faults, Rejected, listed, spot
 
-#: Corners and nodes of the elements of Gmsh that have a card, by its number of their kind.
+#: Corners and nodes of the Gmsh element types that have a card, by their number.
 SURFACES = {2: (3, 3), 3: (4, 4), 9: (3, 6), 16: (4, 8)}
 LINES = {1: 2, 8: 3}
 NAMES = {10: "quadrilaterals of nine nodes"}
@@ -22,11 +22,11 @@ class Mesh:
     file: str = ""
     place: dict = field(default_factory=dict)      # node: (x, y, z)
     bodies: dict = field(default_factory=dict)     # surface: elements, each (corners, nodes), counterclockwise
-    lines: dict = field(default_factory=dict)      # line: sides, each (start, end) or (start, end, middle)
+    lines: dict = field(default_factory=dict)      # line: edges, each (start, end) or (start, end, mid-side node)
     points: dict = field(default_factory=dict)     # point: nodes
 
     def sides(self):
-        """The bodies' elements at each pair of corners that a side joins: (body, number in the body, middle node or None)."""
+        """The bodies' elements at each pair of corners that an edge joins: (body, number in the body, mid-side node or None)."""
         found = {}
         for name, elements in self.bodies.items():
             for k, (corners, nodes) in enumerate(elements):
@@ -37,7 +37,7 @@ class Mesh:
 
 
 def read_mesh(path, faults: Faults):
-    """The mesh of a .msh, or of a .geo once it is meshed: by a process of its own, which `Exit;` in a drawing ends."""
+    """Read the mesh of a .msh, or mesh a .geo: in a separate process, which `Exit;` in a drawing ends."""
     check_file(path, faults)
     receiver, sender = multiprocessing.Pipe(duplex=False)
     child = multiprocessing.get_context("fork").Process(target=send_mesh, args=(path, faults, sender))
@@ -52,43 +52,43 @@ def read_mesh(path, faults: Faults):
         raise RuntimeError(failed)
     if mesh is None and not faults.errors:
         how = f"signal {-child.exitcode}" if child.exitcode < 0 else f"exit status {child.exitcode}"
-        faults.add("mesh", f"{path.name} ends Gmsh before there is a mesh ({how})", "a drawing that meshes in Gmsh itself, without Exit;")
+        faults.add("mesh", f"{path.name} ends Gmsh before the mesh is complete ({how})", "correct the drawing until Gmsh itself meshes it, without Exit;")
     faults.end_stage()
     return mesh
 
 
 def send_mesh(path, faults, sender):
-    """The mesh, or None, with the faults, and what failed in this program."""
+    """The mesh, or None, with the faults, and failures of this program."""
     mesh, failed = None, ""
     try:
         mesh = mesh_of(path, faults)
     except Rejected:
         pass
-    except Exception as error:   # the process that waits tells of it
+    except Exception as error:   # the waiting process reports it
         failed = f"{type(error).__name__}: {error}"
     sender.send((mesh, faults.errors, faults.notes, failed))
 
 
 def check_file(path, faults):
-    """What can be told without Gmsh."""
+    """Checks without Gmsh."""
     text = b""
     if path.suffix.lower() not in (".geo", ".msh"):
-        faults.add("mesh", f"{path.name} is neither .geo nor .msh", "a script or a mesh of Gmsh")
+        faults.add("mesh", f"{path.name} is neither .geo nor .msh", "give a script or a mesh of Gmsh")
     elif not path.is_file():
         beside = sorted(p.name for p in path.parent.glob("*") if p.suffix in (".geo", ".msh"))
-        faults.add("mesh", f"there is no file {path.name} beside the scene", f"one of: {listed(beside)}")
+        faults.add("mesh", f"there is no file {path.name} beside the model file", f"use one of: {listed(beside)}")
     else:
         try:
             text = path.read_bytes()
         except OSError as error:
-            faults.add("mesh", f"{path.name} cannot be read: {error.strerror}", "a file that you may read")
+            faults.add("mesh", f"{path.name} cannot be read: {error.strerror}", "make it readable")
     faults.end_stage()
     if path.suffix.lower() == ".geo" and text.rpartition(b"\n")[2].count(b";") > 1:
-        faults.note("mesh", f"the last line of {path.name} has no end of line: Gmsh reads the first of its commands alone")
+        faults.note("mesh", f"the last line of {path.name} does not end with a line break: Gmsh reads only the first of its commands")
 
 
 def is_old(path):
-    """A mesh in MSH 1 or 2: elements have their group beside them, and are there once for each."""
+    """A mesh in MSH 1 or 2: elements have their group beside them, and are repeated for each group."""
     with open(path, "rb") as file:
         head = file.read(100).split()
     return path.suffix.lower() == ".msh" and (head[:1] == [b"$NOD"] or head[:1] == [b"$MeshFormat"] and head[1:2] < [b"3"])
@@ -111,28 +111,28 @@ def open_file(path, faults):
         gmsh.open(str(path))
         if path.suffix.lower() == ".geo" and len(gmsh.model.mesh.getElements(SURFACE)[0]) == 0:
             gmsh.model.mesh.generate(2)
-    except Exception as error:   # Gmsh raises nothing more special
+    except Exception as error:   # Gmsh raises no more specific exceptions
         failed = str(error)
     log = gmsh.logger.get()
     told = [line for line in log if line.startswith("Error")] or ([failed] if failed else [])
-    for line in told[:3]:   # one mistake makes Gmsh stumble again and again
+    for line in told[:3]:   # one mistake makes Gmsh report several errors
         match = re.fullmatch(r"(?:Error\s*: )?(?:'.*?', line (\d+): )?(.*)", line, re.DOTALL)
         faults.add("mesh", f"{path.name}{f', line {match[1]}' if match[1] else ''}: Gmsh says: {match[2]}",
-                   "mend the drawing until it opens and meshes in Gmsh itself without an error")
+                   "correct the drawing until Gmsh itself opens and meshes it without an error")
     for line in log:
         check_warning(path, line, faults)
     faults.end_stage()
 
 
 def check_warning(path, line, faults):
-    """What Gmsh leaves out of a group would be left out of a contact or a support, and the answer be another."""
+    """A part that Gmsh leaves out of a group would be missing in a contact or a support, and change the answer."""
     match = re.fullmatch(r"Warning\s*: (.*)", line, re.DOTALL)
     lost = match and re.fullmatch(r"Skipping unknown (\w+) (\d+) in physical (\w+) (\d+)", match[1])
     if lost:
         kind, entity, dimension, group = lost.groups()
         name = gmsh.model.getPhysicalName(DIMENSIONS.get(dimension, POINT), int(group)) or group
-        faults.add("mesh", f"{path.name} has no {kind} {entity}, which its Physical {dimension.capitalize()} '{name}' asks for",
-                   f"{kind}s that the drawing has; bodies in contact have their own each: no Coherence, no BooleanFragments")
+        faults.add("mesh", f"{path.name} has no {kind} {entity}, which its Physical {dimension.capitalize()} '{name}' names",
+                   f"name {kind}s of the drawing; give each body in contact its own: no Coherence, no BooleanFragments")
     elif match:
         faults.note("mesh", f"{path.name}: Gmsh warns: {match[1]}")
 
@@ -149,7 +149,7 @@ def collect(path, faults):
         mesh.bodies[name] = [element for entity in entities for element in surface(entity, mesh, name, faults)]
         for entity in entities:
             if owner.setdefault(entity, name) != name:
-                faults.add("mesh", f"surface {entity} of {path.name} is in two groups: {owner[entity]}, {name}", "in one of them only")
+                faults.add("mesh", f"surface {entity} of {path.name} is in two groups: {owner[entity]}, {name}", "put it in one group only")
     for name, entities in groups(LINE):
         mesh.lines[name] = list({frozenset(side): side for entity in entities for side in line(entity)}.values())
     for name, entities in groups(POINT):
@@ -159,7 +159,7 @@ def collect(path, faults):
 
 
 def groups(dimension):
-    """(name, entities) of each named group; each entity once, in whatever sense."""
+    """(name, entities) of each named group; each entity once, in either direction."""
     found = {}
     for _, tag in gmsh.model.getPhysicalGroups(dimension):
         name = gmsh.model.getPhysicalName(dimension, tag)
@@ -177,9 +177,9 @@ def check_groups(mesh, faults):
             if dimension == SURFACE:
                 faults.add("mesh", f"{said}({tag}) of {mesh.file} has no name", f'{said}("name") = ' + "{...};")
             else:
-                faults.note("mesh", f"{said}({tag}) of {mesh.file} has no name, and no effect")
+                faults.note("mesh", f"{said}({tag}) of {mesh.file} has no name and is ignored")
         if dimension == 3:
-            faults.add("mesh", f"{mesh.file} has a Physical Volume", "bodies are surfaces in the plane z = 0")
+            faults.add("mesh", f"{mesh.file} has a Physical Volume", "use surfaces in the plane z = 0 as bodies")
     if not grouped:
         faults.add("mesh", f"{mesh.file} has no Physical Surface, so there are no bodies", 'Physical Surface("name") = {...};')
     for _, entity in gmsh.model.getEntities(SURFACE):
@@ -188,7 +188,7 @@ def check_groups(mesh, faults):
 
 
 def check_parts(path, dimension, faults):
-    """In an old mesh each element of a curve or surface must be there for each of its groups: Gmsh gives a group all of the curve."""
+    """In an old mesh each element of a curve or surface must exist for each of its groups: Gmsh gives a group the whole curve."""
     for _, entity in gmsh.model.getEntities(dimension):
         groups_of = gmsh.model.getPhysicalGroupsForEntity(dimension, entity)
         times = Counter()
@@ -199,8 +199,8 @@ def check_parts(path, dimension, faults):
         if old and len(groups_of) > 1 and set(times.values()) - {len(groups_of)}:
             names = [gmsh.model.getPhysicalName(dimension, group) or str(group) for group in groups_of]
             faults.add("mesh", f"{('curve', 'surface')[dimension - 1]} {entity} of {path.name} is in the groups {listed(names)}, but not all of its "
-                       "elements are in all of them", "a number of its own for each curve and surface, the second tag of its elements in MSH 2, "
-                       "such as Gmsh itself writes; or MSH 4.1")
+                       "elements are in all of them", "give each curve and surface its own number, the second tag of its elements in MSH 2, "
+                       "as Gmsh itself writes it; or use MSH 4.1")
 
 
 def surface(entity, mesh, name, faults):
@@ -209,8 +209,8 @@ def surface(entity, mesh, name, faults):
     for kind, tags, nodes in zip(*gmsh.model.mesh.getElements(SURFACE, entity)):
         if int(kind) not in SURFACES:
             said = NAMES.get(int(kind)) or gmsh.model.mesh.getElementProperties(int(kind))[0]
-            faults.add(f"[body.{name}]", f"{len(tags)} of its elements in {mesh.file} are {said}, which epcont has no card for",
-                       "triangles of three or six nodes, quadrilaterals of four (Mesh.ElementOrder = 1) or eight "
+            faults.add(f"[body.{name}]", f"{len(tags)} of its elements in {mesh.file} are {said}, which epcont does not support",
+                       "use triangles of three or six nodes, quadrilaterals of four (Mesh.ElementOrder = 1) or eight "
                        "(Mesh.SecondOrderIncomplete = 1)")
             continue
         corners, count = SURFACES[int(kind)]
@@ -221,7 +221,7 @@ def surface(entity, mesh, name, faults):
 
 
 def turned(nodes, corners, place):
-    """The nodes counterclockwise, from the same first corner: corners, then the nodes between them."""
+    """The nodes counterclockwise from the same first corner: corners, then mid-side nodes."""
     x = [place[node] for node in nodes[:corners]]
     area = sum(a[0] * b[1] - b[0] * a[1] for a, b in zip(x, x[1:] + x[:1]))
     if area >= 0.0:
@@ -230,7 +230,7 @@ def turned(nodes, corners, place):
 
 
 def line(entity):
-    """Sides of a curve; such as have more than three nodes belong to surfaces that are refused."""
+    """Edges of a curve; those with more than three nodes belong to surfaces that are rejected."""
     for kind, tags, nodes in zip(*gmsh.model.mesh.getElements(LINE, entity)):
         count = LINES.get(int(kind), 0)
         for i in range(len(tags) if count else 0):
@@ -238,5 +238,5 @@ def line(entity):
 
 
 def describe(mesh, nodes):
-    """Where nodes are, the first few of them."""
+    """Positions of the first few nodes."""
     return ", ".join(spot(mesh.place[node]) for node in nodes[:3]) + (", ..." if len(nodes) > 3 else "")

@@ -24,7 +24,7 @@ class Deck:
 
 
 def parse(text):
-    """The cards of a deck without INCLUDE; what cannot be told apart goes with the card before it."""
+    """The cards of a deck without INCLUDE; unclear lines stay with the card before them."""
     deck, lines = Deck(), [line.split("$")[0].rstrip() for line in text.splitlines()]
     begin = next((k for k, line in enumerate(lines) if line.upper().split() == ["BEGIN", "BULK"]), None)
     if begin is not None:
@@ -43,7 +43,7 @@ def parse(text):
 
 
 def write(card, form):
-    """The lines of a card in a form: small, large or free. What does not fit makes the card a free one."""
+    """The lines of a card in a form: small, large or free. If a value does not fit, the card is free."""
     data = list(card.data)
     while len(data) > 1 and data[-1] == "":
         data.pop()

@@ -1,4 +1,4 @@
-"""What is spoilt: cards (by the catalogue), and the bytes of the text."""
+"""Change decks: cards (by the catalogue), and the bytes of the text."""
 import math
 import re
 
@@ -28,7 +28,7 @@ class Changes:
         self.pick, self.catalogue = pick, catalogue
 
     def card(self, deck, *names):
-        """A card; each kind is as likely as the others, however many there are."""
+        """A random card; each name is equally likely, however many cards it has."""
         kinds = sorted({card.name for card in deck.cards if not names or card.name in names})
         kind = self.pick.choice(kinds) if kinds else None
         found = [card for card in deck.cards if card.name == kind]
@@ -45,7 +45,7 @@ class Changes:
         return do.__name__
 
     def field(self, deck):
-        """A value of the right kind or not, right or not."""
+        """A value of the right type or not, valid or not."""
         pick, card = self.pick, self.card(deck)
         slot = pick.randrange(len(card.data) + pick.choice([0, 0, 0, 1, 9]))
         card.data += [""] * (slot + 1 - len(card.data))
@@ -68,7 +68,7 @@ class Changes:
             card.data[slot] = number(new)
 
     def exchange(self, deck):
-        """Two fields change places, of one card or of two."""
+        """Two fields of one or two cards are exchanged."""
         one, two = self.card(deck), self.card(deck)
         i, j = self.pick.randrange(len(one.data)), self.pick.randrange(len(two.data))
         one.data[i], two.data[j] = two.data[j], one.data[i]
@@ -99,7 +99,7 @@ class Changes:
             card.data[slot] = self.pick.choice(["77777777", "0", "-5", "99999999", "100000000", str(int(card.data[slot]) + 1)])
 
     def free(self, deck):
-        """Supports or reference freedoms fewer: free motions."""
+        """Fewer supports or SUPORT DOFs: unconstrained rigid-body modes."""
         card = self.card(deck, "SPC", "SPC1", "SUPORT", "RBE2")
         if not card:
             return
@@ -111,7 +111,7 @@ class Changes:
             card.data[slot] = self.pick.choice(["1", "2", "12", "3", "6", "123", ""])
 
     def table(self, deck):
-        """Points of a curve in another order, gone, equal or falling; a yield point far below the others."""
+        """Points of a curve in another order, missing, equal or falling; a yield point far below the others."""
         card = self.card(deck, "TABLES1")
         if not card or len(card.data) < 11:
             return
@@ -131,7 +131,7 @@ class Changes:
         card.data[8:] = body
 
     def lower_yield_point(self, deck, table, body):
-        """Along the elastic line, so that the curve is one still; LIMIT1 with it."""
+        """Along the elastic line, so that the curve stays a curve; LIMIT1 with it."""
         point = [value(text) for text in body[2:4]]
         if len(point) < 2 or None in point:
             return
@@ -163,7 +163,7 @@ class Changes:
             card.data[slot] = self.pick.choice(["0.0", "1.+3", "1.+6", "1.+12", "1.+30", "1.+100", "1.+200", "1.-200", "1.-60", "-1.+6", "-1.0"])
 
     def parameter(self, deck):
-        """A PARAM: a name that is known or not, a value that is right or not."""
+        """A PARAM with a known or unknown name, and a valid or invalid value."""
         name = self.pick.choice(sorted(self.catalogue.parameters))
         column = self.catalogue.parameters[name]
         pool = {"integer": ["1", "2", "3", "7", "0", "-1", "10001", "100001", "1.0"],
@@ -197,7 +197,7 @@ class Changes:
         card.data = card.data or [""]
 
     def collapse(self, deck):
-        """A node where another is, or near it, or on a line with others."""
+        """A node at or near another, or on a line with others."""
         one, two = self.card(deck, "GRID"), self.card(deck, "GRID")
         if one and len(one.data) > 3 and len(two.data) > 3:
             slot = self.pick.choice([2, 3])
@@ -206,7 +206,7 @@ class Changes:
                 one.data[5 - slot] = two.data[5 - slot]
 
     def contact_twice(self, deck):
-        """A pair, or a contact of lines, again under another id: refused."""
+        """A pair, or a contact of lines, repeated under another id: rejected."""
         card = self.card(deck, "CGAP", "BCONP")
         if card:
             again = card.copy()

@@ -1,4 +1,4 @@
-"""Runs of decks, and what is wrong with them."""
+"""Run decks, and find faults of the runs."""
 import math
 import os
 import pathlib
@@ -22,12 +22,12 @@ BAD_NUMBER = re.compile(rb"\bnan\b|\binf(?:inity)?\b|\*\*\*", re.IGNORECASE)
 PLACE = re.compile(r":\d+:\d+(?:-\d+)?: ")
 RELATIVE = ("equilibrium_residual", "energy_balance")
 CERTIFIED = 1e-9
-#: Beyond it rounding may take more than is certified.
+#: Above it rounding may exceed the certificate's tolerance.
 BAD_CONDITION = CERTIFIED / sys.float_info.epsilon
-#: Part of what a gap is the sum of up to which it is none: `negligible` in src/contact.
+#: Fraction of the terms of a gap up to which it counts as zero: `negligible` in src/contact.
 NEGLIGIBLE = 1e-11
 LEAK = re.compile(r"LeakSanitizer")
-# What tools/verify says of decks that it has no answer to.
+# Messages of tools/verify for decks that it does not support.
 NOT_UNDERSTOOD = (deck_reader.DeckError, OverflowError, ZeroDivisionError)
 
 
@@ -56,7 +56,7 @@ class Run:
         self.messages = self.err_text.decode("latin-1")
 
     def fault(self):
-        """What is wrong with the run as a whole."""
+        """Fault of the run as a whole."""
         if self.status is None:
             return "no end within the time limit"
         if LEAK.search(self.messages):
@@ -78,7 +78,7 @@ class Run:
         return None
 
     def word(self, name):
-        """What standard output says of a deck."""
+        """Line of standard output for a deck."""
         lines = [line[len(name) + 2:] for line in self.said if line.startswith(name + "  ")]
         cases = self.words_of_cases(name)
         if cases and not lines and set(cases) <= set(WORDS):
@@ -88,12 +88,12 @@ class Run:
         return re.sub(r" at load factor .*", "", lines[0].split("  ")[0])
 
     def words_of_cases(self, name):
-        """What it says of each of several load cases."""
+        """Lines for each of several load cases."""
         found = [re.match(re.escape(name) + r" SUBCASE \d+  (.*?)(?:  |$)", line) for line in self.said]
         return [re.sub(r" at load factor .*", "", one[1]) for one in found if one]
 
     def told(self, name):
-        """What standard error says of a deck: from the first line that names it to the next deck."""
+        """Lines of standard error for a deck: from the first line that names it to the next deck."""
         lines, ours = [], len(self.names) == 1
         for line in self.messages.split("\n"):
             found = re.match(r"(?:\./)*(\w+)\.(?:dat|inc)\b", line)
@@ -105,7 +105,7 @@ class Run:
 
 
 def fault_of_deck(run, name, tolerance):
-    """What is wrong with what a run says and writes of one deck; None where all is well."""
+    """Fault in the output and files of one deck; None if there is none."""
     word, told = run.word(name), run.told(name)
     files = {path.name[len(name):]: path.read_bytes() for path in run.out.glob(f"{name}.*")}
     for suffix, text in files.items():
@@ -120,7 +120,7 @@ def fault_of_deck(run, name, tolerance):
     if word == "rejected":
         return "rejected, but there are results" if files else fault_of_messages(told)
     cases = run.words_of_cases(name)
-    if cases:   # what stands in their tables is told by tools/verify
+    if cases:   # tools/verify checks the content of their tables
         said = re.findall(rb"^\d+,status,(.*?),", files.get(".summary.csv", b""), re.M)
         return None if sorted(text.decode() for text in said) == sorted(cases) else "the summary says other words of its cases"
     for suffix in (".lst", ".summary.csv") + (".contact.csv", ".nodes.csv", ".history.csv") * (word in ANSWERS):
@@ -142,7 +142,7 @@ def fault_of_deck(run, name, tolerance):
 
 
 def fault_of_messages(told):
-    """Every error names a place or the deck, and says what would be right; the last line counts them."""
+    """Check that every error has a position (or the deck) and a remedy, and that the last line counts them."""
     told = [line for line in told if line]
     if not told or not re.search(r": \d+ errors?\b", told[-1]):
         return "rejected without a count of errors"
@@ -167,7 +167,7 @@ def summary_of(run, name):
 
 
 def fault_of_certificate(run, name, tolerance):
-    """The certificate's figures, held against its tolerance."""
+    """Compare the values of the certificate with its tolerance."""
     summary = summary_of(run, name)
     for key in RELATIVE:
         if not number(summary.get(key)) <= tolerance:
@@ -186,14 +186,14 @@ def fault_of_certificate(run, name, tolerance):
 
 
 def read_back(run, name, place):
-    """What the deck says, and the tables of its run."""
+    """The deck, and the tables of its run."""
     tables = Tables(run.out, name)
     normals = {pair: (float(row["nx"]), float(row["ny"])) for pair, row in tables.contact.items()}
     return Scene(deck_reader.read(place / f"{name}.dat"), normals), tables
 
 
 def fault_of_answer(run, name, place, tolerance):
-    """The certificate recomputed from deck and tables by tools/verify; None, too, where that does not understand the deck, and of
+    """Recompute the certificate from deck and tables by tools/verify; None also if it does not support the deck, and for
     several load cases, which tools/verify recomputes one by one from the command line."""
     if run.words_of_cases(name):
         return None
@@ -204,27 +204,27 @@ def fault_of_answer(run, name, place, tolerance):
         return None
     except (OSError, KeyError, ValueError, IndexError, TypeError) as error:
         if any(" is farther from the middle of its side" in line for line in run.told(name)):
-            return None  # What faces such a side is found elsewhere there.
+            return None  # There the opposite points of an edge are found otherwise.
         return f"verify: {type(error).__name__} {error}"
     return "verify: " + next(line for line in lines if line.endswith("WRONG")) if faults else None
 
 
 def just_beyond(run, name):
-    """Is an answer refused for a stress error slightly above its limit, of which half is rounding?"""
+    """Is an answer rejected for a stress error slightly above its limit, of which half is rounding?"""
     summary = summary_of(run, name)
     off, limit, asked = [number(summary.get(key)) for key in ("stress_off_curve", "stress_off_curve_limit", "curve_tolerance")]
     return limit >= 2 * asked and off <= 1.5 * limit and all(number(summary.get(key)) <= CERTIFIED for key in RELATIVE)
 
 
 def lost_on_a_travel(run, name):
-    """Is an answer refused for gaps that overlap by no more than gaps are told from none, of a travel?"""
+    """Is an answer rejected for penetrations within the rounding of a prescribed rigid-body displacement?"""
     summary = summary_of(run, name)
     travel = max((abs(number(value)) for key, value in summary.items() if key.startswith("approach")), default=0.0)
     return NEGLIGIBLE * travel >= -number(summary["smallest_gap"]) > 0.0
 
 
 def far_apart(deck):
-    """Are sections so unlike in stiffness (modulus times thickness) that rounding of one may drown another?"""
+    """Do the stiffnesses of sections (modulus times thickness) differ so much that rounding of one may hide another?"""
     try:
         cards = deck_reader.read(deck)
         modulus = {int(card[1]): deck_reader.real(card[2]) for card in cards.of("MAT1")}
@@ -235,28 +235,28 @@ def far_apart(deck):
 
 
 def fault_of_twin(run, name, other, twin, place, tolerance):
-    """Two decks that say the same must give the same, but for what conditioning and travels take of the digits."""
+    """Two equivalent decks must give the same results, within the digits that conditioning and prescribed displacements leave."""
     one, two = run.word(name), other.word(twin)
-    # Roundings and the smallest pivot are others in another order: where the condition is bad, one may be just below a limit.
-    # Where it is that bad, what is certainly no answer may also look like bodies that cannot give way.
+    # Rounding and the smallest pivot depend on the order: with a bad condition, only one deck may be just below a limit.
+    # With a very bad condition, even a certain non-equilibrium may look like rigid bodies.
     if {one, two} in ({"valid", "ill-conditioned"}, {"valid", "not certified"}, {"not certified", "not converged"}, {"not certified", "overlap"}) \
             and number(summary_of(*((run, name) if one in ANSWERS else (other, twin)))["condition"]) > BAD_CONDITION:
         return None
-    # So where a travel leaves few digits of stresses or gaps: their rounding is in the figure that one has above its limit, one below.
+    # Also if a prescribed displacement leaves few digits of stresses or gaps: rounding puts one deck above the limit, the other below.
     if {one, two} == {"valid", "not certified"}:
         refused = (run, name) if two == "valid" else (other, twin)
         if just_beyond(*refused) or lost_on_a_travel(*refused):
             return None
     if {one, two} == {"valid", "contact not found"} and far_apart(place / f"{name}.dat"):
         return None
-    if {one, two} == {"ill-conditioned", "not converged"}:   # rounding stands in the way of both
+    if {one, two} == {"ill-conditioned", "not converged"}:   # rounding affects both
         return None
-    # Far from its answer a method may carry rounding from step to step and let it grow: one just within the limit, one just beyond.
+    # Far from its answer a method may amplify rounding from step to step: one deck ends just within the limit, one just beyond.
     if {one, two} == {"valid", "not converged"}:
         steps, most = sorted(len(rows_of(*answer, "history")) for answer in ((run, name), (other, twin)))
         if steps >= 0.75 * most:
             return None
-    # Beyond a limit load rounding decides which of two refusals it is.
+    # Above a limit load, rounding decides which of two rejections is reported.
     if {one, two} < {"limit load", "not converged", "singular stiffness", "not certified"} \
             and any("limit load" in "".join(told) for told in (run.told(name), other.told(twin))):
         return None
@@ -266,8 +266,8 @@ def fault_of_twin(run, name, other, twin, place, tolerance):
         return None
     condition = summary_of(run, name)["condition"]
     bound = max(tolerance, 1e-13 * number(condition))
-    # Iterations take other ways to the same tolerance: TOL of the displacements is a tenth of that of the curve. What each has
-    # left it tells, as an estimate.
+    # Iterations reach the same tolerance on different paths: TOL of the displacements is a tenth of that of the curve. Each
+    # reports its iteration error as an estimate.
     left = number(summary_of(run, name)["curve_tolerance"])
     if left > CERTIFIED:
         told = sum(number(summary_of(*answer)["iteration_error_displacement"]) for answer in ((run, name), (other, twin)))
@@ -277,19 +277,19 @@ def fault_of_twin(run, name, other, twin, place, tolerance):
         return None
     compared = [("nodes", "node", ("ux", "uy")), ("elements", "element", ("sx", "sy", "sz", "txy"))]
     if any("so its value is arbitrary" in listing for listing in listings):
-        compared = compared[1:]   # which end of a free way a body stands at
+        compared = compared[1:]   # end of the unconstrained distance at which a body stops
     for table, key, columns in compared:
         ours, theirs = ({row[key]: row for row in rows_of(a, b, table)} for a, b in ((run, name), (other, twin)))
         if ours.keys() != theirs.keys():
             return f"twin: other {table}"
-        # Of an element that bends the mean stress may be none.
+        # The mean stress of a bent element may be zero.
         size = columns + ("equivalent_stress",) * (table == "elements")
         scale = max((abs(number(row[column])) for row in ours.values() for column in size), default=0.0)
         worst = max((abs(number(ours[k][column]) - number(theirs[k][column])) for k in ours for column in columns), default=0.0)
         if worst > bound * scale:
             try:
                 bound += 10 * recompute(*read_back(run, name, place)).lost
-            except NOT_UNDERSTOOD:   # nothing says what digits a travel leaves
+            except NOT_UNDERSTOOD:   # the lost digits of a prescribed displacement are not reported
                 bound = math.inf
         if math.isfinite(bound) and not worst <= bound * scale:
             return f"twin: {table} differ by {worst:.1E} of {scale:.1E} (condition {condition})"

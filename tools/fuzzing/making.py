@@ -1,4 +1,4 @@
-"""Deck number k of a seed: always the same."""
+"""Make deck number k of a seed: always the same."""
 import pathlib
 import random
 import sys
@@ -16,7 +16,7 @@ import write_random  # noqa: E402
 class Made:
     name: str
     files: dict           # name: bytes; the first is the deck
-    twin: bytes = None    # the same cards in another order and form, where the deck is made of cards alone
+    twin: bytes = None    # the same cards in another order and form, if the deck consists of cards only
     how: str = ""
 
 
@@ -62,7 +62,7 @@ class Maker:
         return Made(name, {f"{name}.dat": text.encode()}, twin, how)
 
     def in_two_files(self, name, text, pick, how):
-        """A part of the deck is in a file that is included; sometimes files include each other, or again."""
+        """Move a part of the deck to an included file; sometimes files include each other, or are included twice."""
         lines = text.splitlines()
         first = next((k + 1 for k, line in enumerate(lines) if line == "BEGIN BULK"), 0)
         at = pick.randint(first, max(first, len(lines) - 1))
@@ -80,14 +80,14 @@ class Maker:
 
 
 def means_other_things(card):
-    """In another form, or in another place: the deck's end; a name of large fields; a comment up to the line's end; a coordinate without point, which large fields alone may have."""
+    """In another form, or with a detail changed: the deck's end; a name of large fields; a comment at the end of a line; a coordinate without decimal point, which only large fields may have."""
     if card.name == "ENDDATA" or card.name[:1] in ("", "*", "+") or card.name.endswith("*") or any("$" in text for text in card.data):
         return True
     return card.name == "GRID" and any(text and "." not in text for text in card.data[2:5])
 
 
 def noise(pick):
-    """Bytes that are no deck, or nearly none."""
+    """Bytes that are not a deck, or hardly one."""
     pool = pick.choice([bytes(range(256)), b"GRIDCQUA4T123 ,*+.-\n$", b"\n", b"INCLUDE 'x'\n", b"\x00\xff", b"1234567890.E+-,\n        "])
     body = bytes(pick.choice(pool) for _ in range(pick.choice([0, 1, 10, 300, 5000])))
     return pick.choice([b"", b"BEGIN BULK\n", b"SOL 101\nCEND\n"]) + body + pick.choice([b"", b"\nENDDATA\n", b"ENDDATA"])

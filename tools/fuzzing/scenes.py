@@ -1,4 +1,4 @@
-"""Random small scenes, as a grammar of cards: most are right, some have a fault or a choice too many."""
+"""Random small models, as a grammar of cards: most are valid, some have a fault or a choice too many."""
 import math
 import pathlib
 import sys
@@ -10,7 +10,7 @@ from write_random import places  # noqa: E402
 
 
 def number(value):
-    """A real as the deck wants it: with a point, and all its digits."""
+    """A real in the deck's form: with a decimal point, and all its digits."""
     text = f"{value:.12G}"
     if "." not in text and "E" not in text:
         return text + ".0"
@@ -40,7 +40,7 @@ class Scene:
         return name
 
     def block(self, xs, ys, section):
-        """Nodes by (column, row) of a block; halves are middles."""
+        """Nodes by (column, row) of a block; halves are mid-side nodes."""
         at = {}
         for j in range(len(ys)):
             for i in range(len(xs)):
@@ -90,7 +90,7 @@ class Scene:
 
 
 def small_scene(pick):
-    """One to three blocks upon each other, by pairs, by lines, or not touching; pressed, pulled, pushed or moved."""
+    """One to three stacked blocks, in contact by pairs, by lines, or not at all; pressed, pulled, pushed or moved."""
     scene = Scene(pick)
     if pick.random() < 0.3:
         scene.deck.head = ["SOL 101", "CEND", "TITLE = SMALL", "SPC = 1", "DISPLACEMENT = ALL", "STRESS = ALL", "BEGIN BULK"]
@@ -168,7 +168,7 @@ def load(scene, top, total):
 
 
 def ties(scene, top, total):
-    """Springs, equations, an RBE2 that may rotate: most can be, some are of DOFs that are fixed, dependent or of a SUPORT."""
+    """Springs, equations, an RBE2 that may rotate: most are valid, some use DOFs that are fixed, dependent or of a SUPORT."""
     pick = scene.pick
     nodes = [card.data[0] for card in scene.deck.cards if card.name == "GRID"]
     named = {field for card in scene.deck.of("SPC1", "SPC", "SUPORT", "RBE2") for field in card.data[1:]}
@@ -202,7 +202,7 @@ def ties(scene, top, total):
 
 
 def body_load(scene, total):
-    """Gravity or a spin, on mass that is forgotten at times."""
+    """Gravity or rotation, sometimes without mass."""
     pick = scene.pick
     for card in scene.deck.cards:
         if card.name == "MAT1" and pick.random() < 0.95:

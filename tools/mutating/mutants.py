@@ -1,11 +1,11 @@
-"""Mutants: what one operator or one constant of a Fortran source may be changed into."""
+"""Mutants: changes of one operator or one constant of a Fortran source."""
 import collections
 import dataclasses
 import hashlib
 import itertools
 import re
 
-#: Comments and strings; then what may be changed, longest first; then names and all else, which may not.
+#: Comments and strings; then tokens that may be changed, longest first; then names and all others.
 TOKEN = re.compile(r"""(?P<quiet>!.*|'[^']*'?|"[^"]*"?)
                      |(?P<real>(?<!\w)(?:\d+\.\d*|\.\d+|\d+(?=[ed]))(?:[ed][+-]?\d+)?(?=_\w|(?!\w)))(?:_\w+)?
                      |(?P<integer>(?<![\w.%])\d+(?![\w.]))
@@ -17,11 +17,11 @@ SWAPS = {"==": ["/="], "/=": ["=="], "<": [">", "<="], "<=": [">", "<"], ">": ["
          ".and.": [".or."], ".or.": [".and."], ".not.": [""], ".true.": [".false."], ".false.": [".true."],
          "min": ["max"], "max": ["min"], "minval": ["maxval"], "maxval": ["minval"], "minloc": ["maxloc"], "maxloc": ["minloc"],
          "any": ["all"], "all": ["any"]}
-#: Statements in which nothing is computed.
+#: Statements without computation.
 BARREN = re.compile(r"\s*(?:end\b|use\b|import\b|implicit\b|private\b|public\b|module\b|contains\b|procedure\b|class\b|type\b(?!.*=)|"
                     r"(?:(?:pure|elemental|impure|recursive|integer|logical|real(?:\(\w+\))?|character(?:\([^)]*\))?)\s+)*(?:subroutine|function)\b|"
                     r"(?:associate|select)\b(?!.*\d))", re.IGNORECASE)
-#: `<=` for `<` matters where whole numbers are compared; of two reals that are hardly ever equal it would be the same program.
+#: `<=` for `<` matters if integers are compared; reals are hardly ever equal, so the program would be the same.
 BY_A_HAIR = {"<=", ">=", "<", ">"}
 WHOLE = re.compile(r"\s*\d+(?![\w.])")
 
@@ -33,17 +33,17 @@ class Mutant:
     column: int     # from 0
     old: str
     new: str
-    text: str       # the line, unchanged
-    twin: int = 0   # so many lines like it stand above
+    text: str       # the unchanged line
+    twin: int = 0   # number of equal lines above
 
     @property
     def key(self):
-        """The same wherever the line stands."""
+        """Identity of a mutant, independent of its line number."""
         indent = len(self.text) - len(self.text.lstrip())
         return f"{self.path}|{self.text.strip()}|{self.column - indent}|{self.new}" + (f"|{self.twin}" if self.twin else "")
 
     def rank(self, seed):
-        """Place in a random order that changes of other lines do not disturb."""
+        """Position in a random order that changes of other lines do not affect."""
         return hashlib.sha256(f"{seed} {self.key}".encode()).hexdigest()
 
     def applied(self, source):
@@ -55,7 +55,7 @@ class Mutant:
 
 
 def real_text(text, factor):
-    """A real literal times a factor, as Fortran writes it. Of 0.0 there is no factor: 1.0."""
+    """A real literal times a factor, in Fortran's form; 0.0 becomes 1.0."""
     value = float(text.lower().replace("d", "e"))
     new = f"{value * factor if value else 1.0:.12g}"
     mantissa, _, exponent = new.partition("e")
@@ -64,7 +64,7 @@ def real_text(text, factor):
 
 
 def replacements(kind, old, before, after):
-    """What a token may become."""
+    """Replacements of a token."""
     if kind == "real":
         small = 0.0 < float(old.lower().replace("d", "e")) < 1e-5
         return [real_text(old, factor) for factor in ((1e-3, 1e3, 1e6) if small else (1e-3, 1e3))]
@@ -76,7 +76,7 @@ def replacements(kind, old, before, after):
     ahead = before.rstrip()[-1:]
     if old in "*/" and (ahead in "(,=" or after.lstrip()[:1] in ",)"):     # of a character(len=*), a print
         return []
-    if old in "+-" and (ahead == "" or ahead in "(,=[*/<>&"):              # a plus sign of its own says nothing
+    if old in "+-" and (ahead == "" or ahead in "(,=[*/<>&"):              # a leading plus sign has no effect
         return swaps if old == "-" else []
     if old in BY_A_HAIR and not WHOLE.match(after):
         return swaps[:1]
@@ -93,10 +93,10 @@ def mutants_of(path, source):
         code = "".join(m.group() for m in TOKEN.finditer(text) if m.lastgroup != "quiet").rstrip()
         start = 0
         if not going_on and "::" in code:
-            # Of a declaration only values count: behind the first = on the right of ::, not shapes.
+            # In a declaration only values may change, after the first = to the right of ::, not shapes.
             head = text.index("::") + 2
             value = re.search(r"(?<![=<>/])=(?![=>])", text[head:])
-            barren = value is None and not code.endswith(":: &")   # the values may stand below
+            barren = value is None and not code.endswith(":: &")   # the values may be on the next line
             start = head + value.end() if value else len(text)
         if not barren:
             for match in TOKEN.finditer(text):
@@ -111,7 +111,7 @@ def mutants_of(path, source):
     return found
 
 
-#: Drawn in turn, so that the many subscripts do not drown what decides.
+#: Drawn in turn, so that the many subscripts do not outnumber the others.
 CLASSES = [{"real"}, {"integer"}, {"==", "/=", "<", "<=", ">", ">="}, {"+", "-", "*", "/"},
            {".and.", ".or.", ".not.", ".true.", ".false.", "any", "all"}, {"min", "max", "minval", "maxval", "minloc", "maxloc"}]
 
@@ -124,7 +124,7 @@ def class_of(mutant):
 
 
 def choose(mutants, seed, count):
-    """So many, of each class in turn, one of each place, at random: the same ones for the same seed."""
+    """Choose some mutants, from each class in turn and from each folder, at random: the same ones for the same seed."""
     rows, places = [[] for _ in CLASSES], set()
     for mutant in sorted(mutants, key=lambda m: m.rank(seed)):
         place = mutant.path, mutant.line, mutant.column

@@ -1,4 +1,4 @@
-"""A copy of the project, its build without optimisation, and its tests, one after the other."""
+"""A copy of the project, its build without optimisation, and its tests in sequence."""
 import hashlib
 import json
 import os
@@ -8,13 +8,13 @@ import signal
 import subprocess
 import time
 
-#: Tests of tools, documents and packages say nothing of an answer.
+#: Tests of tools, documents and packages do not check results.
 LABELS_LEFT_OUT = {"tools", "vtk", "package", "app", "from_gmsh", "round_trip"}
 NAMES_LEFT_OUT = {"faults", "fuzzed_decks"}
 
 
 def end(process):
-    """A test with all that it has started."""
+    """Kill a test with all its child processes."""
     os.killpg(process.pid, signal.SIGKILL)
     process.wait()
 
@@ -22,11 +22,11 @@ def end(process):
 class Trial:
     def __init__(self, root, place, longest):
         self.root, self.tree, self.folder, self.place = root, place / "tree", place / "build", place
-        self.longest = longest                       # seconds of a test that is worth its time
+        self.longest = longest                       # longest useful test [s]
         self.baseline, self.tests = {}, {}
 
     def copy(self):
-        """The tree as it is, restored where a mutant was left behind; what has not changed keeps its time."""
+        """Copy the tree, and restore files with a remaining mutant; unchanged files keep their time."""
         listed = subprocess.run(["git", "-C", self.root, "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
                                 check=True, capture_output=True, text=True).stdout
         wanted = [pathlib.Path(name) for name in listed.split("\0") if name and (self.root / name).is_file()]
@@ -43,8 +43,8 @@ class Trial:
         return digest.hexdigest()
 
     def configure(self):
-        """One shared library that no program is linked with anew: a mutant compiles one file and links one. Bounds are checked, as
-        `tools/test debug` does: what reads beyond an array may give anything."""
+        """One shared library, so that a mutant compiles one file and links once. Bounds are checked, as in
+        `tools/test debug`: reading beyond an array may give any result."""
         generator = ["-G", "Ninja"] if shutil.which("ninja") and not (self.folder / "Makefile").exists() else []
         subprocess.run(["cmake", "-S", self.tree, "-B", self.folder, *generator, "-DCMAKE_BUILD_TYPE=Plain", "-DCMAKE_Fortran_FLAGS=-O0 -fcheck=bounds",
                         "-DBUILD_SHARED_LIBS=ON", "-DEPCONT_STATIC=OFF", "-DCMAKE_LINK_DEPENDS_NO_SHARED=ON"],
@@ -79,7 +79,7 @@ class Trial:
         return passed, time.monotonic() - begun
 
     def take_baseline(self, digest, tell):
-        """Which tests pass, and how long they take, before anything is changed; from a file where the tree is that of the file."""
+        """Tests that pass unchanged, and their times; from a file if the tree has not changed since."""
         file = self.place / "baseline.json"
         if file.exists():
             kept = json.loads(file.read_text())
@@ -95,14 +95,14 @@ class Trial:
         file.write_text(json.dumps({"digest": digest, "longest": self.longest, "seconds": self.baseline}))
 
     def order(self, layers, kills):
-        """Tests that fail soonest first: by how likely (those of the layer, those that killed others like it), by time."""
+        """Sort the tests so that a failure is likely early: those of the layer, those that killed similar mutants, then by time."""
         def worth(name):
             likely = (1.0 if self.tests[name][2] & layers else 0.1) + kills.get(name, 0)
             return likely / (self.baseline[name] + 0.05)
         return sorted(self.baseline, key=worth, reverse=True)
 
     def judge(self, mutant, layers, kills, seconds):
-        """What becomes of a mutant: (verdict, test that killed it, or how many passed)."""
+        """Result of a mutant: (verdict, test that killed it, or number of tests passed)."""
         path = self.tree / mutant.path
         source = path.read_text()
         path.write_text(mutant.applied(source))

@@ -1,1 +1,1 @@
-"""Scenes from a few parameters, for tools/decks."""
+"""Make models from a few parameters, for tools/decks."""

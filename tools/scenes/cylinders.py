@@ -1,4 +1,4 @@
-"""Hertz's problems: two equal cylinders, elastic and beyond; a ball on a flat."""
+"""Hertz's problems: two equal cylinders, elastic and plastic; a ball on a flat."""
 import math
 
 from .deck import Deck
@@ -6,7 +6,7 @@ from .mesh import first_free, graded, on_circle, quarter_disc, quarter_disc_squa
 
 
 def disc_of(radius, b, wanted, element="ctria3"):
-    """The quarter disc whose number of nodes comes nearest to the wanted one."""
+    """The quarter disc whose number of nodes is closest to the given one."""
     if element == "cquad4":
         candidates = [disc_squared(radius, b, k) for k in range(2, 100) if wanted < 60 * k * k < 40 * wanted]
         return min(candidates, key=lambda mesh: abs(len(mesh.point) - wanted))
@@ -15,7 +15,7 @@ def disc_of(radius, b, wanted, element="ctria3"):
                   if 8.0 * (k / 10) ** 2 < 2 * corners < 60.0 * (k / 10) ** 2]
     best = min(candidates or [quarter_disc(radius, b, 40.0)], key=lambda mesh: abs(len(mesh.point) - corners))
     low, high = 1.0, 64.0
-    if len(best.point) < 0.9 * corners:  # no finer at the contact, but farther away
+    if len(best.point) < 0.9 * corners:  # not finer at the contact, but farther away
         while abs(len(best.point) - corners) > 0.05 * corners and high / low > 1.01:
             far = math.sqrt(low * high)
             best = quarter_disc(radius, b, 40.0, 1.0 + 1.0 / 64.0 / far)
@@ -24,7 +24,7 @@ def disc_of(radius, b, wanted, element="ctria3"):
 
 
 def curved(mesh, radius, element):
-    """With middles on the circle, where the elements have such."""
+    """With mid-side nodes on the circle, if the elements have them."""
     return mesh.with_middles(on_circle((0.0, radius), radius)) if element.endswith("6") else mesh
 
 
@@ -46,14 +46,14 @@ STEEL = [(0.0, 0.0), (85.0 / 20400.0, 85.0), (0.12, 100.0)]
 
 
 def touching(mesh, reach, line="arc"):
-    """The nodes of a line within reach, up to a corner of an element."""
+    """Nodes of a line within SEARCH, up to a corner of an element."""
     corners = {node for nodes in mesh.element for node in (nodes[:3] if len(nodes) == 6 else nodes)}
     near = [node for node in mesh.line[line] if mesh.point[node][0] < reach]
     return near if near[-1] in corners else near[:-1]
 
 
 def hertz(mesh, plastic=False, b=0.0239):
-    """Two equal cylinders, as hertz44 but on a mesh that resolves the contact."""
+    """Two equal cylinders as in hertz44, on a mesh that resolves the contact."""
     kind = "ELASTOPLASTIC" if plastic else "ELASTIC"
     words = ["Two equal steel cylinders, R = 1 mm, P = 10 kgf a mm of length; "
              f"{'bilinear steel' if plastic else 'elastic'}. Units kgf, mm. One quarter: x = 0 is a line "
@@ -82,7 +82,7 @@ def hertz(mesh, plastic=False, b=0.0239):
 
 
 def ball(element="ctrax6", n=4, rigid=False, far=0.6, part=0.02):
-    """A ball on a flat, rings: n elements across the contact, whose radius is `part` of the ball's."""
+    """A ball on a flat, axisymmetric: n elements across the contact, whose radius is `part` of the ball's."""
     radius, young, nu = 10.0, 210000.0, 0.3
     a = part * radius
     stiff = young / (1 - nu * nu) / (1 if rigid else 2)

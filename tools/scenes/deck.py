@@ -1,4 +1,4 @@
-"""Cards of a deck: numbers in fields, and the cards in the order they are asked for."""
+"""Cards of a deck: numbers in fields, and the order of cards."""
 import textwrap
 
 from cards import written
@@ -18,7 +18,7 @@ def long(value):
 
 
 class Deck:
-    """Cards of a deck in the order they are asked for; `write` puts head and tail round them. `words`: paragraphs."""
+    """Cards of a deck in the order of the calls; `write` adds head and tail. `words`: paragraphs."""
 
     def __init__(self, title, words, units="N-MM", strain=True, from_geometry=True, rings=False, load_steps=None):
         self.title, self.words, self.lines, self.rings, self.load_steps = title, words, [], rings, load_steps
@@ -37,7 +37,7 @@ class Deck:
             self.lines.append(line.rstrip())
 
     def wide(self, name, *fields):
-        """A card in large field, for reals that eight characters would cut."""
+        """A card in large field, for reals with more than eight characters."""
         cells = [str(f) if not isinstance(f, float) else written(f, 8) if f == int(f) else long(f) for f in fields]
         for i in range(0, len(cells), 4):
             line = (name + "*" if i == 0 else "*").ljust(8) + "".join(cell.ljust(16) for cell in cells[i:i + 4])
@@ -51,7 +51,7 @@ class Deck:
         self.lines.append("*".ljust(8) + "0.0")
 
     def bodies(self, *named):
-        """Each (name, mesh); gives the number of the first node of each."""
+        """Add bodies (name, mesh); return the number of the first node of each."""
         free = first_free(*(mesh for _, mesh in named))
         for k, (name, mesh) in enumerate(named):
             self.remark(name)
@@ -59,12 +59,12 @@ class Deck:
         return [k * free + 1 for k in range(len(named))]
 
     def body(self, mesh, prop, first=1):
-        """Nodes and elements, their numbers from the first one on."""
+        """Nodes and elements, numbered from the first ones."""
         for i, (x, y) in enumerate(mesh.point):
             self.grid(first + i, x, y)
         for k, nodes in enumerate(mesh.element):
             nodes = [first + n for n in nodes]
-            if self.rings and len(nodes) == 6:  # CTRAX6 goes round its sides
+            if self.rings and len(nodes) == 6:  # CTRAX6 lists its nodes in order around the element
                 nodes = [nodes[i] for i in (0, 3, 1, 4, 2, 5)]
             name = {3: "CTRAX3", 6: "CTRAX6"} if self.rings else {3: "CTRIA3", 4: "CQUAD4", 6: "CTRIA6", 8: "CQUAD8"}
             self.card(name[len(nodes)], first + k, prop, *nodes)
@@ -77,7 +77,7 @@ class Deck:
         self.card("MAT1", number, young, "", nu, *([] if density is None else [density]))
 
     def steel(self, count):
-        """So many bodies of it."""
+        """Add a number of such bodies."""
         for number in range(1, count + 1):
             self.material(number, STEEL, 0.3)
 
@@ -93,15 +93,15 @@ class Deck:
         self.card("BLSEG", number, *(first + n for n in nodes))
 
     def touches(self, number, slave, master):
-        """The nodes of one boundary line may touch the segments of another."""
+        """Let the nodes of one boundary line touch the edges of another."""
         self.card("BCONP", number, slave, master)
 
     def yields(self, number, stress, hardening):
-        """Bilinear: stress over plastic strain beyond the yield stress."""
+        """Bilinear: stress over plastic strain above the yield stress."""
         self.wide("MATS1", number, "", "PLASTIC", hardening, 1, 1, stress)
 
     def follows(self, number, curve):
-        """A curve from points of strain and stress, the origin and the yield point first."""
+        """A curve of points of strain and stress, beginning with the origin and the yield point."""
         self.card("MATS1", number, number, "PLASTIC", "", 1, 1, curve[1][1])
         numbers = [written(value, 8) for point in curve for value in point] + ["ENDT"]
         self.card("TABLES1", number, *[""] * 7, *numbers)
@@ -112,7 +112,7 @@ class Deck:
         self.card("FORCE", 1, node, 0, load, 0.0, way, 0.0)
 
     def press(self, mesh, line, value, first=1, theta=0.0):
-        """Pressure on the sides between the corners of a line."""
+        """Pressure on the edges between the corners of a line."""
         corners = {n for nodes in mesh.element for n in nodes[:corners_of(nodes)]}
         line = [n for n in line if n in corners]
         for a, b in zip(line, line[1:]):
@@ -154,7 +154,7 @@ class Deck:
         return "\n".join(head + self.lines + ["ENDDATA", ""])
 
     def measured(self, text):
-        """What epcont gives for this very mesh; nothing is said without a text."""
+        """epcont's results for this mesh; no line without a text."""
         if text:
             self.words.append("epcont on this mesh: " + text)
         return self

@@ -1,4 +1,4 @@
-"""Scenes of elastic bodies."""
+"""Models of elastic bodies."""
 import math
 
 from .deck import Deck
@@ -67,7 +67,7 @@ def flat_punch(n=12, size=12.0, young=1000.0, element="ctria3", growth=(1.4, 1.2
 
 
 def off_centre(n=10, size=10.0, shift=0.25):
-    """A stiff punch loaded off its middle: two free motions."""
+    """A stiff punch with an eccentric load: two rigid-body modes."""
     inside = [math.sin(math.pi / 2 * i / n) for i in range(-n, n + 1)]
     inside[0], inside[n], inside[-1] = -1.0, 0.0, 1.0
     near = min(range(2 * n + 1), key=lambda i: abs(inside[i] - shift))
@@ -97,7 +97,7 @@ def off_centre(n=10, size=10.0, shift=0.25):
 
 
 def along_layer(n):
-    """Places along a layer of height 1, even where it touches: n of them in half of the contact."""
+    """Points along a layer of height 1, with equal spacing in the contact: n of them in half of it."""
     step = 0.85699 / (n - 0.5)
     xs = [step * i for i in range(int(1.6 / step) + 1)]
     return xs + [xs[-1] + x for x in graded(step * 1.2, 1.3, 6.0 - xs[-1])[1:]]
@@ -156,7 +156,7 @@ def shrink(around=16):
 
 
 def pin(around=60):
-    """Pin in a hole a little larger, of the same material: conforming contact, Persson's half angle of 45 degrees."""
+    """Pin in a slightly larger hole of the same material: conforming contact, Persson's half angle of 45 degrees."""
     clearance, young, nu, outside = 0.001, 210000.0, 0.3, 20.0
     load = young / (1 - nu * nu) * clearance / 2.82312
     disc = half_disc(1.0, around)
@@ -184,7 +184,7 @@ def pin(around=60):
 
 
 def patch(force_up=False, support=True):
-    """Two blocks, flat interface, uniform pressure; also as the scenes that have no answer."""
+    """Two blocks, flat interface, uniform pressure; variants have no solution."""
     lower = block([0.0, 0.7, 1.2, 2.1, 3.0], [0.0, 0.6, 1.1, 2.0])
     upper = block([0.0, 0.7, 1.2, 2.1, 3.0], [2.0, 2.5, 3.2, 4.0])
     if force_up:

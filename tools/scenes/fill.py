@@ -1,4 +1,4 @@
-"""Triangles of a given size between curves: Delaunay's triangulation of points from a quadtree, evened out."""
+"""Triangles of a given size between curves: Delaunay's triangulation of points from a quadtree, smoothed."""
 import math
 
 from .mesh import without_unused
@@ -17,14 +17,14 @@ def arc(centre, radius, begin, end):
 
 
 def finest(places, growth, largest):
-    """A size that grows with the distance from some places: (place, size there, distance to which it stays)."""
+    """A size that grows with the distance from some points: (point, size there, distance to which it is constant)."""
     def size(x, y):
         return min([largest] + [h + growth * max(0.0, math.hypot(x - c[0], y - c[1]) - reach) for c, h, reach in places])
     return size
 
 
 def divide(curve, size, samples=4000):
-    """Parameters that cut a curve into sides of this size, that turn by no more than 30 degrees."""
+    """Parameters that divide a curve into edges of this size, with angles of at most 30 degrees."""
     places = [curve(i / samples) for i in range(samples + 1)]
     count, way = [0.0], None
     for p, q in zip(places, places[1:]):
@@ -47,7 +47,7 @@ def delaunay(point):
     x, y, r = (min(xs) + max(xs)) / 2, (min(ys) + max(ys)) / 2, 50 * max(max(xs) - min(xs), max(ys) - min(ys))
     n = len(point)
     point = list(point) + [(x - 2 * r, y - r), (x + 2 * r, y - r), (x, y + 2 * r)]
-    third = {(n, n + 1): n + 2, (n + 1, n + 2): n, (n + 2, n): n + 1}  # of the triangle to the left of each side
+    third = {(n, n + 1): n + 2, (n + 1, n + 2): n, (n + 2, n): n + 1}  # triangle to the left of each edge
 
     def turn(a, b, p):
         return (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])
@@ -63,7 +63,7 @@ def delaunay(point):
         p, (a, b) = point[i], last
         if turn(point[a], point[b], p) < 0:
             a, b = b, a
-        while True:  # walk to the triangle that holds p
+        while True:  # walk to the triangle that contains p
             c = third[a, b]
             if turn(point[b], point[c], p) < 0:
                 a, b = c, b
@@ -100,7 +100,7 @@ def winding(polygon, x, y):
 
 
 def leaves(x, y, width, size):
-    """Middles of the squares of a quadtree that are no larger than the size there."""
+    """Centres of the squares of a quadtree that are no larger than the size there."""
     if width <= 1.0 * size(x, y):
         return [(x, y)]
     quarter = width / 4
@@ -108,7 +108,7 @@ def leaves(x, y, width, size):
 
 
 def fill(pieces, size, middles=True, rounds=8):
-    """A body between curves that close, each (name or None, curve from 0 to 1), the body on the left. `line`: the nodes on the
+    """A body between closed curves, each (name or None, curve from 0 to 1), the body on the left. `line`: the nodes on the
     curves of a name. With `middles` triangles of six nodes, on the curves."""
     point, line, middle = [], {}, {}
     for name, curve in pieces:
@@ -135,7 +135,7 @@ def fill(pieces, size, middles=True, rounds=8):
         if sweep == rounds - 1:
             break
         moment = [[0.0, 0.0, 0.0] for _ in point]
-        for nodes in triangle:  # towards the middle of the triangles round a point, heavier where they ought to be smaller
+        for nodes in triangle:  # towards the centres of the triangles around a point, with more weight if they are too large
             (xa, ya), (xb, yb), (xc, yc) = (point[n] for n in nodes)
             x, y = (xa + xb + xc) / 3, (ya + yb + yc) / 3
             weight = abs((xb - xa) * (yc - ya) - (xc - xa) * (yb - ya)) / size(x, y) ** 3
@@ -148,10 +148,10 @@ def fill(pieces, size, middles=True, rounds=8):
                 point[n] = (moment[n][0] / moment[n][2], moment[n][1] / moment[n][2])
     mesh = without_unused(point, triangle, line)
     if len(mesh.point) != len(point):
-        raise ValueError("points of the boundary that no triangle uses")
+        raise ValueError("no triangle uses some points of the boundary")
     sides = {tuple(sorted(side)) for a, b, c in triangle for side in ((a, b), (b, c), (c, a))}
     if any(tuple(sorted((n, (n + 1) % rim))) not in sides for n in range(rim)):
-        raise ValueError("a side of the boundary is cut: too coarse")
+        raise ValueError("a boundary edge is cut: refine the mesh")
     if not middles:
         return mesh
     at = {point[n]: n for n in range(rim)}

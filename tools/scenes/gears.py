@@ -1,4 +1,4 @@
-"""Teeth of gears, and a roller between its races: Hertz's contact in bodies of their own shape."""
+"""Teeth of gears, and a roller between its races: Hertz's contact of real machine parts."""
 import math
 
 from .deck import Deck
@@ -14,7 +14,7 @@ def hertz(load, curvature, young=210000.0, nu=0.3):
 
 
 def tooth(module, teeth, up, fine, growth, angle=20.0):
-    """A tooth with its part of the rim; its flank's pitch point lies at the origin, the flank's outer normal along y."""
+    """A tooth with its part of the rim; its pitch point is the origin, the outer normal of its flank is along y."""
     alpha = math.radians(angle)
     pitch = module * teeth / 2
     base, root, tip, round_ = pitch * math.cos(alpha), pitch - 1.25 * module, pitch + module, 0.38 * module
@@ -36,7 +36,7 @@ def tooth(module, teeth, up, fine, growth, angle=20.0):
     def circle(radius, begin, end):
         return lambda s: polar(radius, begin + s * (end - begin))
 
-    # The fillet's middle lies on the flank's parallel, which is an involute too; or the flank goes on along the radius.
+    # The fillet's centre lies on the flank's parallel curve, also an involute; or the flank continues along the radius.
     high = root + round_
     t0 = (math.sqrt(max(high * high - base * base, 0.0)) - round_) / base
     if t0 > 0:
@@ -71,7 +71,7 @@ def tooth(module, teeth, up, fine, growth, angle=20.0):
 
 
 def gears(module=4.0, z1=20, z2=40, load=600.0, across=3.5, finer=1.3, growth=0.5):
-    """A pair of involute teeth that touch at the pitch point."""
+    """A pair of involute teeth in contact at the pitch point."""
     radius = [module * z / 2 * math.sin(math.radians(20.0)) for z in (z1, z2)]
     b, p0 = hertz(load, 1 / radius[0] + 1 / radius[1])
     one_mesh = tooth(module, z1, True, b / across, growth)

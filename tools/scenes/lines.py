@@ -1,4 +1,4 @@
-"""Joints of two bodies whose boundary lines touch; their meshes do not match."""
+"""Joints of two bodies with contact between boundary lines; their meshes do not match."""
 import math
 
 from .deck import Deck
@@ -11,7 +11,7 @@ def nearest(mesh, place, nodes=None):
 
 
 def lip(radius, long):
-    """An edge that falls off along an arc: by how much, and the angle in degrees to which it turns."""
+    """An edge that falls along an arc: depth, and angle of the arc in degrees."""
     turn = math.asin(long / radius)
     return radius * (1 - math.cos(turn)), math.degrees(turn)
 
@@ -60,7 +60,7 @@ def joint_lines(load=110.0, pull=400.0, clearance=0.01, radius=30.0, edge=4.0, f
 
 
 def ring_joint(press=20000.0, inside=20.0, clearance=0.02, crown=20.0, radius=30.0, edge=5.0, fine=0.38, growth=0.7):
-    """Spigot and socket of a pipe: rings, pressed together and under inner pressure."""
+    """Spigot and socket of a pipe: axisymmetric, pressed together, with inner pressure."""
     bore, wall, deep, long, flat = 50.0, 6.0, 30.0, 110.0, 2.0
     outer = bore + wall
     wide, middle = outer + clearance, bore + wall / 2
@@ -106,7 +106,7 @@ def flange(bolt=960.0, pull=400.0, radius=100.0, edge=10.0, fine=0.5, growth=0.5
     low, turn = lip(radius, edge)
 
     def half(thick, width, high, up, name, size):
-        """Web at x = 0..5, flange up to `width`; upwards, or its image below."""
+        """Web at x = 0..5, flange up to `width`; upwards, or its mirror image below."""
         s = 1 if up else -1
         curves = [(name, segment((0.0, 0.0), (width - edge, 0.0))),
                   (name, arc((width - edge, s * radius), radius, -s * 90, s * (turn - 90))),
@@ -115,7 +115,7 @@ def flange(bolt=960.0, pull=400.0, radius=100.0, edge=10.0, fine=0.5, growth=0.5
                   (None, arc((10.0, s * (thick + 5.0)), 5.0, -s * 90, -s * 180)),
                   (None, segment((5.0, s * (thick + 5.0)), (5.0, s * high))), ("end", segment((5.0, s * high), (0.0, s * high))),
                   ("axis", segment((0.0, s * high), (0.0, 0.0)))]
-        if not up:  # the other way round, so that the body is on the left
+        if not up:  # in the opposite direction, so that the body is on the left
             curves = [(n, lambda t, c=c: c(1.0 - t)) for n, c in reversed(curves)]
         return fill(curves, size)
 
@@ -140,7 +140,7 @@ def flange(bolt=960.0, pull=400.0, radius=100.0, edge=10.0, fine=0.5, growth=0.5
 
 
 def spinning_disc(spin=120.0, overlap=0.05, around=12, density=7.85e-9):
-    """A rim shrunk on a disc that spins, against Lame."""
+    """A rim shrunk on a rotating disc, against Lame."""
     bore, fit, outer, young, nu = 50.0, 100.0, 150.0, 210000.0, 0.3
     shrunk = young * overlap / fit * (outer ** 2 - fit ** 2) * (fit ** 2 - bore ** 2) / (2 * fit ** 2 * (outer ** 2 - bore ** 2))
     pull = (3 + nu) / 8 * density * (2 * math.pi * spin) ** 2 * (bore ** 2 + outer ** 2 - (bore * outer / fit) ** 2 - fit ** 2)

@@ -1,4 +1,4 @@
-"""Scenes of many pairs, many bodies, many unknowns: what `tools/bench --part 5` measures. Steel, plane strain, contact between lines."""
+"""Models of many pairs, many bodies, many unknowns for part 5 of `tools/bench`. Steel, plane strain, contact between lines."""
 import math
 
 from .deck import STEEL, Deck
@@ -6,12 +6,12 @@ from .fill import arc, fill, segment
 from .lines import nearest
 from .mesh import Mesh, squared, zip_rows
 
-#: Bilinear: yield stress and slope beyond it, N/mm2.
+#: Bilinear: yield stress and hardening slope, N/mm2.
 YIELD, HARDENING = 200.0, 2000.0
 
 
 def growth_for(sides, nodes, deep, most=2.0):
-    """By how much rows must grow, so that a block of so many sides along its fine end has so many nodes."""
+    """Growth factor of rows with which a block with a given number of edges at its fine end has a given number of nodes."""
     low, high = 1.0, most
     for _ in range(50):
         middle = (low + high) / 2
@@ -24,7 +24,7 @@ def counted(sides, growth, deep):
 
 
 def rows_of(sides, growth, deep):
-    """Rows from the fine end on: depth, over the width of the block, and sides; as deep as they are wide apart."""
+    """Rows from the fine end: depth, over the width of the block, and number of edges; each as deep as its edges are long."""
     rows, depth, parts = [(0.0, sides)], 0.0, float(sides)
     while depth < deep:
         depth += 1.0 / parts
@@ -50,7 +50,7 @@ def coarsening(width, deep, sides, growth, surface=lambda x: 0.0, up=True):
 
 
 def blocks(pairs=1500, nodes=43000, crown=0.12, load=20000.0, yields=False):
-    """A crowned block on another, about so many pairs and nodes: fine along the contact, coarser away from it."""
+    """A crowned block on another, with about these numbers of pairs and nodes: fine along the contact, coarser away from it."""
     width, deep, finer = 100.0, 60.0, 1.15
     upper = coarsening(width, deep, pairs - 1, growth_for(pairs, nodes / (1 + finer), deep / width), lambda x: crown * (2 * x / width) ** 2)
     sides = round(finer * pairs)
@@ -68,14 +68,14 @@ def blocks(pairs=1500, nodes=43000, crown=0.12, load=20000.0, yields=False):
     top = upper.line["far"]
     deck.hold(12, lower.line["far"], two)
     deck.hold(1, [nearest(upper, (0.0, deep), top)])
-    deck.platen(2 * two, 2, top)   # eight digits, however many elements
+    deck.platen(2 * two, 2, top)   # eight digits, for any number of elements
     deck.push(one + top[0], load)
     deck.contacts((upper.line["fine"], one), (list(reversed(lower.line["fine"])), two))
     return deck
 
 
 def strip(pairs=2800, rows=14):
-    """A strip on another of the same mesh, pairs to rows as long as high, pressed all along."""
+    """A strip on another of the same mesh, with the ratio of pairs to rows equal to that of length to height; pressed along its whole length."""
     width = 100.0
     high = width * rows / (pairs - 1)
     xs = [width * i / (pairs - 1) for i in range(pairs)]
@@ -89,14 +89,14 @@ def strip(pairs=2800, rows=14):
     top = upper.line["top"]
     deck.hold(12, lower.line["bottom"], two)
     deck.hold(1, [top[pairs // 2]])
-    deck.platen(2 * two, 2, top)   # eight digits, however many elements
+    deck.platen(2 * two, 2, top)   # eight digits, for any number of elements
     deck.push(one + top[0], 100.0 * width)
     deck.contacts((upper.line["bottom"], one), (list(reversed(lower.line["top"])), two))
     return deck
 
 
 def stack(bodies=30, across=40, rows=33):
-    """Blocks one upon the other, each free to move up and down and to turn."""
+    """Stacked blocks, each unconstrained vertically and in rotation."""
     width = 10.0
     high = width * rows / across
     ticks = [width * i / across for i in range(across + 1)]
@@ -120,7 +120,7 @@ def stack(bodies=30, across=40, rows=33):
 
 
 def beside(a, b, fine, growth, largest):
-    """A size that grows with the distance from the segment between two places and from its image in x = 0."""
+    """A size that grows with the distance from a segment and from its mirror image in x = 0."""
     long = math.dist(a, b)
 
     def size(x, y):
@@ -131,7 +131,7 @@ def beside(a, b, fine, growth, largest):
 
 
 def symmetrical(half, above, below, size):
-    """A body from the right half of its outline, upwards from its lowest place: the left half is its image, `other` for `flank`."""
+    """A body from the right half of its outline, upwards from its lowest point: the left half is its mirror image, with `other` for `flank`."""
     def mirrored(place):
         return -place[0], place[1]
 

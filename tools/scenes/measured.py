@@ -1,6 +1,6 @@
-"""What epcont gives for the decks that are kept: the last paragraph of their heads.
+"""epcont's results for the kept decks: the last paragraph of their heads.
 
-Of these meshes and no others, so only the kept decks say it.
+They hold for these meshes only, so only the kept decks have them.
 """
 
 MEASURED = {

@@ -3,13 +3,13 @@ import math
 
 
 def corners_of(nodes):
-    """How many corners the element of these nodes has."""
+    """Number of corners of an element with these nodes."""
     return {3: 3, 4: 4, 6: 3, 8: 4}[len(nodes)]
 
 
 class Mesh:
-    """Points and elements (their corners; with six or eight points also the middles of the sides, the first behind the first corner);
-    `line` says which points lie on a named line, in order."""
+    """Points and elements (their corners; with six or eight points also the mid-side nodes, the first after the first corner);
+    `line` lists the points of a named line, in order."""
 
     def __init__(self, point, element, line):
         self.point, self.element, self.line = point, element, line
@@ -18,12 +18,12 @@ class Mesh:
         return [i for i, p in enumerate(self.point) if abs(p[axis] - value) < 1e-9 * max(1.0, abs(value))]
 
     def side(self, a, b):
-        """The element with the side from point a to point b."""
+        """The element with the edge from point a to point b."""
         return next(k for k, nodes in enumerate(self.element) if a in nodes and b in nodes)
 
     def with_middles(self, curved=lambda a, b: None):
-        """The same triangles with a point in the middle of each side, and in the lines. `curved(a, b)` gives the place of the
-        middle between two places on a curved boundary, or None where the side is straight."""
+        """The same triangles with mid-side nodes, also in the lines. `curved(a, b)` gives the position of the
+        mid-side node between two points of a curved boundary, or None if the edge is straight."""
         point, middle = list(self.point), {}
 
         def between(a, b):
@@ -41,12 +41,12 @@ class Mesh:
 
 
 def round_origin(a, b):
-    """For `with_middles`: sides whose ends lie equally far from the origin follow the circle round it."""
+    """For `with_middles`: edges whose ends are equally far from the origin follow the circle around it."""
     return on_circle((0.0, 0.0), math.hypot(*a))(a, b)
 
 
 def on_circle(centre, radius):
-    """For `with_middles`: sides whose ends lie on a circle follow it."""
+    """For `with_middles`: edges whose ends lie on a circle follow it."""
     def curved(a, b):
         if any(abs(math.dist(p, centre) - radius) > 1e-6 * radius for p in (a, b)):
             return None
@@ -57,12 +57,12 @@ def on_circle(centre, radius):
 
 
 def first_free(*meshes):
-    """The power of ten above every count of nodes and elements: ids of a second body begin after it."""
+    """The power of ten above every number of nodes and elements: ids of a second body begin after it."""
     return 10 ** len(str(max(max(len(mesh.point), len(mesh.element)) for mesh in meshes)))
 
 
 def graded(first, growth, length):
-    """Places from 0 to length, spacing `first` times powers of `growth`, stretched to fit."""
+    """Coordinates from 0 to length, with spacing `first` times powers of `growth`, scaled to fit."""
     places, step = [0.0], first
     while places[-1] < length - 0.5 * step:
         places.append(places[-1] + step)
@@ -71,7 +71,7 @@ def graded(first, growth, length):
 
 
 def without_unused(point, element, line):
-    """The mesh of the points that elements use."""
+    """The mesh, without points that no element uses."""
     used = sorted({node for nodes in element for node in nodes})
     place = {old: new for new, old in enumerate(used)}
     return Mesh([point[i] for i in used], [tuple(place[c] for c in nodes) for nodes in element],
@@ -79,7 +79,7 @@ def without_unused(point, element, line):
 
 
 def cells(columns, rows):
-    """The squares of a grid whose points are numbered row by row: where each lies, and its corners."""
+    """The squares of a grid whose points are numbered row by row: their row and column, and their corners."""
     for j in range(rows - 1):
         for i in range(columns - 1):
             a = j * columns + i
@@ -87,7 +87,7 @@ def cells(columns, rows):
 
 
 def block(xs, ys):
-    """Triangulated grid; the diagonals turn over at x = 0 only: turning in every cell ripples the contact pressures."""
+    """Triangulated grid; the diagonals change direction only at x = 0: changes in every cell make contact pressures oscillate."""
     squares = squared(xs, ys)
     triangle = []
     for i, _, (a, b, c, d) in cells(len(xs), len(ys)):
@@ -104,7 +104,7 @@ def squared(xs, ys):
 
 
 def zip_rows(lower, upper, point, triangle):
-    """Triangles between two rows of points that begin and end side by side: the shorter diagonal first."""
+    """Triangles between two rows of points that begin and end at the same coordinates: the shorter diagonal first."""
     i = j = 0
     while i < len(lower) - 1 or j < len(upper) - 1:
         step_lower = math.dist(point[lower[i + 1]], point[upper[j]]) if i < len(lower) - 1 else math.inf
@@ -118,7 +118,7 @@ def zip_rows(lower, upper, point, triangle):
 
 
 def quarter_disc(radius, b, n, growth=None):
-    """Quarter of a disc that stands on the origin, centre (0, radius): rings round the origin, b/n apart out to 1.6 b and
+    """Quarter of a disc that stands on the origin, centre (0, radius): rings around the origin, b/n apart up to 1.6 b and
     then growing. Lines: `arc` from the origin along the circle, `axis` x = 0, `top`."""
     core, h = 1.6 * b, b / n
     growth = growth or 1.0 + h / core
@@ -159,13 +159,13 @@ def quarter_disc(radius, b, n, growth=None):
 
 
 def quarter_disc_squared(radius, n, core, layers):
-    """The quarter disc in quadrilaterals, standing on the origin: a core of n x n at the origin, `core` wide, and round it
+    """The quarter disc in quadrilaterals, standing on the origin: a core of n x n at the origin, `core` wide, and around it
     layers of 2 n that grow evenly. Lines as in `quarter_disc`."""
     def height(x):  # of the circle, without the rounding of radius - sqrt
         return x * x / (radius + math.sqrt(radius * radius - x * x))
 
     def ring(k):
-        """From the circle to x = 0: even angles about the origin; a square with blunt corners first, the top last."""
+        """From the circle to x = 0: even angles about the origin; first a square with blunt corners, last the top."""
         along = k / layers
         first = core ** (1 - along) * (math.sqrt(2.0) * radius) ** along
         begin = math.asin(first / (2.0 * radius))

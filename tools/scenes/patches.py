@@ -1,6 +1,6 @@
 """Meshes from four-sided patches, of any element: two triangles of 3 or 6 nodes in each cell, or a quadrilateral.
 
-A side of a patch is a list of places, a corner of an element and the middle of a side by turns: `straight` and `arc` make them.
+A side of a patch is a list of points, alternately a corner of an element and a mid-side node; `straight` and `arc` make them.
 """
 import math
 
@@ -8,14 +8,14 @@ from .mesh import Mesh, corners_of
 
 
 def halves(places):
-    """The places and the middles between them: fractions of a side, from 0 to 1."""
+    """The points and those halfway between them: fractions of a side, from 0 to 1."""
     first, last = places[0], places[-1]
     inside = [p for a, b in zip(places, places[1:]) for p in ((a + b) / 2, b)]
     return [(p - first) / (last - first) for p in [first] + inside]
 
 
 def even(parts):
-    """Fractions of a side of so many equal elements."""
+    """Fractions of a side of equal elements."""
     return halves([i / parts for i in range(parts + 1)])
 
 
@@ -30,7 +30,7 @@ def arc(centre, radius, begin, end, fractions):
 
 
 def lengths(side):
-    """How far along a side its places lie, as fractions of the whole."""
+    """Arc lengths of the points of a side, as fractions of the whole."""
     run = [0.0]
     for a, b in zip(side, side[1:]):
         run.append(run[-1] + math.dist(a, b))
@@ -38,7 +38,7 @@ def lengths(side):
 
 
 def patch(bottom, top, left, right):
-    """Rows of places between four sides (Coons): bottom and top run from left to right, the others upwards."""
+    """Rows of points between four sides (Coons): bottom and top run from left to right, the others upwards."""
     across = [(a + b) / 2 for a, b in zip(lengths(bottom), lengths(top))]
     up = [(a + b) / 2 for a, b in zip(lengths(left), lengths(right))]
     assert len(bottom) == len(top) and len(left) == len(right)
@@ -80,7 +80,7 @@ def join(patches, element):
 
 
 def boundary(mesh):
-    """The node behind each node of the boundary, the body on the left; middles of sides included."""
+    """The next node of each node along the boundary, the body on the left; mid-side nodes included."""
     after = {}
     for nodes in mesh.element:
         corners = nodes[:corners_of(nodes)]
@@ -100,7 +100,7 @@ def boundary(mesh):
 
 
 def walk(mesh, begin, end):
-    """The nodes of the boundary from the corner nearest to a place to that nearest to another, the body on the left."""
+    """The nodes of the boundary from the corner nearest to one point to that nearest to another, the body on the left."""
     follows = boundary(mesh)
     corners = {n for nodes in mesh.element for n in nodes[:corners_of(nodes)]}
     node, last = (min(corners & follows.keys(), key=lambda n: math.dist(mesh.point[n], place)) for place in (begin, end))

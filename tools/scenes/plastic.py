@@ -1,11 +1,11 @@
-"""Scenes that yield."""
+"""Models that yield."""
 from .deck import Deck
 from .elastic import flat_punch
 from .mesh import Mesh, block, cells, graded, rings, round_origin, squared, without_unused
 
 
 def grid(xs, ys):
-    """Cells of two triangles, the diagonal turned in every other one."""
+    """Cells of two triangles, with the diagonal in opposite directions in alternate cells."""
     squares = squared(xs, ys)
     triangle = []
     for i, j, (a, b, c, d) in cells(len(xs), len(ys)):
@@ -41,7 +41,7 @@ def tube_flat(pressure, answer, parts=20, element="ctria3"):
 
 
 def tube_locking(nu, answer, pressure=60.0, parts=10, element="cquad4"):
-    """A tube that can hardly change its volume, elastic or plastic: elements that cannot either lock."""
+    """A nearly incompressible tube, elastic or plastic: elements that lock are too stiff."""
     return tube("THICK TUBE, NEARLY INCOMPRESSIBLE", f"E = 100000, nu = {nu:g}, yield stress 100, flat curve. Known answer: {answer}.",
                 pressure, 1.0e5, 100.0, 0.0, nu, 1.0, 2.0, parts, element)
 
@@ -134,7 +134,7 @@ def cook(n=24, stress=None):
 
 
 def punch_limit(stress=23.0, steps=1, element="ctria3", n=12, size=12.0, growth=(1.4, 1.25)):
-    """The flat punch on a block with a flat curve."""
+    """The flat punch on a perfectly plastic block."""
     deck = flat_punch(n, size, 1.0e5, element, growth)
     if element != "ctria3":
         deck.title = f"RIGID FLAT PUNCH, LIMIT LOAD, {element.upper()}"
@@ -161,7 +161,7 @@ def punch_limit(stress=23.0, steps=1, element="ctria3", n=12, size=12.0, growth=
 
 
 def insert_joint(clearance=0.01, load=110.0, finest=0.25):
-    """The paper's second scene: a tongue in a socket, bent by a load at its end. The walls are thick, so that they stay elastic."""
+    """The paper's second model: a tongue in a socket, bent by a load at its end. The walls are thick, so that they stay elastic."""
     half = graded(finest, 1.3, 14.0)
     overlap = [-28.0 + x for x in half] + [-x for x in reversed(half[:-1])]
     outside = graded(finest, 1.3, 30.0)[1:]

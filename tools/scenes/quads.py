@@ -1,5 +1,5 @@
-"""Contact between lines on ordered meshes of any element. The slave line is the coarser one, the master's mesh `finer` times finer: the
-other way round pressures ripple."""
+"""Contact between lines on ordered meshes of any element. The slave line is the coarser one, the master's mesh `finer` times finer: in the
+opposite case pressures oscillate."""
 import math
 
 from .deck import STEEL, Deck
@@ -8,12 +8,12 @@ from .lines import nearest
 from .mesh import graded
 from .patches import arc, even, halves, join, patch, straight, walk
 
-#: Elements with nodes between the corners.
+#: Elements with mid-side nodes.
 QUADRATIC = ("ctria6", "cquad8")
 
 
 def grid(xs, ys, element):
-    """A rectangle of elements between these places."""
+    """A rectangle of elements between these coordinates."""
     (left, right), (low, high) = (xs[0], xs[-1]), (ys[0], ys[-1])
     return join([patch(straight((left, low), (right, low), halves(xs)), straight((left, high), (right, high), halves(xs)),
                        straight((left, low), (left, high), halves(ys)), straight((right, low), (right, high), halves(ys)))], element)
@@ -28,10 +28,10 @@ def persson(half):
 
 
 def pin_in_lug(half=45.0, around=24, finer=1.4, size=30.0, element="ctria6"):
-    """Pin in the hole of a large lug, unlike meshes: Persson's half angle is chosen, the clearance follows."""
+    """Pin in the hole of a large lug, non-matching meshes: Persson's half angle is given, the clearance follows."""
     radius, load, stiff = 10.0, 1000.0, STEEL / (1 - 0.09)
-    if not 0 < half < 84.8:   # beyond, Persson's pin has no clearance
-        raise ValueError(f"half {half:g}: an angle above 0 and below 84.8 would be right")
+    if not 0 < half < 84.8:   # above it, Persson's pin has no clearance
+        raise ValueError(f"half {half:g}: give an angle above 0 and below 84.8")
     slack, top = persson(half)
     clearance = slack * load / stiff
     around = 4 * round(around / 4)
@@ -76,7 +76,7 @@ def nafems(across=5.0, finer=1.4, element="ctria6"):
     growth = 1.5 if element in QUADRATIC else 1.25
 
     def around_core(across, surface, deep, long, below):
-        """A core of squares at the contact and two patches round it, right of the axis, y into the body. `surface`: places on it for
+        """A core of squares at the contact and two patches around it, right of the axis, y into the body. `surface`: points on it for
         fractions of its length `long`; `deep`, `below`: corners of the body, to the right and on the axis."""
         parts = round(1.6 * across)
         core, step = 1.6 * b, 1.6 * b / parts
@@ -88,7 +88,7 @@ def nafems(across=5.0, finer=1.4, element="ctria6"):
                       straight(surface(1.0), deep, e)),
                 patch(straight(axis, corner, e), straight(below, deep, e), straight(axis, below, out), straight(corner, deep, out))]
 
-    def on_disc(s):  # s = 0 at the contact, 1 at the height of the axis; core/far of it is the core
+    def on_disc(s):  # s = 0 at the contact, 1 at the height of the axis; the core is core/far of it
         angle = s * math.pi / 2
         return radius * math.sin(angle), radius * (1 - math.cos(angle))
 
@@ -136,7 +136,7 @@ def layer_lines(n=20, element="ctria6"):
 
 
 def flat_match(lines=True, element="cquad4"):
-    """Two blocks with matching meshes at a flat line, pressed by an uneven pressure; as pairs, or as lines."""
+    """Two blocks with matching meshes at a flat line, under an uneven pressure; as pairs, or as lines."""
     xs = [0.0, 0.6, 1.3, 2.0, 2.8, 3.5, 4.0]
     lower, upper = grid([-2.0, -1.2, -0.5] + xs + [4.6, 5.4, 6.5], [-3.0, -2.0, -1.2, -0.5, 0.0], element), grid(xs, [0.0, 0.6, 1.4, 2.5], element)
     deck = Deck("FLAT LINE, MATCHING MESHES: " + ("LINES" if lines else "PAIRS"), [

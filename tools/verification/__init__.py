@@ -1,1 +1,1 @@
-"""What tools/verify is made of."""
+"""Modules of tools/verify."""

@@ -1,4 +1,4 @@
-"""The figures of a certificate, recomputed from a scene and the tables of its run, and held against the program's own."""
+"""Recompute the values of a certificate from a model and the tables of its run, and compare them with the program's own."""
 import math
 from dataclasses import dataclass, field
 
@@ -9,7 +9,7 @@ from verification.elements import free_strains, places, strain_of, unit_strains
 from verification.material import respond, von_mises
 from verification.ties import angle, gather, pull_springs
 
-# Names of the figures in the summary; the key on the left is ours.
+# Names of the values in the summary; the keys are used here.
 KEYS = {
     "equilibrium": "equilibrium_residual",
     "smallest_force": "smallest_force",
@@ -20,23 +20,23 @@ KEYS = {
 }
 
 
-# Of a force: sums over some elements of products with the displacements of up to six nodes, which are rounded themselves.
+# For a force: sums over some elements of products with the displacements of up to six nodes, which are themselves rounded.
 ROUNDINGS = 128 * 2.0 ** -52
-# Bodies that expand freely are compared with such a part of what they would bear if they were held.
+# Residuals of freely expanding bodies are compared with this fraction of their stress if they were fixed.
 PART_OF_HELD = 1e-3
 
 
 @dataclass
 class Element:
-    """What its displacements give: means over its points by volume; `change`: of the stress in the table from that; `noise`: of strains,
-    by the rounding of the displacements; `edge`: distance of a point from its yield point, over the latter."""
+    """Stresses from its displacements, means over its points by volume. `change`: difference between the stress in the table and these;
+    `noise`: strain error due to the rounding of the displacements; `edge`: distance of a point from its yield stress, divided by it."""
     stress: list
     change: list
     scales: list     # von Mises stress on the curve at each point
-    limit: float     # yield stress, or None
+    limit: float     # yield stress; None if elastic
     equivalent: float
     peak: float      # largest equivalent stress of a point
-    at: list         # places of the points, with their equivalent stresses
+    at: list         # coordinates of the points, with their equivalent stresses
     total: float
     secant: float
     plastic: bool
@@ -44,14 +44,14 @@ class Element:
     noise: float
     largest: float   # stress of a point
     points: int
-    free: list       # strains of the points that temperatures make without stress
+    free: list       # thermal strains of the points
 
     def scale(self, largest, which=max):
-        """What distances from the curve are over: its stress there, below yield the yield stress; no more than the largest stress of the scene."""
+        """Reference of the stress error: the stress on the curve, or the yield stress if not yielded; at most the largest stress of the model."""
         return max(which(self.scales), min(self.limit, largest)) if self.limit else largest
 
     def off_curve(self, largest):
-        """Von Mises stress of the change, and the part of it that is a pressure, which the curve says nothing of, over the largest stress."""
+        """Von Mises stress of the change, and its hydrostatic part, which the curve does not affect, over the largest stress."""
         if not self.limit:
             return max(map(abs, self.change)) / (largest or 1.0)
         return max(von_mises(self.change) / (self.scale(largest) or 1.0), abs(math.fsum(self.change[:3])) / 3 / (largest or 1.0))
@@ -62,26 +62,26 @@ class Recomputed:
     figures: dict = field(default_factory=dict)
     force: float = 0.0       # scales
     length: float = 0.0
-    scale: float = 0.0       # of forces at nodes
+    scale: float = 0.0       # of nodal forces
     spread: float = 0.0      # largest error in the column of gaps
-    lost: float = 0.0        # part of the stresses and forces that is lost, where a travel leaves few digits of the strains
-    most: float = 0.0        # largest force that the largest stress could make, over the scale
+    lost: float = 0.0        # fraction of the stresses and forces that is lost if a large prescribed rigid-body displacement leaves few digits for the strains
+    most: float = 0.0        # largest possible force of the largest stress, over the scale
     stress: float = 0.0      # largest
-    released: list = field(default_factory=list)   # work of the stresses on the free strains
-    held_work: list = field(default_factory=list)  # of stresses, and the largest force, if nothing gave way to temperatures
+    released: list = field(default_factory=list)   # work of the stresses on the thermal strains
+    held_work: list = field(default_factory=list)  # of stresses, and the largest force, if thermal expansion were fully restrained
     held_force: float = 0.0
     elements: dict = field(default_factory=dict)
     gaps: dict = field(default_factory=dict)
     pulls: dict = field(default_factory=dict)      # of springs
     angle: dict = field(default_factory=dict)      # of rotating master nodes
-    arm: dict = field(default_factory=dict)        # the longest of each
+    arm: dict = field(default_factory=dict)        # largest value of each
     moment: dict = field(default_factory=dict)     # of their supports
 
 
 def recompute_element(scene, tables, element, moved):
-    """An Element, with its points, strains, and their stresses as they must be for the means in the table.
+    """Element with its points, strains, and their stresses consistent with the means in the table.
 
-    The tables hold means over the points of an element; what a point has is taken to be off the curve as much as the mean."""
+    The tables hold means over the points of an element; the stress error of each point is assumed to be that of the mean."""
     name, nodes, section = scene.element[element]
     points = unit_strains(name, [scene.x[node] for node in nodes], section.thickness, section.plane_stress)
     strains = [strain_of(unit, moved, section.thickness is None) for _, unit in points]
@@ -109,8 +109,8 @@ def recompute_element(scene, tables, element, moved):
 
 
 def add_elements(scene, tables, u, rest, result):
-    """Nodal forces of the stresses are taken off `rest`. Largest element forces summed at a node, work stored, of each element the stress
-    that rounding of the displacements makes, the largest force of that, the largest force of a unit stress."""
+    """Subtract the nodal forces of the stresses from `rest`. Return the largest sum of element forces at a node, the stored work, the stress of each
+    element due to the rounding of the displacements, the largest force due to it, and the largest force of a unit stress."""
     magnitude, stored, lost, lost_force, reach = {}, [], {}, 0.0, 0.0
     for element, (_, nodes, section) in scene.element.items():
         own, points, strains, stresses, size = recompute_element(scene, tables, element, [u[node] for node in nodes])
@@ -140,14 +140,14 @@ def add_elements(scene, tables, u, rest, result):
 
 
 def held_stress(scene, nodes, section):
-    """Along one axis, if nothing gave way to the temperatures."""
+    """Stress along one axis if thermal expansion were fully restrained."""
     if scene.temperature is None:
         return 0.0
     return section.young * max(abs(section.expansion[0] * (scene.temperature(node) - section.expansion[1])) for node in nodes)
 
 
 def recompute(scene, tables):
-    """All that the certificate says, from displacements, forces, reactions and stresses."""
+    """Recompute all values of the certificate, from displacements, forces, reactions and stresses."""
     result = Recomputed()
     u = {node: (float(row["ux"]), float(row["uy"])) for node, row in tables.nodes.items()}
     rest, works, given = {}, [], []
@@ -200,14 +200,14 @@ def part(lost, of):
 
 
 def pressure_error(scene, tables):
-    """Largest pressure, recomputed from the forces, None where those that touch have none, and the largest difference from the table."""
+    """Largest pressure recomputed from the forces (None if pairs in contact have no pressure), and the largest difference from the table."""
     rows = [tables.contact[name] for name in scene.pair]
     number = {name: k for k, name in enumerate(scene.pair)}
     ours = pressures(scene.side, scene.x, scene.held, scene.leader, [(pair.node, pair.normal, pair.weights) for pair in scene.pair.values()],
                      [[number[name] for name in contact] for contact in scene.contacts],
                      [float(row["force"]) for row in rows], [row["status"] == "touching" for row in rows],
                      {number[name]: pair.stands_on for name, pair in scene.pair.items() if pair.stands_on})
-    # A pressure that comes out below zero is not told.
+    # A pressure that is computed as negative is not in the table.
     both = [(max(p or 0.0, 0.0), float(row["pressure"] or 0.0)) for p, row in zip(ours, rows)]
     touching = [p for p, row in zip(ours, rows) if row["status"] == "touching"]
     peak = None if touching and all(p is None for p in touching) else max((p for p, _ in both), default=0.0)
@@ -218,14 +218,14 @@ def check(scene, tables, tolerance, found=None):
     """Lines of the report and the number of faults."""
     found = found or recompute(scene, tables)
     figures, force, length, lost = found.figures, found.force, found.length, found.lost
-    # The points of an element with several are known only as well as its mean lies on the curve.
+    # The points of an element with several are known only to the stress error of the element's mean.
     sure = all(len(KINDS[name].points) == 1 for name, _, _ in scene.element.values())
     loose = tolerance if sure else max(tolerance, 10 * max(1.0, found.most) * float(tables.summary.get(KEYS["off_curve"], 0.0)))
     scale = {"smallest_force": force, "smallest_gap": length, "product": force * length}
     bounds = {name: tolerance * scale.get(name, 1.0) for name in KEYS}
     bounds["equilibrium"] = bounds["energy"] = max(loose, lost)
     bounds["off_curve"] = max(tolerance, lost)
-    allowed = {**bounds, "off_curve": max(tolerance, scene.off_curve) + 4 * lost}  # of a travel the tables leave no digits
+    allowed = {**bounds, "off_curve": max(tolerance, scene.off_curve) + 4 * lost}  # a large prescribed displacement leaves no digits in the tables
     lines, faults = [], 0
 
     def line(name, ours, theirs, good):
@@ -240,7 +240,7 @@ def check(scene, tables, tolerance, found=None):
             continue
         valid = ours >= -bounds[name] if name.startswith("smallest") else ours <= allowed[name]
         apart = float(told) - ours
-        # The mean of some points is not farther off than the worst of them; what both are parts of is known but for as much on either side.
+        # The mean of several points has at most the error of the worst; the references of both have the same uncertainty on either side.
         near = ours * (1 - 2 * float(told)) <= float(told) + bounds[name] and float(told) <= allowed[name] \
             if name == "off_curve" and not sure else abs(apart) <= bounds[name]
         line(key, ours, told, valid and near)
@@ -273,7 +273,7 @@ def approaches(scene, tables, found):
 
 
 def of_ties(scene, found):
-    """The same of rotating master nodes and springs."""
+    """The same for rotating master nodes and springs."""
     for master, turned in found.angle.items():
         yield f"angle_{master}", turned, abs(turned) + found.length / found.arm[master]
         if master in found.moment:

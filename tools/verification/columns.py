@@ -1,7 +1,7 @@
-"""Every column of the tables and every key of the summary, recomputed cell by cell; what is not read is named.
+"""Recompute every column of the tables and every key of the summary, cell by cell; unread ones are listed.
 
-The certificate is held to its tolerance of the largest force or length. A cell is held to the same part of itself, and of what
-rounding makes it the sum of, so that a small one that is wrong is found, too.
+The certificate's tolerance is relative to the largest force or length. A cell's tolerance is relative to the cell itself and to the
+terms that it is summed from, so that a small wrong value is found, too.
 """
 import math
 
@@ -12,21 +12,21 @@ from verification.scene import node_of
 from verification.ties import tied_cells
 from verification.zones import zones
 
-#: Of a sum that is taken in another order, over its largest term, and as a part of another tolerance.
+#: Difference of a sum in another order, relative to its largest term, and as a fraction of another tolerance.
 ROUNDING, OF_TOLERANCE = 1e-13, 1e-4
-#: A residual is that of the program, but for the order of its sums, up to a factor.
+#: A residual equals the program's, up to this factor for the order of its sums.
 LIKE = 8.0
 UNITS = {"status": "", "max_pressure": "force/length2", "total_contact_force": "force", "pairs_in_contact": "", "plastic_elements": "",
          "iterations": "", "pivots": "", "max_equivalent_stress": "force/length2", "max_displacement": "length", "equilibrium_residual": "",
          "smallest_force": "force", "smallest_gap": "length", "largest_force_gap_product": "force*length", "stress_off_curve": "",
          "max_equivalent_stress_element": "", "max_equivalent_stress_x": "length", "max_equivalent_stress_y": "length",
          "lowest_temperature": "temperature", "highest_temperature": "temperature", "curve_tolerance": "", "stress_off_curve_limit": "", "energy_balance": "", "load_factor": ""}
-#: Figures that are rounding in a valid answer: held to their tolerance, not digit by digit.
+#: Values that are only rounding in a valid answer: compared with their tolerance, not digit by digit.
 BOUNDS = ("equilibrium_residual", "smallest_force", "smallest_gap", "largest_force_gap_product", "energy_balance", "stress_off_curve_limit")
 
 
 def unit_of(key):
-    """None of what is not read."""
+    """Columns and keys that are not read."""
     kind, _, number_of = key.partition("_")
     if kind == "approach":
         return "radian" if number_of.endswith("_6") else "length"
@@ -34,7 +34,7 @@ def unit_of(key):
 
 
 class Report:
-    """Lines as those of the certificate; of each column the cell that is farthest off, of what it may be."""
+    """Lines in the form of the certificate's; for each column the cell with the largest difference relative to its tolerance."""
 
     def __init__(self, rounding):
         self.lines, self.faults, self.rounding = [], 0, rounding
@@ -45,7 +45,7 @@ class Report:
         self.lines.append(f"{name:30s} {shown} {told:>26s}  {'ok' if good else 'WRONG'}")
 
     def column(self, name, cells):
-        """`cells`: (row, ours, told, allowed); words must be the same, numbers as near as is allowed."""
+        """`cells`: (row, ours, told, allowed); texts must be equal, numbers within the allowed difference."""
         worst = None
         for row, ours, told, allowed in cells:
             if not isinstance(ours, float):
@@ -62,7 +62,7 @@ class Report:
 
 
 def check_columns(scene, tables, found, tolerance):
-    """Lines of the report and the number of faults. `found`: what recompute gives."""
+    """Lines of the report and the number of faults. `found`: the result of recompute."""
     report = Report(max(ROUNDING, OF_TOLERANCE * tolerance))
     check_nodes(report, scene, tables, found, tolerance)
     check_elements(report, scene, tables, found, tolerance)
@@ -78,7 +78,7 @@ def check_nodes(report, scene, tables, found, tolerance):
     rows = tables.nodes
     for c, (place, move, reaction) in enumerate((("x", "ux", "rx"), ("y", "uy", "ry"))):
         report.column(f"nodes {place}", ((n, scene.x[n][c], row[place], 0.0) for n, row in rows.items()))
-        # Of a rigid-body displacement, which satisfies MPC to the tolerance of the certificate: their coefficients have the digits of their fields.
+        # A rigid-body displacement satisfies an MPC to the tolerance of the certificate: the coefficients have the digits of their fields.
         rounding = tolerance if scene.sums else report.rounding
         small = rounding * found.length
         held = [(n, scene.given[n, c], rows[n][move], small) for n in rows if (n, c) in scene.held]
@@ -101,7 +101,7 @@ def check_elements(report, scene, tables, found, tolerance):
             put(name, math.fsum(p[c] for p in places) / len(places), report.rounding * max(abs(p[c]) for p in places))
         stiffness = section.young / (1.0 if section.plane_stress else 1.0 - 2.0 * section.nu)
         noise = own.noise * stiffness + report.rounding * own.largest
-        # A stress beyond yield, or before it in the last solve, is off its curve by what the iteration leaves.
+        # If yielded, or not yet yielded in the last solve, a stress differs from its curve by the iteration error.
         loose = (told + report.rounding) * (own.scale(found.stress) + found.stress) if own.plastic or own.edge < 10 * told else 0.0
         for k, name in enumerate(("sx", "sy", "sz", "txy")):
             put(name, own.stress[k], loose + noise + tolerance * abs(own.stress[k]))
@@ -112,7 +112,7 @@ def check_elements(report, scene, tables, found, tolerance):
             peak = ours if own.points == 1 else own.peak
             put("max_equivalent_stress", peak, allowed + tolerance * peak)
         if "max_x" in row:
-            # Of points that are as high, but for what is known of their stresses, either.
+            # If several points are equally high within their stress errors, any of them counts.
             highest = [place for place, value in own.at if value >= own.peak - 2 * (allowed + tolerance * own.peak)]
             place = min(highest, key=lambda place: math.dist(place, (float(row["max_x"]), float(row["max_y"]))))
             for c, name in enumerate(("max_x", "max_y")):
@@ -122,7 +122,7 @@ def check_elements(report, scene, tables, found, tolerance):
         put("secant_modulus", own.secant, own.secant * (tolerance + part * (own.plastic or own.edge < part)))
         state = "plastic" if own.plastic else "elastic"
         if own.edge < tolerance + part and row["state"] in ("plastic", "elastic"):
-            state = row["state"]   # at the yield point, but for rounding
+            state = row["state"]   # at the yield stress, within rounding
         put("state", state, 0.0)
     for name, cells in columns.items():
         report.column(f"elements {name}", cells)
@@ -133,8 +133,8 @@ def check_contact(report, scene, tables, found, tolerance):
     size = max(abs(v) for place in scene.x.values() for v in place)
 
     def column(name, value, small=None, closed=0.0):
-        """`value`: of a pair and what is told of it; `small`: what rounding makes it the sum of, None where it is exact; `closed`: what a cell
-        of a pair in contact may be off by."""
+        """`value`: expected value of a pair and table value; `small`: largest term of its sum, None if exact; `closed`: tolerance of a cell
+        for a pair in contact."""
         cells = []
         for pair, own in scene.pair.items():
             ours, told = value(pair, own), rows[pair][name]
@@ -153,14 +153,14 @@ def check_contact(report, scene, tables, found, tolerance):
     states = []
     for pair, row in rows.items():
         word, force, gap = row["status"], float(row["force"]), float(row["gap"])
-        # Without force and gap it may be called either.
+        # Without force and gap both states are correct.
         sure = "touching" if force > 0.0 else "open" if abs(gap) > report.rounding * (found.length + size) else word if word in ("touching", "open") else "open"
         states.append((pair, sure, word, 0.0))
     report.column("contact status", states)
 
 
 def near(pair, told):
-    """Is it, but for rounding, the master node that has the largest part of a pair?"""
+    """Is it, within rounding, the master node with the largest weight of a pair?"""
     parts = {node: -weight for node, weight in pair.weights.items() if node != pair.ends[1]}
     return parts.get(int(told), 0.0) >= (1 - 1e-9) * max(parts.values())
 
@@ -187,7 +187,7 @@ def check_zones(report, scene, tables, tolerance):
 
 
 def check_bodies(report, scene, tables, tolerance):
-    """What the pairs exert on each body that has elements."""
+    """Resultant contact force on each body that has elements."""
     body, bodies = scene.bodies(), {}
     for name, nodes, _ in scene.element.values():
         bodies.setdefault(body[nodes[0]], []).extend(nodes)
@@ -197,7 +197,7 @@ def check_bodies(report, scene, tables, tolerance):
         for node, weight in own.weights.items():
             if body[node] in terms:
                 terms[body[node]].append([force * weight * own.normal[c] for c in (0, 1)])
-    order = list(dict.fromkeys(body[node] for node in tables.nodes))   # bodies are numbered by their first nodes, those of single nodes too
+    order = list(dict.fromkeys(body[node] for node in tables.nodes))   # bodies are numbered by their first nodes, including bodies of single nodes
     firsts = {next(node for node in tables.nodes if body[node] == b): b for b in order if b in bodies}
     told = {int(row["first_node"]): row for row in tables.bodies.values()}
     ours = {order.index(b) + 1: first for first, b in firsts.items()}
@@ -214,7 +214,7 @@ def check_bodies(report, scene, tables, tolerance):
 
 
 def check_summary(report, scene, tables, found, tolerance):
-    """Counts, maxima, words and units; the figures of the certificate are held elsewhere."""
+    """Compare counts, maxima, words and units; the values of the certificate are compared elsewhere."""
     summary = tables.summary
 
     def largest(values):
@@ -254,7 +254,7 @@ def check_summary(report, scene, tables, found, tolerance):
     limit = summary.get("stress_off_curve_limit", "nan")
     report.line("stress_off_curve_limit", float(told), limit, float(told) * (1 - 1e-14) <= float(limit) <= 2 * float(told))
     residual, ours = float(summary.get("equilibrium_residual", "nan")), found.figures["equilibrium"]
-    # Points beyond yield are off the curve otherwise than their mean, which is all that the tables hold.
+    # The stress errors of yielded points differ from that of their mean, and the tables hold only the mean.
     several = any(own.points > 1 and own.plastic for own in found.elements.values())
     loose = 10 * max(1.0, found.most) * float(summary.get("stress_off_curve", 0.0)) if several else 0.0
     report.line("residual, of the program's", ours, f"{residual:.16E}", ours <= LIKE * residual + report.rounding + found.lost + loose)
@@ -266,7 +266,7 @@ def check_summary(report, scene, tables, found, tolerance):
 
 
 def check_case(report, tables):
-    """The row of the table of load cases says what the summary says, and the zone with the largest pressure."""
+    """Compare a row of the table of load cases with the summary and the zone with the largest pressure."""
     rows = [row for row in table_rows(tables.path("cases")) if row["subcase"] == str(tables.case)]
     row = rows[0] if len(rows) == 1 else {}
     leading = [zone for zone in tables.zones.values() if zone["max_pressure"] == tables.summary.get("max_pressure")]
@@ -277,7 +277,7 @@ def check_case(report, tables):
 
 
 def check_highest(report, tables, tolerance):
-    """The element with the largest stress, of equals either, and where in it that is."""
+    """Element and point with the largest stress; if several are equal, any of them counts."""
     if not any("max_x" in own for own in tables.elements.values()):
         return
     told = tables.summary.get("max_equivalent_stress_element", "missing")
@@ -290,7 +290,7 @@ def check_highest(report, tables, tolerance):
 
 
 def not_read(tables):
-    """Lines that name what nothing here looks at, and what is held to a bound only."""
+    """Lines that name the unread columns and keys, and those compared with a bound only."""
     keys = [key for key in tables.summary if unit_of(key) is None]
     files = sorted(path.name for path in tables.directory.glob(f"{glob_safe(tables.stem)}.*")
                    if path.name not in {tables.path(name).name for name in ("summary", "nodes", "elements", "contact", "zones", "bodies", "history", "cases")})

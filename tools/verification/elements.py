@@ -7,13 +7,13 @@ from kinds import KINDS
 
 @cache
 def reference(name):
-    """Of each integration point the shape functions and their derivatives by both coordinates."""
+    """Shape functions of each integration point and their derivatives by both coordinates."""
     kind = KINDS[name]
     return list(zip(kind.shapes(), kind.shapes(0), kind.shapes(1)))
 
 
 def unit_strains(name, x, thickness, plane_stress):
-    """[(volume, [(of ux, of uy) of each node])] of each point: strains xx, yy, zz, xy that a unit displacement gives."""
+    """[(volume, [(of ux, of uy) of each node])] of each point: strains xx, yy, zz, xy of a unit displacement."""
     kind, points = KINDS[name], []
     apart = [[p[c] - x[0][c] for c in (0, 1)] for p in x]   # exact, far from the origin
     for weight, (value, by_a, by_b) in zip(kind.weights, reference(name)):
@@ -32,23 +32,23 @@ def unit_strains(name, x, thickness, plane_stress):
 
 
 def places(name, x):
-    """Of the integration points."""
+    """Coordinates of the integration points."""
     return [[sum(v * p[c] for v, p in zip(value, x)) for c in (0, 1)] for value, _, _ in reference(name)]
 
 
 def free_strains(name, nodes, section, temperature, volumes):
-    """What temperatures strain each point by along each axis, where nothing resists."""
+    """Thermal strain of each point along each axis, if unrestrained."""
     if temperature is None:
         return [0.0] * len(volumes)
     a, none_at = section.expansion
     found = [math.fsum(v * a * (temperature(node) - none_at) for v, node in zip(value, nodes)) for value, _, _ in reference(name)]
-    if name == "CQUAD4" and not section.plane_stress:   # the change of volume at all points is that of the whole element
+    if name == "CQUAD4" and not section.plane_stress:   # the volume strain at each point is that of the whole element
         found = [math.fsum(volume * e for volume, e in zip(volumes, found)) / math.fsum(volumes)] * len(found)
     return found
 
 
 def even_out(points):
-    """The change of volume at all points is that of the whole element."""
+    """The volume strain at each point is that of the whole element."""
     whole = math.fsum(volume for volume, _ in points)
     for k in range(4):
         for c in (0, 1):
@@ -59,6 +59,6 @@ def even_out(points):
 
 
 def strain_of(unit, u, ring):
-    """From displacements of the nodes, a common travel taken off first: a rigid motion does not spoil the strain."""
+    """Strains from displacements of the nodes; a common translation is subtracted first, so that it adds no rounding."""
     travel = (0.0 if ring else u[0][0], u[0][1])
     return [sum(of[c][i] * (moved[c] - travel[c]) for of, moved in zip(unit, u) for c in (0, 1)) for i in range(4)]

@@ -1,17 +1,17 @@
-"""Stresses at strains: total theory on the uniaxial curve."""
+"""Compute stresses from strains by total theory, with the uniaxial curve."""
 import math
 
 
 def on_curve(points, total):
-    """Stress at a total strain; the last slope goes on."""
+    """Stress at a total strain; the curve is extrapolated with its last slope."""
     k = next((k for k in range(2, len(points)) if points[k][0] >= total), len(points) - 1)
     (e0, s0), (e1, s1) = points[k - 1], points[k]
     return s0 + (s1 - s0) / (e1 - e0) * (total - e0)
 
 
 def respond(strain, young, nu, plane_stress, points=None, paper=False):
-    """Stresses xx, yy, zz, xy by total theory of strains xx, yy, zz, xy, equivalent strain and secant modulus: of the secant body whose
-    equivalent strain lies on the curve, by bisection."""
+    """Stresses xx, yy, zz, xy, equivalent strain and secant modulus for strains xx, yy, zz, xy by total theory: those of the secant body whose
+    equivalent strain lies on the curve, found by bisection."""
     x, y, given, g = strain
 
     def across(mu):

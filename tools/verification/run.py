@@ -1,11 +1,11 @@
-"""The tables of a run: read whole, held against the deck, and what of them nobody reads."""
+"""Read the tables of a run completely, compare them with the deck, and list what is not read."""
 import math
 import pathlib
 import re
 
 import tables
 
-#: Of each table the key of a row, columns that are numbers, those that may be empty, and words.
+#: For each table the key of a row, the columns with numbers, those that may be empty, and those with words.
 COLUMNS = {
     "nodes": ("node", ["x", "y", "ux", "uy", "rx", "ry"], [], []),
     "elements": ("element", ["x", "y", "sx", "sy", "sz", "txy", "equivalent_stress", "equivalent_strain", "secant_modulus"], [], ["state"]),
@@ -14,10 +14,10 @@ COLUMNS = {
     "bodies": ("body", ["first_node", "force_y"], ["force_x"], []),
     "history": ("iteration", ["pairs_in_contact", "plastic_elements", "pivots", "load_factor"], [], []),
 }
-#: Columns that only some versions have.
-#: Where no boundary belongs to the pairs that touch.
+#: Columns of some versions only.
+#: If the pairs in contact belong to no boundary.
 NO_PRESSURE = "max_pressure", ""
-SAME_NORMAL = 1e-3   # of two pairs of a node: there is one of them too many
+SAME_NORMAL = 1e-3   # if a node has two pairs, one node is counted twice
 SOME = {"elements": ["max_equivalent_stress", "max_x", "max_y"]}
 #: Keys of the summary that must be numbers.
 FIGURES = {"max_pressure", "total_contact_force", "max_equivalent_stress", "max_displacement", "equilibrium_residual", "smallest_force",
@@ -25,12 +25,12 @@ FIGURES = {"max_pressure", "total_contact_force", "max_equivalent_stress", "max_
 
 
 class TableFault(ValueError):
-    """A table that cannot be what epcont has written for the deck: which, where, why."""
+    """A table that epcont cannot have written for the deck: table, position, reason."""
 
 
 class Tables:
-    """Rows of each table by number; `summary`: values by key, `units` likewise; `unread`: columns that are not known here, by table.
-    `case`: number of the load case that they are of; None where the deck has not several."""
+    """Rows of each table by number; `summary`: values by key, `units` likewise; `unread`: unknown columns, by table.
+    `case`: number of the load case; None if the deck has only one."""
 
     def __init__(self, directory, stem, case=None):
         self.directory, self.stem, self.case, self.unread = pathlib.Path(directory), stem, case, {}
@@ -45,7 +45,7 @@ class Tables:
         """Lines and rows of the load case."""
         for line, row in enumerate(tables.rows(path), 2):
             if ("subcase" in row) != (self.case is not None):
-                raise TableFault(f"{path}: {'a' if self.case is None else 'no'} column subcase: the table of another deck")
+                raise TableFault(f"{path}: {'a' if self.case is None else 'no'} column subcase: this table is of another deck")
             if row.pop("subcase", None) == (None if self.case is None else str(self.case)):
                 yield line, row
 
@@ -53,21 +53,21 @@ class Tables:
         path, values, units = self.path("summary"), {}, {}
         for line, row in self.rows(path):
             if None in row or not all(row.get(column) is not None for column in ("key", "value", "unit")):
-                raise TableFault(f"{path}:{line}: the line is cut off, or longer than the first")
+                raise TableFault(f"{path}:{line}: the line is incomplete, or longer than the first")
             if row["key"] in values:
-                raise TableFault(f"{path}:{line}: {row['key']} is there twice")
+                raise TableFault(f"{path}:{line}: {row['key']} occurs twice")
             if row["key"] in FIGURES and (row["key"], row["value"]) != NO_PRESSURE or row["key"].startswith("approach_"):
                 number(row["value"], path, row["key"])
             values[row["key"]], units[row["key"]] = row["value"], row["unit"]
         return values, units
 
     def read(self, name):
-        """Rows by number; one row a number, and numbers in the columns that are some."""
+        """Rows by number; each number has one row, and numeric columns hold numbers."""
         key, needed, may_be_empty, words = COLUMNS[name]
         path, found = self.path(name), {}
         for line, row in self.rows(path):
             if None in row or None in row.values():
-                raise TableFault(f"{path}:{line}: the line is cut off, or longer than the first")
+                raise TableFault(f"{path}:{line}: the line is incomplete, or longer than the first")
             some = [column for column in SOME.get(name, []) if column in row]
             for column in (key, *needed, *may_be_empty, *words, *some):
                 if column not in row:
@@ -77,23 +77,23 @@ class Tables:
             try:
                 own = int(row[key])
             except ValueError:
-                raise TableFault(f"{path}:{line}: {key}: {row[key]!r} is no whole number") from None
+                raise TableFault(f"{path}:{line}: {key}: {row[key]!r} is not a whole number") from None
             others = [name for name in found if name == own or isinstance(name, tuple) and name[0] == own]
             if others and (name != "contact" or any(same_normal(found[other], row) for other in others)):
-                raise TableFault(f"{path}:{line}: {key} {own} is there twice")
+                raise TableFault(f"{path}:{line}: {key} {own} occurs twice")
             found[(own, len(others) + 1) if others else own] = row
             self.unread[name] = [column for column in row if column not in (key, *needed, *may_be_empty, *words, *some)]
         return found
 
     def hold(self, scene):
-        """All that the deck has must be in the tables, and nothing else."""
+        """Check that the tables contain exactly the nodes, elements and pairs of the deck."""
         for name, what, wanted, found in (("nodes", "node", scene.x, self.nodes), ("elements", "element", scene.element, self.elements),
                                           ("contact", "pair", scene.pair, self.contact)):
             lacking, strange = sorted(set(wanted) - set(found)), sorted(set(found) - set(wanted))
             if lacking:
-                raise TableFault(f"{self.path(name)}: no {what} {lacking[0]}: the table of another deck, or cut off")
+                raise TableFault(f"{self.path(name)}: no {what} {lacking[0]}: the table is incomplete or of another deck")
             if strange:
-                raise TableFault(f"{self.path(name)}: {what} {strange[0]} is not in the deck: the table of another one")
+                raise TableFault(f"{self.path(name)}: {what} {strange[0]} is not in the deck: the table is of another deck")
         for name in ("zones", "bodies", "history"):
             if not self.path(name).exists() and (scene.pair or name == "history"):
                 raise TableFault(f"{self.path(name)}: no such file")
@@ -107,7 +107,7 @@ def number(text, place, name):
     try:
         value = float(text)
     except (TypeError, ValueError):
-        raise TableFault(f"{place}: {name}: {'no such column' if text is None else f'{text!r} is no number'}") from None
+        raise TableFault(f"{place}: {name}: {'no such column' if text is None else f'{text!r} is not a number'}") from None
     if not math.isfinite(value):
-        raise TableFault(f"{place}: {name}: {text!r} is no finite number")
+        raise TableFault(f"{place}: {name}: {text!r} is not a finite number")
     return value

@@ -1,4 +1,4 @@
-"""What a deck says, as dictionaries by id: nothing of the program."""
+"""The content of a deck as dictionaries by id, without using the program."""
 import math
 
 from body import body_forces
@@ -10,7 +10,7 @@ from ties import resolved, rigid_ties, sums
 
 
 class Section:
-    """thickness: None of a ring. points: of the uniaxial curve, or None. expansion: A and TREF."""
+    """thickness: None if axisymmetric. points: of the uniaxial curve, or None. expansion: A and TREF."""
 
     def __init__(self, thickness, material, plane_stress, points, expansion, density):
         self.thickness, (self.young, self.nu), self.plane_stress, self.points = thickness, material, plane_stress, points
@@ -18,15 +18,15 @@ class Section:
 
 
 class Pair:
-    """Gap = initial + sum of weight * displacement . normal over its nodes. `node`: of the boundary side it lies on; `ends`: the nodes
-    that name it; `stands_on`: of a node of the master the nodes of the slave's side that it stands on."""
+    """Gap = initial + sum of weight * displacement . normal over its nodes. `node`: a node of its boundary edge; `ends`: the nodes
+    in its name; `stands_on`: for a node of the master, the nodes of the opposite slave edge."""
 
     def __init__(self, initial, normal, weights, node, ends, stands_on=()):
         self.initial, self.normal, self.weights, self.node, self.ends, self.stands_on = initial, normal, weights, node, ends, stands_on
 
 
 class Scene:
-    """`told`: normals of the pairs that the program has, by their names: which of several pairs of a node is which, and what came near."""
+    """`told`: normals of the program's pairs, by name: they identify the pairs of a node that has several, and pairs found late."""
 
     def __init__(self, deck, told=None):
         self.deck = deck
@@ -38,7 +38,7 @@ class Scene:
         self.off_curve = real(parameter.get("TOL", ""), wanted or (1e-8 if newton else 0.01)) * (1 if newton else 10)
         self.off_curve *= bool(deck.of("MATS1"))
         if parameter.get("THEORY") == "FLOW" and deck.of("MATS1"):
-            raise DeckError("PARAM THEORY FLOW: stresses depend on all load steps, and the tables hold the last one alone")
+            raise DeckError("PARAM THEORY FLOW: stresses depend on all load steps, but the tables hold only the last one")
         self.sections()
         self.element = {}
         for name, kind in KINDS.items():
@@ -63,14 +63,14 @@ class Scene:
             self.section[int(c[1])] = Section(None, material[int(c[2])], False, curve.get(int(c[2])), expansion[int(c[2])], density[int(c[1])])
 
     def deviations(self):
-        """Of the temperatures from TREF, in elements that expand."""
+        """Temperature changes from TREF, in elements that expand."""
         if self.temperature is None:
             return []
         expanding = [(nodes, section.expansion[1]) for _, nodes, section in self.element.values() if section.expansion[0]]
         return [self.temperature(node) - none_at for nodes, none_at in expanding for node in nodes]
 
     def supports(self):
-        """Fixed DOFs with their displacements, and what ties the others: master DOFs (`leader`, not those of rotating RBE2), sums, springs."""
+        """Fixed DOFs with their displacements, and the dependent DOFs: master DOFs (`leader`, not those of rotating RBE2), sums, springs."""
         self.rotating = self.deck.rotating()
         named = [(node, {"1": 0, "2": 1, "6": 2}[digit], value) for node, digits, value in self.deck.held() for digit in set(digits) & set("126")]
         self.given = {(node, c): value for node, c, value in named if c < 2 or node in self.rotating}
@@ -105,7 +105,7 @@ class Scene:
             contact.sort(key=lambda name: rank.get(name, len(rank)))
 
     def bodies(self):
-        """The body of each node, by one of its nodes: elements join theirs, and ties those that are tied."""
+        """The body of each node, named by one of its nodes: elements and ties join nodes to bodies."""
         above = {node: node for node in self.x}
 
         def top(node):
@@ -123,18 +123,18 @@ class Scene:
         return {node: top(node) for node in self.x}
 
     def leads(self, *freedom):
-        """The freedom that one is tied to, itself if it is not."""
+        """The master DOF of a DOF; itself if it is not dependent."""
         while self.leader.get(freedom, freedom) != freedom:
             freedom = self.leader[freedom]
         return freedom
 
     def motion(self, node, c):
-        """What moves a node along a direction: a freedom, or how far it is held."""
+        """The DOF that moves a node along a direction, or its fixed displacement."""
         lead = self.leads(node, c)
         return self.given.get(lead, lead)
 
     def name(self, pair, told):
-        """The node; of several pairs of a node (node, number), as their normals are told."""
+        """The node; if it has several pairs (node, number), chosen by their given normals."""
         free = [name for name in told if node_of(name) == pair.node and name not in self.pair]
         name = max(free, key=lambda name: sum(a * b for a, b in zip(told[name], pair.normal)), default=pair.node)
         while name in self.pair:
@@ -163,7 +163,7 @@ class Scene:
                 first, pa = int(c[5]), real(c[3])
                 side = self.side.get(frozenset((first, int(c[6]))))
                 if side is None:
-                    raise DeckError(f"PLOADX1 between {first} and {c[6]}: inside a body")
+                    raise DeckError(f"PLOADX1 between {first} and {c[6]}: not on the boundary")
                 for node, i, value in edge_forces(side, self.x, first, (pa, real(c[4], pa)), real(at(c, 7))):
                     self.add(node, i, factor * value)
 
@@ -172,5 +172,5 @@ class Scene:
 
 
 def node_of(name):
-    """Of the name of a pair of lines."""
+    """Nodes in the name of a pair of lines."""
     return name[0] if isinstance(name, tuple) else name

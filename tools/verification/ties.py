@@ -1,10 +1,10 @@
-"""What ties DOFs to each other, from the displacements in the tables: rotations of RBE2, MPC, springs. A DOF is (node, component): 0 and 1
+"""Ties between DOFs, from the displacements in the tables: rotations of RBE2, MPC, springs. A DOF is (node, component): 0 and 1
 along x and y, 2 the rotation of the master node of an RBE2."""
 import math
 
 
 def angle(scene, u, master):
-    """The rotation that takes the farthest dependent node where it is, and its lever arm."""
+    """The rotation that gives the displacement of the farthest dependent node, and its lever arm."""
     far = max((node for node, c in scene.sums if (master, 2) in scene.sums[node, c]), key=lambda node: math.dist(scene.x[node], scene.x[master]))
     arm, moved = ([values[far][c] - values[master][c] for c in (0, 1)] for values in (scene.x, u))
     squared = arm[0] ** 2 + arm[1] ** 2
@@ -12,7 +12,7 @@ def angle(scene, u, master):
 
 
 def pull_springs(scene, u, rest, magnitude, stored):
-    """Pulls by id; they are added to the forces on nodes, to the sums of sizes at nodes, and to the work stored."""
+    """Forces of ties by id; they are added to the nodal forces, to the sums of magnitudes at nodes, and to the stored work."""
     pulls = {}
     for number, stiffness, ends in scene.springs:
         stretch = math.fsum(sign * u[end[0]][end[1]] for sign, end in zip((-1.0, 1.0), ends) if end)
@@ -26,7 +26,7 @@ def pull_springs(scene, u, rest, magnitude, stored):
 
 
 def gather(scene, rest, moments):
-    """Forces on DOFs that depend on nothing, and moments on rotations, from those on all."""
+    """Forces on independent DOFs, and moments on rotations, from the forces on all DOFs."""
     gathered = {(master, 2): [moment] for master, moment in scene.moment.items()}
     for master, moment in moments.items():
         gathered.setdefault((master, 2), []).append(moment)

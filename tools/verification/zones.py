@@ -1,19 +1,19 @@
-"""Zones of contact from pairs that touch: neighbours along the boundary, runs, half-widths."""
+"""Contact zones from the pairs in contact: neighbours along the boundary, runs, half-widths."""
 import math
 
 from pressures import ALONG, BESIDE, chains, on_symmetry, stands
 
 
 class Zone:
-    """`half_width`: None where no end is found on either side."""
+    """`half_width`: None if no end is found on either side."""
 
     def __init__(self, run, force, peak, width, half_width):
         self.first, self.last, self.force, self.peak, self.width, self.half_width = run[0], run[-1], force, peak, width, half_width
 
 
 def neighbours(scene):
-    """Of each pair the pairs beside it on the sides along its tangent, of the same contact; those of the master's nodes stand between. And
-    the pairs on lines of symmetry at which a line ends."""
+    """Neighbours of each pair along its tangent, in the same contact, including the pairs of the master's nodes between them. Also
+    the pairs on symmetry lines at which a line ends."""
     around = {}
     for side in scene.side.values():
         for node in side.nodes:
@@ -40,7 +40,7 @@ def neighbours(scene):
 
 
 def pairs_by_side(scene, contact):
-    """A function of node and side: the node's pair against what the side faces, of several the one whose normal is most across it."""
+    """Return a function of node and edge: the node's pair with the opposite edge; if there are several, that with the normal most nearly perpendicular to it."""
     of_node = {}
     for name in contact:
         if not scene.pair[name].stands_on:
@@ -54,7 +54,7 @@ def pairs_by_side(scene, contact):
 
 
 def insert_masters(scene, contact, at, found):
-    """Between neighbouring nodes of a slave's side come the pairs of the master's nodes that stand there."""
+    """Insert the pairs of the master's nodes between neighbouring nodes of a slave edge."""
     on = {name: scene.pair[name].stands_on for name in contact if scene.pair[name].stands_on}
     feet = {name: stands(scene.x, scene.pair[name].weights, scene.pair[name].node) for name in on}
     for ends, order in chains(scene.side, scene.x, on, feet):
@@ -74,9 +74,9 @@ def insert_masters(scene, contact, at, found):
 
 
 def zones(scene, touching, force, pressure, told=()):
-    """The runs of touching pairs in the order of the deck; all arguments by the name of a pair. A pair without pressure (a corner on the
-    axis of rings) touches where one beside it does. `told`: nodes at the ends of runs: where one that
-    goes round begins is free."""
+    """Find the runs of pairs in contact, in the order of the deck; all arguments are by the name of a pair. A pair without pressure (a corner on the
+    axis) is in contact if a neighbour is. `told`: nodes at the ends of runs, because a closed run may
+    begin anywhere."""
     beside, mirrored = neighbours(scene)
     touching = {name: touches or pressure[name] < 0.0 and any(touching[other] for other in beside[name]) for name, touches in touching.items()}
     linked = {name: set() for name in scene.pair}
@@ -112,7 +112,7 @@ def walk(beside, touching, start):
 
 
 def turned(run):
-    """All ways round a closed run."""
+    """All start points and directions of a closed run."""
     for k in range(len(run)):
         way = run[k:] + run[:k]
         yield from (way, way[::-1])
@@ -123,8 +123,8 @@ def measured(scene, beside, mirrored, touching, force, pressure, run):
         return math.dist(scene.x[scene.pair[a].node], scene.x[scene.pair[b].node])
 
     def beyond(run):
-        """How far behind the last pair the pressure ends, p**2 being linear, at most at the first open pair: there where it rises at
-        the end. None where it is not below half of the largest."""
+        """Distance from the last pair to the end of the pressure, with p**2 linear; if the pressure rises at the end, at most to the first open
+        pair. None if the pressure there is not below half of the largest."""
         opened = [other for other in beside[run[-1]] if not touching[other]]
         if len(run) < 2 or not opened or pressure[run[-1]] >= 0.5 * max(pressure[name] for name in run):
             return None
