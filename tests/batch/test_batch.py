@@ -207,7 +207,7 @@ class Lists(Case):
     def test_bad_lists(self):
         for name, text, words in (("empty", "# nothing\n", "no deck in the list"), ("binary", "a.dat\nb\0.dat\n", "binary:2: not a text"),
                                   ("a.csv", "name\nx\n", "a.csv:1: no column `deck`: add it"),
-                                  ("b.csv", "deck,x\na.dat\n", "b.csv:2: 2 values"), ("c.csv", "deck,status\na.dat,1\n", "column status"),
+                                  ("b.csv", "deck,x\na.dat\n", "b.csv:2: wrong number of values: give 2, one per column"), ("c.csv", "deck,status\na.dat,1\n", "column status"),
                                   ("d.csv", "deck,x\n,1\n", "d.csv:2: the deck has no name: give one")):
             with self.subTest(name):
                 (self.place / name).write_text(text)
@@ -225,9 +225,9 @@ class Lists(Case):
                 self.assertIn("tools/batch: ", self.run_it(3, *arguments).stderr)
         for words, right in ((["--slurm", "--partition", "short", "a.dat"], "--partition short: write options of sbatch as --name=value"),
                              (["--slurm", "-p", "short", "a.dat"], "-p short: write options of sbatch as --name=value"),
-                             (["--collect", "out", "-j", "2"], "takes nothing beside it but --no-wait; here: -j 2"),
-                             (["--collect=out", "a.dat", "--resume"], "takes nothing beside it but --no-wait; here: a.dat --resume"),
-                             (["--collect", "out", "--partition=short"], "takes nothing beside it but --no-wait; here: --partition=short")):
+                             (["--collect", "out", "-j", "2"], "--collect DIR with -j 2: use it only with --no-wait"),
+                             (["--collect=out", "a.dat", "--resume"], "--collect DIR with a.dat --resume"),
+                             (["--collect", "out", "--partition=short"], "--collect DIR with --partition=short: use it only with --no-wait")):
             with self.subTest(words):
                 self.assertIn(right, self.run_it(3, *words, "-o", "out").stderr if "--collect" not in words[0] else self.run_it(3, *words).stderr)
         self.assertIn("no such program: run tools/build", self.run_it(3, "a.dat", "-o", "out", "--program", "nowhere").stderr)
@@ -479,7 +479,7 @@ class StoppedBatch(Case):
         process.communicate()
         self.assertEqual(4, len(self.table()))
         run = self.run_it(3, "a.dat", "-o", "out", "--resume", "--program", self.fake)
-        self.assertIn("what it began is still running", run.stderr)
+        self.assertIn("another tools/batch or one of its runs is still active there", run.stderr)
         for pid in (self.place / "pids").read_text().split():
             os.killpg(int(pid), signal.SIGKILL)
         self.run_it(1, "--collect", "out")
@@ -487,7 +487,7 @@ class StoppedBatch(Case):
 
     def test_two_batches_in_one_folder(self):
         process = self.begin()
-        self.assertIn("another tools/batch is at work there", self.run_it(3, "a.dat", "-o", "out").stderr)
+        self.assertIn("another tools/batch or one of its runs is still active there", self.run_it(3, "a.dat", "-o", "out").stderr)
         process.terminate()
         process.communicate()
 
@@ -588,7 +588,7 @@ class StandIn(Case):
             self.assertEqual("tools/batch: sbatch: no such partition\n", run.stderr)
 
     def test_waiting_that_is_stopped(self):
-        """By its own exit status; the job goes on."""
+        """By its own exit status; the job continues."""
         self.decks("a.dat")
         (self.place / "bin" / "sbatch").write_text("#!/bin/sh\necho 7\n")
         (self.place / "bin" / "squeue").write_text("#!/bin/sh\necho 7 0\n")
@@ -600,7 +600,7 @@ class StandIn(Case):
             process.send_signal(number)
             said, errors = process.communicate(timeout=30)
             self.assertEqual(128 + number, process.returncode, errors)
-            self.assertIn("the job goes on", errors)
+            self.assertIn("the job continues", errors)
             self.assertIn("1 deck in ", said)
             self.assertEqual({"a.dat": "not run"}, self.words())
 
