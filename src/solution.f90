@@ -16,6 +16,7 @@ module epcont_solution
   use epcont_linear_linear_problem, only: linear_problem
   use epcont_model_controls, only: method_newton
   use epcont_model_contact_rows, only: line_contact
+  use epcont_model_load_set, only: load_set
   use epcont_plan_forecast, only: check_memory
   use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_plan_planned_model, only: planned_model
@@ -68,6 +69,7 @@ module epcont_solution
     !! nodes
     type(planned_model), allocatable :: as_given
     type(attempt_list) :: attempts       !! after the first solve
+    type(load_set), private :: loads     !! of the load case; the model has those of the state found
     logical, private :: unique = .true.  !! contact forces are unique, as far as the contact solver must know
   contains
     procedure :: solve
@@ -99,6 +101,7 @@ contains
     self%accuracy = none
     if (allocated(self%as_given)) deallocate (self%as_given)
     call self%attempts%begin()
+    self%loads = self%model%loads
     call self%solve_as_planned(limit, watch, error)
     do
       if (allocated(error)) return
@@ -249,6 +252,7 @@ contains
     self%certificate = no_certificate
     plan = self%iteration
     if (plan%yields) plan%load_steps = load_steps
+    self%model%loads = self%loads
     associate (kept => self%kept, answer => self%answer)
       call follow_loads(self%planned_model, plan, kept%another, kept%linear, kept%virgin, &
                         answer%followed_loads, watch)
@@ -273,7 +277,7 @@ contains
     found_certificate = self%certificate
     steps = 0
     do
-      call self%kept%linear%sharpen(self%planned_model, self%answer%load_factor, self%answer%solved_state, &
+      call self%kept%linear%sharpen(self%planned_model, self%answer%solved_state, &
                                     self%answer%last_correction, watch)
       if (self%answer%last_correction >= huge(1.0_wp)) exit
       steps = steps + 1
@@ -321,7 +325,7 @@ contains
         answer%point = kept%linear%materials%states(answer%strain)
       associate (force => answer%contact%force, volume => kept%linear%operator%volume)
         call recover_stresses(model, kept%linear, &
-                              answer%load_factor*model%loads%load + pair_forces(model, force), &
+                              model%loads%load + pair_forces(model, force), &
                               answer)
         answer%locking = find_locking(model, volume, answer%stress, answer%equivalent_stress, &
             answer%secant_modulus)

@@ -137,7 +137,7 @@ contains
     call compare_fields(scene, linear, answer, kept%table, kept%loads%contact, kept%field, field)
     self%element = field%element
     associate (error => sum(field%element))
-      if (error > least_difference**2*held_energy(scene, linear, answer%load_factor)) &
+      if (error > least_difference**2*held_energy(scene, linear)) &
         self%energy_norm = sqrt(error/(error + abs(field%energy)))
     end associate
     if (self%energy_norm > least_difference) then
@@ -152,15 +152,14 @@ contains
 
   !> Approximate strain energy if all thermal expansion were fixed. If bodies expand freely, the remaining
   !! strain energy is rounding of this value.
-  pure real(wp) function held_energy(scene, linear, load_factor) result(energy)
+  pure real(wp) function held_energy(scene, linear) result(energy)
     type(planned_model), intent(in) :: scene       !! solved model
     type(linear_problem), intent(in) :: linear     !! of its last solve
-    real(wp), intent(in) :: load_factor            !! factor of the temperatures
 
     energy = 0.0_wp
     if (allocated(scene%model%loads%free_strain)) &
       energy = sum(linear%operator%volume*scene%model%sections%young(linear%materials%of_point)* &
-                   (load_factor*scene%model%loads%free_strain)**2)
+                   scene%model%loads%free_strain**2)
   end function held_energy
 
   !> Estimate the errors of the largest pressures and half-widths.

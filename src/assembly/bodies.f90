@@ -91,31 +91,31 @@ contains
 
     self%settlement = 0.0_wp
     if (all(scene%model%loads%beyond_travel == 0.0_wp) .and. &
-        all(scene%model%constraints%platen%prescribed == 0.0_wp)) return
+        all(scene%model%loads%rotation == 0.0_wp)) return
     allocate (prescribed(directions, scene%model%mesh%nodes), source=0.0_wp)
-    call prescribe(scene, 1.0_wp, prescribed)
+    call prescribe(scene, .true., prescribed)
     self%settlement = -self%operator%nodal_forces( &
-                      scene%model, self%law%increment(self%operator%strains(scene%model, prescribed, 0.0_wp)))
+      scene%model, self%law%increment(self%operator%strains(scene%model, prescribed, heated=.false.)))
     if (size(scene%model%constraints%spring) > 0) &
       self%settlement = self%settlement - spring_forces(scene%model, prescribed)
   end subroutine settle
 
-  !> Set a part of the prescribed displacements, and the DOFs that are sums. Other DOFs stay as they are.
-  pure subroutine prescribe(scene, load_factor, displacement)
+  !> Set the prescribed displacements, or zero, and the DOFs that are sums. Other DOFs stay as they are.
+  pure subroutine prescribe(scene, moved, displacement)
     type(planned_model), intent(in) :: scene
-    real(wp), intent(in) :: load_factor             !! of the prescribed displacements
+    logical, intent(in) :: moved                    !! by the prescribed displacements
     real(wp), intent(inout) :: displacement(:, :)   !! [length] [directions, nodes]
     real(wp) :: turned(size(scene%model%constraints%platen))    ! [radian]
     integer :: c, k, node
 
     associate (model => scene%model)
       turned = [(platen_angle(model, k, displacement), k=1, size(turned))]
-      where (model%constraints%platen%held) turned = load_factor*model%constraints%platen%prescribed
+      where (model%constraints%platen%held) turned = merge(model%loads%rotation, 0.0_wp, moved)
       do node = 1, model%mesh%nodes
         do c = 1, directions
           if (model%constraints%sum_of(c, node) == 0 .and. model%constraints%is_held(c, node)) &
-            displacement(c, node) = load_factor*model%loads%beyond_travel(c, &
-              model%constraints%leader(c, node))
+            displacement(c, node) = merge(model%loads%beyond_travel(c, model%constraints%leader(c, node)), &
+                                          0.0_wp, moved)
         end do
       end do
       if (size(model%constraints%sum%first) == 0) return
@@ -170,34 +170,34 @@ contains
     if (self%body(b)%smallest_ratio < weakest%ratio) weakest = weak_pivot(self%body(b)%smallest_ratio, b)
   end function weakest
 
-  !> Displacements under nodal forces and a part of the prescribed displacements, SUPORT DOFs at zero
-  !! [directions, nodes].
-  function displacements(self, scene, force, load_factor) result(u)
+  !> Displacements under nodal forces alone, supports and SUPORT DOFs at zero [directions, nodes].
+  function displacements(self, scene, force) result(u)
     class(factored_bodies), intent(in) :: self
     type(planned_model), intent(in) :: scene   !! with equation numbers
-    real(wp), intent(in) :: force(:, :)  !! [directions, nodes]
-    real(wp), intent(in) :: load_factor  !! of the prescribed displacements
+    real(wp), intent(in) :: force(:, :)        !! [directions, nodes]
     real(wp), allocatable :: u(:, :)
     type(half_solved_body), allocatable :: half(:)
 
-    call self%add_forces(scene, force, load_factor, half)
-    u = self%finish(scene, half, load_factor, .false.)
+    call self%add_forces(scene, force, .false., half)
+    u = self%finish(scene, half, moved=.false., at_contact=.false.)
   end function displacements
 
   !> Add forces to the bodies, with forward substitution.
-  subroutine add_forces(self, scene, force, load_factor, half)
+  subroutine add_forces(self, scene, force, moved, half)
     class(factored_bodies), intent(in) :: self
     type(planned_model), intent(in) :: scene     !! with equation numbers
     real(wp), intent(in) :: force(:, :)          !! [directions, nodes]
-    real(wp), intent(in) :: load_factor          !! of the prescribed displacements, with their forces
+    logical, intent(in) :: moved                 !! with the forces of the prescribed displacements
     !> Forces added before; not allocated if no forces were added [bodies]
     type(half_solved_body), allocatable, intent(inout) :: half(:)
-    real(wp), allocatable :: border(:, :), inner(:, :)
+    real(wp), allocatable :: border(:, :), inner(:, :), whole(:, :)
     integer :: b, i
 
+    whole = force
+    if (moved) whole = force + self%settlement
     if (.not. allocated(half)) allocate (half(size(self%body)))
     do b = 1, size(half)
-      associate (body => scene%numbering%body(b), settlement => self%settlement)
+      associate (body => scene%numbering%body(b))
         allocate (inner(body%equations, 1), border(body%border, 1), source=0.0_wp)
         ! One thread if several DOFs may share an equation: in sums, and ties of joined bodies.
         !$omp parallel do &
@@ -205,8 +205,7 @@ contains
         !$omp             size(body%tied%start) > 1))
         do i = 1, size(body%node)
           associate (at => body%node(i))
-            call put_forces(scene%numbering, b, at, &
-                            force(:, at:at) + load_factor*settlement(:, at:at), inner, border)
+            call put_forces(scene%numbering, b, at, whole(:, at:at), inner, border)
           end associate
         end do
         !$omp end parallel do
@@ -225,18 +224,18 @@ contains
   end subroutine add_forces
 
   !> Compute displacements under all forces that have been added, SUPORT DOFs at zero [directions, nodes].
-  function finish(self, scene, half, load_factor, at_contact) result(u)
+  function finish(self, scene, half, moved, at_contact) result(u)
     class(factored_bodies), intent(in) :: self
     type(planned_model), intent(in) :: scene       !! with equation numbers
     type(half_solved_body), intent(in) :: half(:)  !! forces that have been added [bodies]
-    real(wp), intent(in) :: load_factor  !! of the prescribed displacements
+    logical, intent(in) :: moved         !! by the prescribed displacements
     logical, intent(in) :: at_contact    !! only displacements that gaps depend on are needed
     real(wp), allocatable :: u(:, :)
     real(wp), allocatable :: border(:, :), inner(:, :)
     integer :: b, first, i
 
     allocate (u(directions, scene%model%mesh%nodes), source=0.0_wp)
-    call prescribe(scene, load_factor, u)
+    call prescribe(scene, moved, u)
     do b = 1, size(half)
       associate (body => scene%numbering%body(b))
         inner = half(b)%inner

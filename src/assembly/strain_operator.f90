@@ -76,16 +76,16 @@ contains
 
   !> Strains xx, yy, zz, xy (engineering) that cause stresses: those of displacements minus thermal strains
   !! [components, points].
-  function strains(self, model, displacement, load_factor) result(strain)
+  function strains(self, model, displacement, heated) result(strain)
     class(strain_operator), intent(in) :: self
     type(model_type), intent(in) :: model
     real(wp), intent(in) :: displacement(:, :)   !! [length] [directions, nodes]
-    real(wp), intent(in) :: load_factor          !! part of the temperatures
+    logical, intent(in) :: heated                !! with thermal strains
     real(wp), allocatable :: strain(:, :)
     logical :: expands
     integer :: p
 
-    expands = allocated(model%loads%free_strain) .and. load_factor /= 0.0_wp
+    expands = allocated(model%loads%free_strain) .and. heated
     allocate (strain(components, model%mesh%points))
     if (.not. expands .and. all(displacement == 0.0_wp)) then   ! first state of joined bodies
       strain = 0.0_wp
@@ -94,7 +94,7 @@ contains
     !$omp parallel do num_threads(threads_over(model%mesh%points))
     do p = 1, model%mesh%points
       strain(:, p) = strain_at(p)
-      if (expands) strain(:3, p) = strain(:3, p) - load_factor*model%loads%free_strain(p)
+      if (expands) strain(:3, p) = strain(:3, p) - model%loads%free_strain(p)
     end do
     !$omp end parallel do
 

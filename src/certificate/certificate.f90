@@ -89,7 +89,7 @@ module epcont_certificate_certificate
 contains
 
   !> Check an answer. Its inputs are the displacements with and without rigid-body displacements, the
-  !! reactions, the stresses at the integration points, the contact forces and the load factor.
+  !! reactions, the stresses at the integration points and the contact forces.
   subroutine certify(model, answer, curve_tolerance, found)
     type(model_type), intent(in) :: model   !! model
     type(answer_type), intent(in) :: answer   !! answer to check
@@ -103,14 +103,14 @@ contains
     real(wp) :: face          ! face of the largest element [length**2]
     logical :: unstressed     ! stresses and forces are rounding errors of zero
 
-    load = answer%load_factor*given_load(model)
+    load = given_load(model)
     allocate (total%residual(directions, model%mesh%nodes), total%element_force(model%mesh%nodes), &
               source=0.0_wp)
     call check_springs(model, answer%displacement, total%residual, total%element_force, total%stored)
     given_force = max(maxval(abs(load)), maxval(total%element_force))
     face = largest_face(model)
     largest_stress = max(largest_of(size(answer%point_stress), answer%point_stress), &
-                         part_of_held*held_stress(model, answer%load_factor), given_force/face)
+                         part_of_held*held_stress(model), given_force/face)
     call add_elements(model, answer, largest_stress, total, found)
     total%residual = total%residual - load - answer%reaction
     unstressed = given_force == 0.0_wp .and. found%stress_roundings <= most_roundings

@@ -47,7 +47,7 @@ contains
     allocate (part%work(model%mesh%first_point(first):model%mesh%first_point(last + 1) - 1))
     do e = first, last
       call unit_strains(model, e, slope(:, :, :, model%mesh%kind(e)), points%unit, points%volume)
-      call free_strains(model, e, answer%load_factor, points%volume, points%free)
+      call free_strains(model, e, model%loads%rise, points%volume, points%free)
       associate (stress => answer%point_stress(:, &
                                                model%mesh%first_point(e):model%mesh%first_point(e + 1) - 1))
         call part%expansion%add_element(model%sections%young(model%mesh%section(e)), stress, &
@@ -126,7 +126,7 @@ contains
         do k = 1, n
           u(:, k) = committed%deformation(:, model%mesh%connectivity(k, e))
         end do
-        call free_strains(model, e, committed%load_factor, points%volume, free)
+        call free_strains(model, e, committed%rise, points%volume, free)
       end associate
       do p = 1, model%mesh%kinds(model%mesh%kind(e))%points
         before(:, p, step) = strain_by(n, u, points%unit(1, 1, 1, p), &

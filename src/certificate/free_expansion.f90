@@ -25,24 +25,23 @@ module epcont_certificate_free_expansion
 contains
 
   !> Find the thermal strain along each axis at the integration points of an element.
-  pure subroutine free_strains(model, element, load_factor, volume, strain)
+  pure subroutine free_strains(model, element, rise, volume, strain)
     type(model_type), intent(in) :: model        !! model
     integer, intent(in) :: element               !! number of the element
-    real(wp), intent(in) :: load_factor          !! factor of the temperatures
+    !> Temperature above that without thermal strain; not allocated: zero [element's nodes, elements]
+    real(wp), allocatable, intent(in) :: rise(:, :)
     real(wp), intent(in) :: volume(most_points)  !! of the integration points [length**3]
     real(wp), intent(out) :: strain(most_points)
     real(wp) :: share(most_nodes), slope(directions, most_nodes)
     integer :: k, p
 
     strain = 0.0_wp
-    if (.not. allocated(model%loads%temperature)) return
+    if (.not. allocated(rise)) return
     associate (s => model%mesh%section(element), kind => model%mesh%kinds(model%mesh%kind(element)))
       do p = 1, kind%points
         call kind%shape(kind%point(:, p), share, slope)   ! derivatives are not used
         do k = 1, kind%nodes
-          strain(p) = strain(p) + load_factor*model%sections%expansion(s)*share(k)* &
-                      (model%loads%temperature(model%mesh%connectivity(k, &
-                        element)) - model%sections%reference_temperature(s))
+          strain(p) = strain(p) + model%sections%expansion(s)*share(k)*rise(k, element)
         end do
       end do
       if (kind%mean_dilatation .and. model%sections%kinematics(s) /= plane_stress) &
@@ -51,17 +50,16 @@ contains
   end subroutine free_strains
 
   !> Find the largest stress along one axis if all thermal expansion were fixed [stress].
-  pure real(wp) function held_stress(model, load_factor) result(stress)
+  pure real(wp) function held_stress(model) result(stress)
     type(model_type), intent(in) :: model   !! model
-    real(wp), intent(in) :: load_factor     !! factor of the temperatures
     integer :: e
 
     stress = 0.0_wp
-    if (.not. allocated(model%loads%temperature)) return
+    if (.not. allocated(model%loads%rise)) return
     do e = 1, model%mesh%elements
-      associate (node => model%mesh%connectivity(:model%mesh%node_count(e), e), s => model%mesh%section(e))
-        stress = max(stress, load_factor*model%sections%young(s)*abs(model%sections%expansion(s))* &
-                     maxval(abs(model%loads%temperature(node) - model%sections%reference_temperature(s))))
+      associate (s => model%mesh%section(e))
+        stress = max(stress, model%sections%young(s)*abs(model%sections%expansion(s))* &
+                     maxval(abs(model%loads%rise(:model%mesh%node_count(e), e))))
       end associate
     end do
   end function held_stress

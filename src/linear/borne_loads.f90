@@ -23,12 +23,11 @@ module epcont_linear_borne_loads
 contains
 
   !> Forward substitution for loads, and the gaps that they open.
-  subroutine bear(self, scene, bodies, force, load_factor, half, opening)
+  subroutine bear(self, scene, bodies, force, half, opening)
     class(borne_loads), intent(inout) :: self
     type(planned_model), intent(in) :: scene
     class(factored_bodies), intent(in) :: bodies                     !! factored
     real(wp), intent(in) :: force(:, :)                              !! [force] [directions, nodes]
-    real(wp), intent(in) :: load_factor                              !! factor of the prescribed displacements
     type(half_solved_body), allocatable, intent(out) :: half(:)      !! [bodies]
     real(wp), allocatable, intent(out) :: opening(:)                 !! [length] [pairs]
     logical :: moved   ! supports have displacements
@@ -36,8 +35,8 @@ contains
     moved = any(scene%model%loads%beyond_travel /= 0.0_wp)
     if (.not. moved) call self%give(force, half, opening)
     if (allocated(half)) return
-    call bodies%add_forces(scene, force, load_factor, half)
-    opening = gap_opening(scene%model, bodies%finish(scene, half, load_factor, .true.))
+    call bodies%add_forces(scene, force, .true., half)
+    opening = gap_opening(scene%model, bodies%finish(scene, half, .true., .true.))
     if (moved .or. .not. self%keeps) return
     self%force = force
     self%half = half

@@ -77,13 +77,12 @@ module epcont_linear_contact_rule
       class(stopwatch), intent(inout) :: watch       !! measures the time
     end subroutine factor
 
-    !> Find contact, deformation and strains under a fraction of the loads, or why there is no contact.
-    subroutine solve(self, scene, bodies, load_factor, start, state, watch)
-      import :: contact_rule, factored_bodies, planned_model, solved_state, stopwatch, wp
+    !> Find contact, deformation and strains under the loads, or why there is no contact.
+    subroutine solve(self, scene, bodies, start, state, watch)
+      import :: contact_rule, factored_bodies, planned_model, solved_state, stopwatch
       class(contact_rule), intent(inout) :: self
       type(planned_model), intent(in) :: scene
       class(factored_bodies), intent(inout) :: bodies
-      real(wp), intent(in) :: load_factor            !! factor of the loads
       logical, allocatable, intent(in) :: start(:)   !! guess of the pairs in contact, if allocated [pairs]
       type(solved_state), intent(inout) :: state
       class(stopwatch), intent(inout) :: watch
@@ -129,11 +128,10 @@ contains
   end subroutine see_case
 
   !> Take one step of iterative refinement, unless the solver's own iteration has already converged.
-  subroutine refine(self, scene, bodies, load_factor, state, refined, watch)
+  subroutine refine(self, scene, bodies, state, refined, watch)
     class(contact_rule), intent(inout) :: self
     type(planned_model), intent(in) :: scene
     class(factored_bodies), intent(in) :: bodies
-    real(wp), intent(in) :: load_factor
     type(solved_state), intent(inout) :: state   !! contact, deformation and strain
     logical, intent(out) :: refined              !! false: no step was taken, or no contact found
     class(stopwatch), intent(inout) :: watch

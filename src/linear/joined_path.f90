@@ -141,8 +141,8 @@ contains
       bodies%spring%changed(:size(target)) = .true.
       call bodies%factor_system(scene, threads)
       call bodies%add_forces(scene, self%unbalanced + &
-                             pair_forces(scene%model, target - stiffness*self%gap), 0.0_wp, half)
-      reached = self%gap + gap_opening(scene%model, bodies%finish(scene, half, 0.0_wp, at_contact=.true.))
+                             pair_forces(scene%model, target - stiffness*self%gap), .false., half)
+      reached = self%gap + gap_opening(scene%model, bodies%finish(scene, half, .false., at_contact=.true.))
       self%force_step = target - stiffness*reached - self%force
       self%open_step = spread(merge(0.0_wp, reached - open(:, 1), self%firm), 2, 2)
       where (.not. self%two) self%open_step(:, 2) = 0.0_wp

@@ -236,8 +236,8 @@ contains
     do j = 1, 2
       force = merge(cos([(k*sqrt(real(j, wp)), k=1, size(force))]), 0.0_wp, springs%closed)
       if (j > 1) deallocate (half)
-      call bodies%add_forces(scene, pair_forces(scene%model, force), 0.0_wp, half)
-      force = force - springs%gamma*gap_opening(scene%model, bodies%finish(scene, half, 0.0_wp, .true.))
+      call bodies%add_forces(scene, pair_forces(scene%model, force), .false., half)
+      force = force - springs%gamma*gap_opening(scene%model, bodies%finish(scene, half, .false., .true.))
       are_unique = are_unique .and. all(abs(force) <= most_left .or. .not. springs%closed)
     end do
   end function are_unique

@@ -83,18 +83,16 @@ contains
   end subroutine factor
 
   !> Find deformation, approach and contact forces. `failed` if no active set is found.
-  subroutine solve(self, scene, bodies, load_factor, start, state, watch)
+  subroutine solve(self, scene, bodies, start, state, watch)
     class(joined_rule), intent(inout) :: self
     type(planned_model), intent(in) :: scene
     class(factored_bodies), intent(inout) :: bodies
-    real(wp), intent(in) :: load_factor
     logical, allocatable, intent(in) :: start(:)
     type(solved_state), intent(inout) :: state
     class(stopwatch), intent(inout) :: watch
 
     associate (search => self%search, motion => self%problem%motion)
-      search%load_factor = load_factor
-      search%fixed_gap = self%problem%initial_gap + load_factor*self%travel_gap
+      search%fixed_gap = self%problem%initial_gap + self%travel_gap
       if (allocated(self%line%last)) then
         state = self%line%next()
         associate (opened => search%fixed_gap + gap_opening(scene%model, state%deformation) - &

@@ -48,7 +48,6 @@ module epcont_linear_joined_search
     type(motion_matrix) :: motion                  !! A, closing of the gaps by the rigid-body modes
     real(wp), allocatable :: lower(:), upper(:)    !! bounds of the forces [force] [pairs]
     real(wp), allocatable, private :: bound(:)     !! bound of the force of each open pair [pairs]
-    real(wp) :: load_factor = 0.0_wp               !! factor of the loads
     real(wp), allocatable :: fixed_gap(:)          !! initial gap and prescribed part of it [length] [pairs]
     real(wp) :: correction = huge(1.0_wp)          !! of forces in the last step, over the largest
     !> Forces in balance; gaps; their change in a step [pairs]
@@ -140,8 +139,8 @@ contains
     state%contact%sets = 0
     self%taken = 0
     self%last_held = 0
-    call prescribe(scene, self%load_factor, state%deformation)
-    state%strain = bodies%operator%strains(scene%model, state%deformation, self%load_factor)
+    call prescribe(scene, .true., state%deformation)
+    state%strain = bodies%operator%strains(scene%model, state%deformation, .true.)
     call self%balance(scene, bodies, state)
     call self%begin_at_state(scene, state)
     call self%begin_afresh()
@@ -194,7 +193,7 @@ contains
     class(factored_bodies), intent(in) :: bodies
     type(solved_state), intent(in) :: state
 
-    self%unbalanced = self%load_factor*scene%model%loads%load - &
+    self%unbalanced = scene%model%loads%load - &
                       bodies%operator%nodal_forces(scene%model, bodies%law%stress(state%strain)) - &
                       spring_forces(scene%model, state%deformation)
   end subroutine balance
@@ -276,8 +275,8 @@ contains
     end if
     call add_suport_forces(scene, self%held, force)
     self%afresh = .false.
-    call bodies%add_forces(scene, force, 0.0_wp, half)
-    self%step = bodies%finish(scene, half, 0.0_wp, at_contact=.not. self%whole)
+    call bodies%add_forces(scene, force, .false., half)
+    self%step = bodies%finish(scene, half, .false., at_contact=.not. self%whole)
     self%opening = gap_opening(scene%model, self%step)
     self%moved = suport_values(scene, self%step)
   end subroutine find_step
@@ -358,7 +357,7 @@ contains
     real(wp), allocatable :: strain(:, :)
 
     call scene%motions%add(scene%model, -self%moved, self%step)
-    strain = bodies%operator%strains(scene%model, self%step, 0.0_wp)
+    strain = bodies%operator%strains(scene%model, self%step, .false.)
     state%deformation = state%deformation + self%step
     state%strain = state%strain + strain
     state%contact%approach = state%contact%approach + self%moved

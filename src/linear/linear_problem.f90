@@ -60,28 +60,26 @@ contains
     call self%rule%factor(scene, self%factored_bodies, failed_body, watch)
   end subroutine set_stiffness
 
-  !> Find displacements, stresses and contact under a fraction of loads and prescribed displacements. Without
-  !! contact equilibrium (`state%contact%state`) there are no displacements.
-  subroutine solve(self, scene, load_factor, start, state, watch)
+  !> Find displacements, stresses and contact under the loads of the model. Without contact equilibrium
+  !! (`state%contact%state`) there are no displacements.
+  subroutine solve(self, scene, start, state, watch)
     class(linear_problem), intent(inout) :: self
     type(planned_model), intent(in) :: scene       !! the same model
-    real(wp), intent(in) :: load_factor            !! factor of the loads
     logical, allocatable, intent(in) :: start(:)   !! guess of the pairs in contact, if allocated [pairs]
     type(solved_state), intent(inout) :: state      !! the solution
     class(stopwatch), intent(inout) :: watch       !! measures the time
 
-    call self%rule%solve(scene, self%factored_bodies, load_factor, start, state, watch)
+    call self%rule%solve(scene, self%factored_bodies, start, state, watch)
     if (state%contact%state /= contact_solved) return
-    call complete(self, scene, load_factor, state)
+    call complete(self, scene, state)
     call watch%lap(stage_displacements)
   end subroutine solve
 
   !> Take one step of iterative refinement: if a body is long and its elements are fine, rounding
   !! leaves residual forces and gaps, although the factors are in double precision.
-  subroutine sharpen(self, scene, load_factor, state, change, watch)
+  subroutine sharpen(self, scene, state, change, watch)
     class(linear_problem), intent(inout) :: self
     type(planned_model), intent(in) :: scene    !! the same model
-    real(wp), intent(in) :: load_factor         !! factor of the loads
     type(solved_state), intent(inout) :: state   !! unchanged if no contact is found
     real(wp), intent(out) :: change             !! of displacements and contact forces, relative
     class(stopwatch), intent(inout) :: watch    !! measures the time
@@ -90,9 +88,9 @@ contains
 
     change = huge(1.0_wp)
     refined = state
-    call self%rule%refine(scene, self%factored_bodies, load_factor, refined, found, watch)
+    call self%rule%refine(scene, self%factored_bodies, refined, found, watch)
     if (.not. found) return
-    call complete(self, scene, load_factor, refined)
+    call complete(self, scene, refined)
     change = max(relative_change(state%displacement, refined%displacement, of=refined%displacement), &
                  force_change(state%contact, refined%contact, of=refined%contact))
     if (allocated(refined%point)) deallocate (refined%point)   ! belongs to the strain before
@@ -101,16 +99,14 @@ contains
   end subroutine sharpen
 
   !> Compute stresses, displacements and gaps from deformation, strains and contact.
-  subroutine complete(self, scene, load_factor, state)
+  subroutine complete(self, scene, state)
     type(linear_problem), intent(in) :: self
     type(planned_model), intent(in) :: scene
-    real(wp), intent(in) :: load_factor
     type(solved_state), intent(inout) :: state
     real(wp), dimension(scene%model%contact%pairs) :: gap, rounding
 
     state%point_stress = self%law%stress(state%strain)
-    associate (contact => state%contact, travel => load_factor*self%rule%travel_gap, &
-               problem => self%rule%problem)
+    associate (contact => state%contact, travel => self%rule%travel_gap, problem => self%rule%problem)
       gap = problem%initial_gap + (gap_opening(scene%model, state%deformation) + travel) - &
             problem%motion%times(contact%approach)
       if (any(contact%motion_free)) then
@@ -118,7 +114,7 @@ contains
         call choose_neutral(problem, contact)
         gap = contact%gap
       end if
-      state%displacement = state%deformation + load_factor*scene%model%loads%travel
+      state%displacement = state%deformation + scene%model%loads%travel
       call scene%motions%add(scene%model, contact%approach, state%displacement)
       ! A pair without force is in contact if its gap, computed from displacements, is only rounding,
       ! even if the contact solver finds another gap from the flexibility.

@@ -124,75 +124,71 @@ contains
   end subroutine find_flexibility
 
   !> Find the contact from the gaps under loads alone, then the deformation under loads and contact forces.
-  subroutine solve(self, scene, bodies, load_factor, start, state, watch)
+  subroutine solve(self, scene, bodies, start, state, watch)
     class(simplex_rule), intent(inout) :: self
     type(planned_model), intent(in) :: scene
     class(factored_bodies), intent(inout) :: bodies
-    real(wp), intent(in) :: load_factor
     logical, allocatable, intent(in) :: start(:)
     type(solved_state), intent(inout) :: state
     class(stopwatch), intent(inout) :: watch
     real(wp), allocatable :: force(:, :), opening(:)
     type(half_solved_body), allocatable :: half(:)
 
-    force = load_factor*scene%model%loads%load
+    force = scene%model%loads%load
     if (allocated(scene%model%loads%free_strain)) then   ! stresses without deformation
       force = force - bodies%operator%nodal_forces(scene%model, bodies%law%stress( &
-              bodies%operator%strains(scene%model, 0.0_wp*force, load_factor)))
+              bodies%operator%strains(scene%model, 0.0_wp*force, .true.)))
     else if (any(bodies%law%initial_stress /= 0.0_wp)) then
       force = force - bodies%operator%nodal_forces(scene%model, bodies%law%initial_stress)
     end if
     self%borne%keeps = self%keeps
-    call self%borne%bear(scene, bodies, force, load_factor, half, opening)
+    call self%borne%bear(scene, bodies, force, half, opening)
     if (allocated(self%problem%known_gap)) deallocate (self%problem%known_force, self%problem%known_gap)
-    self%problem%load_gap = opening + load_factor*self%travel_gap
+    self%problem%load_gap = opening + self%travel_gap
     call watch%lap(stage_displacements)
-    call self%find_contact(load_factor, start, state%contact)
+    call self%find_contact(start, state%contact)
     call watch%lap(stage_contact)
     if (state%contact%state /= contact_solved) return
-    call bodies%add_forces(scene, pair_forces(scene%model, state%contact%force), 0.0_wp, half)
+    call bodies%add_forces(scene, pair_forces(scene%model, state%contact%force), .false., half)
     ! Strains come from the deformation: added to a large rigid-body displacement, they would lose digits.
-    state%deformation = bodies%finish(scene, half, load_factor, .false.)
-    state%strain = bodies%operator%strains(scene%model, state%deformation, load_factor)
+    state%deformation = bodies%finish(scene, half, .true., .false.)
+    state%strain = bodies%operator%strains(scene%model, state%deformation, .true.)
   end subroutine solve
 
   !> Find the contact with the present gaps of the problem.
-  subroutine find_contact(self, load_factor, start, contact)
+  subroutine find_contact(self, start, contact)
     class(simplex_rule), intent(inout) :: self
-    real(wp), intent(in) :: load_factor
     logical, allocatable, intent(in) :: start(:)       !! guess of the pairs in contact, if allocated [pairs]
     type(contact_solution), intent(inout) :: contact
 
-    self%problem%resultant = load_factor*self%resultant
+    self%problem%resultant = self%resultant
     call solve_contact(self%problem, contact, start, self%basis)
   end subroutine find_contact
 
   !> Take one step of iterative refinement: add the deformation under the residual, solve the contact with it,
   !! and add the deformation under the change of contact forces.
-  subroutine refine(self, scene, bodies, load_factor, state, refined, watch)
+  subroutine refine(self, scene, bodies, state, refined, watch)
     class(simplex_rule), intent(inout) :: self
     type(planned_model), intent(in) :: scene
     class(factored_bodies), intent(in) :: bodies
-    real(wp), intent(in) :: load_factor
     type(solved_state), intent(inout) :: state
     logical, intent(out) :: refined
     class(stopwatch), intent(inout) :: watch
     logical, allocatable :: guess(:)
 
-    call deform(scene, bodies, load_factor*scene%model%loads%load + pair_forces(scene%model, &
-      state%contact%force) &
+    call deform(scene, bodies, scene%model%loads%load + pair_forces(scene%model, state%contact%force) &
                 - bodies%operator%nodal_forces(scene%model, bodies%law%stress(state%strain)) &
                 - spring_forces(scene%model, state%deformation), state)
     call watch%lap(stage_displacements)
     ! F gives the opening by a change of the forces.
     call move_alloc(state%contact%touching, guess)
     associate (problem => self%problem, &
-               opening => gap_opening(scene%model, state%deformation) + load_factor*self%travel_gap)
+               opening => gap_opening(scene%model, state%deformation) + self%travel_gap)
       problem%known_force = state%contact%force
       problem%known_gap = problem%initial_gap + opening
       problem%load_gap = opening - matmul(problem%flexibility, problem%known_force)
     end associate
-    call self%find_contact(load_factor, guess, state%contact)
+    call self%find_contact(guess, state%contact)
     call watch%lap(stage_contact)
     refined = state%contact%state == contact_solved
     ! Only under the change: in a slender body, even the rounding of all forces opens gaps.
@@ -207,9 +203,9 @@ contains
     type(solved_state), intent(inout) :: state   !! deformation, strain
     real(wp), allocatable :: step(:, :)
 
-    step = bodies%displacements(scene, force, 0.0_wp)
+    step = bodies%displacements(scene, force)
     state%deformation = state%deformation + step
-    state%strain = state%strain + bodies%operator%strains(scene%model, step, 0.0_wp)
+    state%strain = state%strain + bodies%operator%strains(scene%model, step, .false.)
   end subroutine deform
 
   !> Find forces under unit loads, with the contact's own factor of the pairs with a force.

@@ -23,8 +23,9 @@ module epcont_linear_solved_state
 
   !> End of the load step from which the next one continued (flow theory).
   type :: committed_step
-    real(wp) :: load_factor = 0.0_wp
-    real(wp), allocatable :: deformation(:, :)   !! as in `solved_state` [length] [directions, nodes]
+    !> Temperature of the nodes of each element (`load_set%rise`), and the displacements without rigid-body
+    !! displacements
+    real(wp), allocatable :: rise(:, :), deformation(:, :)
   end type committed_step
 
 contains

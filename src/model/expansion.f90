@@ -19,7 +19,7 @@ contains
     integer :: e
 
     if (allocated(model%loads%free_strain)) deallocate (model%loads%free_strain)
-    if (.not. allocated(model%loads%temperature)) return
+    if (.not. allocated(model%loads%rise)) return
     allocate (model%loads%free_strain(model%mesh%points), source=0.0_wp)
     do e = 1, model%mesh%elements
       associate (s => model%mesh%section(e), node => model%mesh%connectivity(:model%mesh%node_count(e), e), &
@@ -27,9 +27,8 @@ contains
                  strain => model%loads%free_strain(model%mesh%first_point(e):model%mesh%first_point(e + 1) - &
                                                    1))
         if (model%sections%expansion(s) == 0.0_wp) cycle
-        strain = model%sections%expansion(s)*matmul(model%loads%temperature(node) - &
-                                                    model%sections%reference_temperature(s), &
-                                           kind%values(:kind%nodes, :kind%points))
+        strain = model%sections%expansion(s)*matmul(model%loads%rise(:kind%nodes, e), &
+                                                    kind%values(:kind%nodes, :kind%points))
         if (.not. kind%mean_dilatation .or. model%sections%kinematics(s) == plane_stress) cycle
         call evaluate_points(kind, model%mesh%x(:, node), model%sections%kinematics(s), &
                              model%sections%thickness(s), &

@@ -166,11 +166,18 @@ contains
     type(load_cases), intent(in) :: cases
     type(load_case), intent(in) :: case
     type(model_type), intent(inout) :: model
-    integer :: k
+    integer :: e, k, n
 
-    if (allocated(model%loads%temperature)) deallocate (model%loads%temperature)
+    if (allocated(model%loads%rise)) deallocate (model%loads%rise)
     k = findloc(cases%heat%set, case%temperatures, dim=1)
-    if (k > 0) model%loads%temperature = cases%heat(k)%temperature
+    if (k > 0) then
+      allocate (model%loads%rise, source=0.0_wp*model%mesh%connectivity)
+      do e = 1, model%mesh%elements
+        n = model%mesh%node_count(e)
+        model%loads%rise(:n, e) = cases%heat(k)%temperature(model%mesh%connectivity(:n, e)) - &
+                                  model%sections%reference_temperature(model%mesh%section(e))
+      end do
+    end if
     call find_free_strains(model)
   end subroutine put_temperatures
 
@@ -194,7 +201,7 @@ contains
       end associate
     end do
     model%loads%prescribed = prescribed(:directions, :model%mesh%nodes)
-    model%constraints%platen%prescribed = prescribed(angle, :size(model%constraints%platen))
+    model%loads%rotation = prescribed(angle, :size(model%constraints%platen))
   end subroutine put_displacements
 
   !> Factor of a set of loads in a case; 0 if the case does not use it.

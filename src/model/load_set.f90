@@ -1,4 +1,4 @@
-!> Loads of one load case on a model.
+!> Loads on a model at one point of the load path: at most times those at the end of a load case.
 module epcont_model_load_set
   use epcont_base_kinds, only: wp
   use epcont_model_arrays, only: body_load
@@ -12,8 +12,10 @@ module epcont_model_load_set
     !> Rigid-body displacement that supports prescribe, and the rest of the prescribed displacements
     !! [length] [2, nodes].
     real(wp), allocatable :: travel(:, :), beyond_travel(:, :)
-    !> Not allocated: the reference temperature everywhere [temperature] [nodes]
-    real(wp), allocatable :: temperature(:)
+    real(wp), allocatable :: rotation(:)        !! of supported RBE2 master nodes [radian] [platens]
+    !> Temperature of the nodes of each element above the reference temperature of its section; not allocated:
+    !! zero [temperature] [element's nodes, elements]
+    real(wp), allocatable :: rise(:, :)
     !> Thermal strain of each point along each axis; not allocated if it is zero [points]
     real(wp), allocatable :: free_strain(:)
     type(body_load), allocatable :: body_load(:)   !! [any]
@@ -21,5 +23,46 @@ module epcont_model_load_set
     !> Mass of each node by its shape functions, and its first moments about the node, for body loads; not
     !! allocated before they are needed [mass, mass*length, mass*length] [3, nodes]
     real(wp), allocatable :: mass(:, :)
+  contains
+    procedure :: set_between
   end type load_set
+
+contains
+
+  !> Set the loads between those at the start and at the end of a path, without `free_strain`.
+  pure subroutine set_between(self, start, last, part)
+    class(load_set), intent(inout) :: self
+    type(load_set), intent(in) :: start   !! `load` not allocated: no loads
+    type(load_set), intent(in) :: last
+    real(wp), intent(in) :: part          !! part of the path, from 0 to 1
+
+    self%load = part*last%load
+    self%prescribed = part*last%prescribed
+    self%travel = part*last%travel
+    self%beyond_travel = part*last%beyond_travel
+    self%rotation = part*last%rotation
+    self%body_load%factor = part*last%body_load%factor
+    if (allocated(start%load)) then
+      self%load = self%load + (1.0_wp - part)*start%load
+      self%prescribed = self%prescribed + (1.0_wp - part)*start%prescribed
+      self%travel = self%travel + (1.0_wp - part)*start%travel
+      self%beyond_travel = self%beyond_travel + (1.0_wp - part)*start%beyond_travel
+      self%rotation = self%rotation + (1.0_wp - part)*start%rotation
+      self%body_load%factor = self%body_load%factor + (1.0_wp - part)*start%body_load%factor
+    end if
+    call mix(start%rise, last%rise, part, self%rise)
+    call mix(start%body_force, last%body_force, part, self%body_force)
+  end subroutine set_between
+
+  !> Find an array between two others; one that is not allocated is zero.
+  pure subroutine mix(start, last, part, now)
+    real(wp), allocatable, intent(in) :: start(:, :), last(:, :)
+    real(wp), intent(in) :: part
+    real(wp), allocatable, intent(inout) :: now(:, :)
+
+    if (allocated(now)) deallocate (now)
+    if (allocated(last)) now = part*last
+    if (allocated(start) .and. allocated(last)) now = now + (1.0_wp - part)*start
+    if (allocated(start) .and. .not. allocated(last)) now = (1.0_wp - part)*start
+  end subroutine mix
 end module epcont_model_load_set

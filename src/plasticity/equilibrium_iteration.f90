@@ -7,6 +7,8 @@ module epcont_plasticity_equilibrium_iteration
   use epcont_linear_linear_problem, only: linear_problem, new_linear_problem
   use epcont_linear_solved_state, only: solved_state
   use epcont_material_linear_law, only: elastic_law
+  use epcont_model_expansion, only: find_free_strains
+  use epcont_model_load_set, only: load_set
   use epcont_model_controls, only: method_inistr, method_modsec, method_newton, method_secant
   use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_plan_planned_model, only: planned_model
@@ -43,7 +45,9 @@ module epcont_plasticity_equilibrium_iteration
     !> With factors of the unloaded state, if another load case needs them and the model yields
     type(linear_problem), allocatable :: virgin
     logical :: keeps = .false.                      !! another load case may follow
-    real(wp) :: load_factor = 0.0_wp                !! of the loads
+    type(load_set) :: start                         !! loads at the start of the path; no `load`: unloaded
+    type(load_set), allocatable :: last             !! at its end, if it has several load steps
+    real(wp) :: load_factor = 1.0_wp                !! part of the path
     type(solved_state), allocatable :: state         !! state at this load
     logical :: converged = .false.
     logical :: runs_away = .false.                  !! no equilibrium: displacements grow without end
@@ -61,10 +65,12 @@ module epcont_plasticity_equilibrium_iteration
     logical, private :: elastic = .false.           !! with the law of a state that has not yielded
   contains
     procedure :: begin
+    procedure :: take_loads
     procedure :: iterate
     procedure :: return_to
     procedure :: factorizations
     procedure :: finish
+    procedure, private :: put_loads
     procedure, private :: set_law
     procedure, private :: judge
     procedure, private :: keep
@@ -80,8 +86,10 @@ contains
   !! the one before, and the factors of the unloaded state.
   subroutine begin(self, scene)
     class(equilibrium_iteration), intent(inout) :: self
-    type(planned_model), intent(in) :: scene        !! what is loaded
+    type(planned_model), intent(inout) :: scene     !! gets the loads of the first load step
 
+    if (self%plan%load_steps > 1) self%last = scene%model%loads
+    call self%put_loads(scene, 1.0_wp/self%plan%load_steps)
     if (allocated(self%virgin)) self%linear = self%virgin
     self%stiff = allocated(self%linear)
     self%elastic = self%stiff
@@ -104,19 +112,39 @@ contains
     allocate (self%history(0), self%pivot(0))
   end subroutine begin
 
+  !> Put the loads of a part of the path on the model.
+  subroutine take_loads(self, scene, part)
+    class(equilibrium_iteration), intent(inout) :: self
+    type(planned_model), intent(inout) :: scene
+    real(wp), intent(in) :: part   !! from 0 to 1
+
+    call self%put_loads(scene, part)
+    call self%linear%take_case(scene)
+  end subroutine take_loads
+
+  !> Put the loads of a part of the path on the model, before its bodies are known.
+  subroutine put_loads(self, scene, part)
+    class(equilibrium_iteration), intent(inout) :: self
+    type(planned_model), intent(inout) :: scene
+    real(wp), intent(in) :: part   !! from 0 to 1
+
+    self%load_factor = part
+    if (.not. allocated(self%last)) return
+    call scene%model%loads%set_between(self%start, self%last, part)
+    call find_free_strains(scene%model)
+  end subroutine put_loads
+
   !> Iterate at one load. The result is the last state, or if this has not converged, the state closest to
   !! equilibrium.
-  subroutine iterate(self, scene, load_factor, watch)
+  subroutine iterate(self, scene, watch)
     class(equilibrium_iteration), intent(inout) :: self
     type(planned_model), intent(in) :: scene
-    real(wp), intent(in) :: load_factor             !! of the loads
     class(observer), intent(inout) :: watch         !! takes the time, and is called after each solve
     class(secant_method), allocatable :: method
     type(solved_state), allocatable :: found
     real(wp) :: farthest, least_residual, travel
     integer :: iteration
 
-    self%load_factor = load_factor
     self%converged = .false.
     least_residual = huge(1.0_wp)
     if (allocated(self%state)) deallocate (self%state)
@@ -128,7 +156,7 @@ contains
     do iteration = 1, scene%model%controls%most_iterations
       call self%set_law(scene, method, watch)
       if (self%failed_body > 0) return
-      call self%linear%solve(scene, load_factor, self%touching, found, watch)
+      call self%linear%solve(scene, self%touching, found, watch)
       if (found%contact%state /= contact_solved) then
         ! No contact about a later state, such as one beyond the limit load: the previous state is the result,
         ! not converged.
@@ -147,8 +175,8 @@ contains
       self%force = found%contact%force
       self%yielded = self%now%yielded
       ! After the last load step no linearisation is needed.
-      if (self%linear%materials%yields .and. .not. (self%converged .and. load_factor >= 1.0_wp)) &
-        call method%advance(scene%model, self%linear, load_factor, found, self%about)
+      if (self%linear%materials%yields .and. .not. (self%converged .and. self%load_factor >= 1.0_wp)) &
+        call method%advance(scene%model, self%linear, found, self%about)
       call watch%lap(stage_yielding)
       call watch%solved(self%now)
       if (.not. self%converged .and. self%now%residual > least_residual) cycle
@@ -160,14 +188,16 @@ contains
     end do
   end subroutine iterate
 
-  !> Make the stiffness about an earlier state again.
-  subroutine return_to(self, scene, state, watch)
+  !> Return to an earlier state: its loads, and the stiffness about it.
+  subroutine return_to(self, scene, state, part, watch)
     class(equilibrium_iteration), intent(inout) :: self
-    type(planned_model), intent(in) :: scene
+    type(planned_model), intent(inout) :: scene
     type(solved_state), intent(in) :: state
+    real(wp), intent(in) :: part                    !! of the path
     class(observer), intent(inout) :: watch
     class(secant_method), allocatable :: method
 
+    call self%take_loads(scene, part)
     self%about = state
     self%stiff = self%stiff .and. self%plan%method == method_inistr   ! it is elastic at any load
     call choose_method(self%plan, method)
@@ -339,7 +369,7 @@ contains
     self%stiff = .false.   ! no factors of a tangent are reused
     call self%set_law(scene, tangent, watch)
     if (self%failed_body == 0 .and. tangent%blend < too_stiff) then
-      call self%linear%solve(scene, self%load_factor, found%contact%touching, next, watch)
+      call self%linear%solve(scene, found%contact%touching, next, watch)
       if (next%contact%state == contact_solved) call self%measure(scene, next)
     end if
     self%failed_body = 0

@@ -41,9 +41,9 @@ module epcont_plasticity_load_path
 contains
 
   !> Apply the loads step by step. The first load case starts without `linear`; the others get it from the
-  !! previous one, with the factors of the unloaded state.
+  !! previous one, with the factors of the unloaded state. The model keeps the loads of the state found.
   subroutine follow_loads(scene, plan, keeps, linear, virgin, answer, watch)
-    type(planned_model), intent(in) :: scene                   !! model
+    type(planned_model), intent(inout) :: scene                !! model, with the loads at the end
     type(iteration_plan), intent(in) :: plan                   !! method and tolerances; may differ from the
                                                                !! model's
     logical, intent(in) :: keeps                               !! another load case may follow
@@ -67,9 +67,10 @@ contains
     do step = 1, plan%load_steps
       if (scene%model%controls%flow_theory .and. step > 1) then
         call iteration%linear%materials%commit(answer%strain, answer%point)
-        call answer%keep_committed()
+        call answer%keep_committed(scene%model%loads%rise)
       end if
-      call iteration%iterate(scene, real(step, wp)/plan%load_steps, watch)
+      if (step > 1) call iteration%take_loads(scene, real(step, wp)/plan%load_steps)
+      call iteration%iterate(scene, watch)
       call answer%keep_step(scene, iteration, watch)
       if (.not. iteration%converged) exit
       if (plan%load_steps > 1 .and. .not. scene%model%controls%flow_theory) &
@@ -85,18 +86,19 @@ contains
   end subroutine follow_loads
 
   !> Keep the last load step, which is now committed. gfortran 12 leaks an array constructor of such a type.
-  pure subroutine keep_committed(self)
+  pure subroutine keep_committed(self, rise)
     class(followed_loads), intent(inout) :: self
+    real(wp), allocatable, intent(in) :: rise(:, :)   !! temperatures of this load step (`load_set%rise`)
     type(committed_step), allocatable :: more(:)
     integer :: k, n
 
     n = size(self%committed)
     allocate (more(n + 1))
     do k = 1, n
-      more(k)%load_factor = self%committed(k)%load_factor
+      call move_alloc(self%committed(k)%rise, more(k)%rise)
       call move_alloc(self%committed(k)%deformation, more(k)%deformation)
     end do
-    more(n + 1)%load_factor = self%load_factor
+    if (allocated(rise)) more(n + 1)%rise = rise
     more(n + 1)%deformation = self%deformation
     call move_alloc(more, self%committed)
   end subroutine keep_committed
@@ -104,7 +106,7 @@ contains
   !> Store the result of a load step. If it was not carried, nothing is stored, unless it is the first.
   subroutine keep_step(self, scene, iteration, watch)
     class(followed_loads), intent(inout) :: self
-    type(planned_model), intent(in) :: scene
+    type(planned_model), intent(inout) :: scene   !! gets the loads of the result
     type(equilibrium_iteration), intent(inout) :: iteration
     class(observer), intent(inout) :: watch
 
@@ -115,7 +117,7 @@ contains
     if (self%failed_body > 0) return
     associate (contact => iteration%state%contact)
       if (.not. (iteration%converged .or. .not. self%carried .or. contact%state /= contact_solved)) then
-        call iteration%return_to(scene, self%solved_state, watch)
+        call iteration%return_to(scene, self%solved_state, self%load_factor, watch)
         if (iteration%failed_body > 0) self%condition = huge(1.0_wp)
         return
       end if

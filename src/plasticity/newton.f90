@@ -68,11 +68,10 @@ contains
   end subroutine stiffen
 
   !> Follow the step as far as the energy decreases.
-  subroutine advance(self, model, linear, load_factor, found, about)
+  subroutine advance(self, model, linear, found, about)
     class(newton_method), intent(inout) :: self
     type(model_type), intent(in) :: model            !! model
     type(linear_problem), intent(in) :: linear       !! solved model
-    real(wp), intent(in) :: load_factor              !! of the loads
     type(solved_state), intent(in) :: found           !! with its points
     type(solved_state), intent(inout) :: about        !! displacement, strain and points
     type(point_state), allocatable :: point(:)
@@ -89,7 +88,7 @@ contains
       about%strain = about%strain + length*along
       call move_alloc(point, about%point)
     else
-      call self%secant_method%advance(model, linear, load_factor, found, about)
+      call self%secant_method%advance(model, linear, found, about)
     end if
 
   contains
@@ -127,7 +126,7 @@ contains
         work(p) = linear%operator%volume(p)*dot_product(state(p)%stress, along(:, p))
       end do
       !$omp end parallel do
-      slope = -load_factor*sum(model%loads%load*travel)
+      slope = -sum(model%loads%load*travel)
       do p = 1, size(work)   ! in fixed order
         slope = slope + work(p)
       end do

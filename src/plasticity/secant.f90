@@ -43,11 +43,10 @@ contains
   end subroutine stiffen
 
   !> Find the next state to linearise about, after the law about `about` has given `found`.
-  subroutine advance(self, model, linear, load_factor, found, about)
+  subroutine advance(self, model, linear, found, about)
     class(secant_method), intent(inout) :: self
     type(model_type), intent(in) :: model            !! model
     type(linear_problem), intent(in) :: linear       !! solved model
-    real(wp), intent(in) :: load_factor              !! of the loads
     type(solved_state), intent(in) :: found           !! with its points
     type(solved_state), intent(inout) :: about        !! displacement, strain and points
 

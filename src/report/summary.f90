@@ -114,13 +114,9 @@ contains
     highest = -huge(highest)
     associate (model => run%model)
       do e = 1, model%mesh%elements
-        associate (node => model%mesh%connectivity(:model%mesh%node_count(e), e), s => model%mesh%section(e))
-          if (model%sections%expansion(s) == 0.0_wp) cycle
-          lowest = min(lowest, minval(model%loads%temperature(node)) - &
-                       model%sections%reference_temperature(s))
-          highest = max(highest, maxval(model%loads%temperature(node)) - &
-                        model%sections%reference_temperature(s))
-        end associate
+        if (model%sections%expansion(model%mesh%section(e)) == 0.0_wp) cycle
+        lowest = min(lowest, minval(model%loads%rise(:model%mesh%node_count(e), e)))
+        highest = max(highest, maxval(model%loads%rise(:model%mesh%node_count(e), e)))
       end do
     end associate
     call figures%put('lowest_temperature', 'temperature', number, lowest, 'lowest temperature, above TREF')
