@@ -1,9 +1,9 @@
-"""Scenes with known answers, for the score of the accuracy statement.
+"""Models with known answers, for the score of the error estimates.
 
-Sets of like scenes, of other radii, moduli, loads, meshes: on `tuned`, `second`, `fresh` and `third` the weights in src/accuracy were
-chosen (the later ones judged earlier choices first), `unseen` gave no weight its value; it was looked at once (approach 90 % covered,
-71 % within a factor 3), before the part of where contact ends and two weights were chosen on the others. `third` and `unseen` have plane stress
-too. Truth is a closed form, or what meshes many times as fine converge to (named below).
+Sets of similar models with different radii, moduli, loads, meshes. The weights in src/accuracy were chosen on `tuned`, `second`, `fresh` and
+`third` (the later ones first tested earlier choices). No weight was chosen on `unseen`; it was evaluated once (approach 90 % covered,
+71 % within a factor 3), before the weight of the contact end and two others were chosen on the other sets. `third` and `unseen` include plane
+stress. True values are closed forms, or the limits of much finer meshes (named below).
 """
 import math
 import pathlib
@@ -13,8 +13,8 @@ from functools import partial
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools"))
 from scenes import cylinders, elastic, gears, lines, quads  # noqa: E402
 
-#: Converged: CTRIA6, spacing 0.0012 to 0.0019 at the contact (two cylinders), 12 to 24 elements across (the others); joints by
-#: meshes fine everywhere (growth 0.06).
+#: Converged: CTRIA6, spacing 0.0012 to 0.0019 at the contact (two cylinders), 12 to 24 elements across (the others); joints with
+#: uniformly fine meshes (growth 0.06).
 HERTZ, PLASTIC = -0.00132048, {"p1": 198.23, "b1": 0.0297, "q1": -0.0014187}
 BLOCK, NAFEMS, GEARS = -1.57988, -1.58445, 0.031975
 ROLLER = {"q1": 0.0218575, "q2": 0.045678}
@@ -22,20 +22,20 @@ FLANGE = {"p1": 332.6, "q1": 0.10323}
 JOINT = {"p1": 511.1, "p2": 408.9, "q1": 0.02778, "q2": -0.46330}
 JOINT_ELASTIC = {"p1": 554.3, "p2": 425.3, "q1": 0.02776, "q2": -0.44375}
 RING = {"p1": 332.1, "q1": -0.038057}
-#: Approach of the ball, by the part of its radius that is in contact and whether the flat is rigid.
+#: Approach of the ball, by contact radius over its radius, and whether the flat is rigid.
 BALL = {(0.01, False): -0.000995109, (0.01, True): -0.000997378, (0.015, False): -0.00223318, (0.015, True): -0.00224052,
         (0.02, False): -0.00395964, (0.02, True): -0.00397651, (0.028, False): -0.00772771, (0.028, True): -0.00777236,
         (0.035, False): -0.0120288, (0.035, True): -0.0121139}
 PERSSON = {half: 100.0 * quads.persson(half)[1] for half in (30.0, 34.0, 37.0, 41.0, 45.0, 52.0, 57.0, 60.0, 68.0, 72.0, 75.0, 33.0, 49.0, 64.0,
                                                           36.0, 47.0, 61.0, 70.0)}
-#: Two cylinders in plane stress beyond yield, load 4 (spacing 0.0022 to 0.0012); the largest pressure, next to the end, does not converge there.
+#: Two cylinders in plane stress, yielded, load 4 (spacing 0.0022 to 0.0012); the largest pressure, next to the end, does not converge there.
 SHEET_YIELDING = {"q1": -0.00069}
 LAYER = {"p1": 96.033, "b1": 0.85699}
 NAFEMS_HERTZ = {"p1": 3585.36, "b1": 6.21463}
 
 
 def cylinders_pressed(spacing, far=1.0, element="ctria3", load=10.0, young=20400.0, nu=0.29, plastic=False):
-    """Two cylinders as tools/decks makes them, under another load and of another material."""
+    """Two cylinders of tools/decks, with another load and material."""
     deck = cylinders.hertz(cylinders.disc_spaced(spacing, far, element=element), plastic)
     for i, line in enumerate(deck.lines):
         if line.startswith("FORCE"):
@@ -65,7 +65,7 @@ def races(radius, inner, load):
 
 
 def ball(part, rigid):
-    """A ball, R = 10, whose contact is this part of its radius (Hertz); its approach is that of this scene."""
+    """A ball, R = 10, with this ratio of contact radius to its radius (Hertz); its approach is that of this model."""
     a, stiff = 10 * part, 210000 / 0.91 / (1 if rigid else 2)
     return {"p1": 0.2 * stiff * a / math.pi, "b1": a, "q1": BALL[part, rigid]}
 
@@ -76,7 +76,7 @@ def in_plane_stress(deck):
 
 
 def lug_in_plane_stress(half):
-    """Persson's answer to the clearance that belongs to another half angle in plane strain (nu = 0.3)."""
+    """Persson's solution for the clearance that belongs to another half angle in plane strain (nu = 0.3)."""
     slack = 0.91 * quads.persson(half)[0]
     low, high = half, 120.0
     while high - low > 1e-9:
@@ -87,7 +87,7 @@ def lug_in_plane_stress(half):
 
 def scenes(pressed=(), yielding=(), far=1.3, blocks=(), on_block=(), lugs=(), layers=(), layered=(), shrunk=(), teeth=(), rolled=(), balls=(), pins=(),
            flanges=(), joints=(), sheet=False):
-    """(name, truth, what makes the deck) of each; `sheet`: in plane stress, whose closed forms have E for E/(1 - nu**2)."""
+    """(name, truth, function that makes the deck) of each; `sheet`: in plane stress, where closed forms use E for E/(1 - nu**2)."""
     def scene(name, truth, make, *arguments, **more):
         if sheet:
             return f"sheets, {name}", truth, lambda: in_plane_stress(make(*arguments, **more))

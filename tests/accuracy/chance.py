@@ -1,8 +1,8 @@
-"""Scenes drawn by chance, for the score of the accuracy statement: contact that no deck of the repository has.
+"""Random models for the score of the error estimates, with contacts that no deck of the repository has.
 
-A scene is a seed. It says how two bodies face each other (cylinders and balls, on flats, in grooves, in holes; rounded and sharp
-punches; wedges; layers; stacks of blocks; loads off the middle), of what they are made, whether they yield, and how they touch (CGAP pairs, lines, a rigid
-side); how fine its mesh is, and of which elements, is asked for apart. All lengths are parts of the half-width, about 1.
+A seed gives a model: the shapes of two bodies (cylinders and balls, on flats, in grooves, in holes; rounded and sharp
+punches; wedges; layers; stacks of blocks; eccentric loads), their materials, whether they yield, and their contact (CGAP pairs, lines, a rigid
+side). Mesh size and element type are given separately. All lengths are relative to the half-width, about 1.
 """
 import dataclasses
 import math
@@ -18,49 +18,49 @@ from scenes.patches import join, walk  # noqa: E402
 
 PLANE, RINGS = ("ctria3", "ctria6", "cquad4"), ("ctrax3", "ctrax6")
 FAMILIES = ("round",) * 4 + ("groove", "rounded punch", "sharp punch", "wedge", "layer", "tilted", "hole", "stack")
-#: Those whose largest pressure has no limit.
+#: Models whose largest pressure is singular.
 SHARP = ("sharp punch", "wedge")
 
 
 @dataclasses.dataclass
 class Scene:
-    """What is there, whatever its mesh."""
+    """The model, without its mesh."""
     family: str
     rings: bool
     young: tuple            # of the upper body and the lower
-    stress: float = 0.0     # yield stress; 0: elastic
-    hardening: float = 0.0  # of Young's modulus
+    stress: float = 0.0     # yield stress; 0 if elastic
+    hardening: float = 0.0  # relative to Young's modulus
     yielding: float = 0.0   # load over that of first yield
     nu: float = 0.3
     rigid: bool = False     # the lower body
-    lines: bool = False     # contact between lines, else CGAP pairs
+    lines: bool = False     # contact between lines, otherwise CGAP pairs
     exchanged: bool = False # the upper body's line is the master
-    whole: bool = False     # both sides of the middle
+    whole: bool = False     # both sides of the symmetry line
     sheet: bool = False
     radius: float = 10.0
-    flat: float = 0.5       # of a rounded punch; what a layer is loaded on
+    flat: float = 0.5       # of a rounded punch; loaded width of a layer
     other: float = 0.0      # curvature of the lower body
     load: float = 1.0
-    width: float = 1.0      # half of the contact, as found, and how often that
-    lasts: float = 1.6      # there are pairs
+    width: float = 1.0      # half-width of the contact, as computed
+    lasts: float = 1.6      # extent of the pairs relative to it
     wide: tuple = (10.0, 10.0)
     deep: tuple = (10.0, 10.0)
 
 
 @dataclasses.dataclass
 class Fineness:
-    """How a scene is meshed."""
+    """Mesh of a model."""
     pairs: float            # elements in half of the contact
-    growth: float           # of elements away from it
+    growth: float           # growth of elements away from it
     finer: float            # the other body
-    shift: float            # of the nodes along the surface, of an element
-    stretch: float          # first element in depth, over that along the surface
-    jitter: float           # of the nodes inside
+    shift: float            # random shift of the nodes along the surface, relative to an element
+    stretch: float          # depth of the first element over its length along the surface
+    jitter: float           # random shift of the nodes inside
     seed: int
 
 
 def draw(seed, rings, yielding):
-    """A scene: its figures by the seed alone."""
+    """Draw a model from the seed alone."""
     chance = random.Random(f"{seed} {rings} {yielding}")
     families = [f for f in FAMILIES if not (rings and f in ("tilted", "hole", "groove", "stack"))]
     family = chance.choice(families)
@@ -91,7 +91,7 @@ def draw(seed, rings, yielding):
 
 
 def draw_crowned(seed, rings):
-    """A crowned punch on a plate, by lines, and its coarse mesh: the slave line is finer than the master line."""
+    """A crowned punch on a plate, with lines, and its coarse mesh: the slave line is finer than the master line."""
     chance = random.Random(f"crowned {seed} {rings}")
     ratio = math.exp(chance.uniform(0.0, math.log(5.0)))
     scene = Scene("round", rings, (1000.0, 1000.0 * ratio) if chance.random() < 0.5 else (1000.0 * ratio, 1000.0), nu=chance.uniform(0.2, 0.4), lines=True)
@@ -115,7 +115,7 @@ def compliance(scene):
 
 
 def nominal_load(scene):
-    """That for a half-width of about 1: Hertz's, Ciavarella's; of half the scene in the plane."""
+    """Load that gives a half-width of about 1 (Hertz, Ciavarella), for half of the model in the plane."""
     curvature, stiff = 1.0 / scene.radius + scene.other, 1.0 / compliance(scene)
     if scene.rings:
         return 4.0 / 3.0 * stiff / scene.radius
@@ -124,24 +124,24 @@ def nominal_load(scene):
         return stiff * scene.flat ** 2 / (4.0 * scene.radius) * ((math.pi - 2 * angle) / (2 * scene.flat ** 2) - 1 / math.tan(angle))
     if scene.family == "sharp punch":
         return stiff / scene.radius
-    if scene.family == "stack":   # slender: more would bend it by what is not small
+    if scene.family == "stack":   # slender: a larger load would give large displacements
         return stiff / scene.radius / 250.0
     return math.pi / 8.0 * stiff * curvature
 
 
 def fineness(chance):
-    """A coarse mesh, as one would use it: 3 to 20 pairs in the zone."""
+    """A typical coarse mesh, with 3 to 20 pairs in the zone."""
     return Fineness(pairs=math.exp(chance.uniform(math.log(3.0), math.log(20.0))), growth=chance.uniform(1.12, 1.5), finer=chance.choice((1.0, chance.uniform(0.8, 2.0))),
                     shift=chance.random(), stretch=chance.uniform(0.6, 1.3), jitter=chance.choice((0.0, 0.0, 0.15)), seed=chance.randrange(10 ** 6))
 
 
 def known(level):
-    """Two meshes that tell what is true: the second tells how far the first is off."""
+    """Two fine meshes for the true values: the second gives the error of the first."""
     return Fineness((34.0, 17.0)[level], (1.14, 1.28)[level], 1.0, 0.37, 1.0, 0.0, 0)
 
 
 def places(step, core, end, growth, shift=0.0, most=math.inf):
-    """From 0 to the end: even steps in the core, the first one shifted, then growing ones, up to the longest."""
+    """From 0 to the end: equal steps in the core, the first one shifted, then growing ones, up to the longest."""
     count = max(2, math.ceil(core / step - shift))
     found = [0.0] + [step * (k + shift) for k in range(1, count + 1)]
     while found[-1] < end:
@@ -158,7 +158,7 @@ def with_halves(at):
 
 
 def body(scene, which, mesh, xs, element):
-    """Columns at the places xs under a profile, from the surface to a depth."""
+    """Columns at the points xs under a profile, from the surface to a depth."""
     chance = random.Random(mesh.seed + which)
     step = scene.width / mesh.pairs * (1.0 if which == 0 else 1.0 / mesh.finer)
     deep = scene.deep[which]
@@ -185,7 +185,7 @@ def body(scene, which, mesh, xs, element):
 
 
 def straighten(mesh, surface=()):
-    """Put middles of sides between their corners, but for those of the surface."""
+    """Put mid-side nodes between their corners, except those of the surface."""
     for nodes in mesh.element:
         for k, middle in enumerate(nodes[3:] if len(nodes) == 6 else ()):
             if mesh.point[middle] not in surface:
@@ -194,7 +194,7 @@ def straighten(mesh, surface=()):
 
 
 def profile(scene, which, x):
-    """How far the surface falls back at x."""
+    """Depth of the surface profile at x."""
     x = abs(x)
     if which == 1:
         return scene.other * x * x / 2
@@ -208,7 +208,7 @@ def profile(scene, which, x):
 
 
 def columns(scene, which, mesh):
-    """Places along the surface."""
+    """Points along the surface."""
     step = scene.width / mesh.pairs * (1.0 if which == 0 or not scene.lines else 1.0 / mesh.finer)
     end = scene.wide[which]
     if scene.family == "sharp punch":
@@ -234,7 +234,7 @@ def columns(scene, which, mesh):
 
 
 def make(scene, element, mesh):
-    """The deck of a scene. `element`: of both bodies, or a pair of them, of the upper body and the lower."""
+    """The deck of a model. `element`: type of both bodies, or a pair for the upper body and the lower."""
     if scene.family == "hole":
         return hole(scene, element, mesh)
     deck = Deck(scene.family.upper(), [f"{scene}", f"{mesh}"], rings=scene.rings, strain=not scene.sheet, from_geometry=not scene.lines)
@@ -242,7 +242,7 @@ def make(scene, element, mesh):
     xs = columns(scene, 0, mesh)
     upper = body(scene, 0, mesh, xs, elements[0])
     reach = scene.lasts * scene.width
-    if not scene.lines and not scene.rigid:   # node faces node as far as they may touch
+    if not scene.lines and not scene.rigid:   # opposite nodes coincide as far as there may be contact
         near = [x for x in xs if abs(x) <= (1.0 if scene.family == "sharp punch" else reach) + 1e-9]
         other = near if scene.family == "stack" else near + beyond(scene, mesh, near)
         if scene.whole and scene.family != "stack":
@@ -282,13 +282,13 @@ def make(scene, element, mesh):
 
 
 def beyond(scene, mesh, near):
-    """Places of the lower body beyond those that face the upper one."""
+    """Points of the lower body beyond those opposite the upper one."""
     step = near[-1] - near[-2]
     return [near[-1] + x for x in places(step * mesh.growth, step, scene.wide[1] - near[-1], mesh.growth)[1:]]
 
 
 def on_surface(scene, mesh, which, reach):
-    """Nodes of a surface within reach, corners of elements at both ends."""
+    """Nodes of a surface within SEARCH, with corners of elements at both ends."""
     up = 1 if which == 0 else -1
     corners = {n for nodes in mesh.element for n in nodes[:corners_of(nodes)]}
     if scene.family in ("sharp punch", "stack"):
@@ -303,7 +303,7 @@ def on_surface(scene, mesh, which, reach):
 
 
 def load(deck, scene, upper, top, one, free):
-    """Pressed by a platen; layers, stacks and tilted punches by a pressure."""
+    """Load by a platen; layers, stacks and tilted punches by a pressure."""
     if not scene.whole:
         deck.hold(1, [n for n, (x, _) in enumerate(upper.point) if x == 0.0], one)
     else:
@@ -328,7 +328,7 @@ def load(deck, scene, upper, top, one, free):
 
 
 def material(deck, number, scene):
-    """Both bodies yield, at stresses as their moduli are: not at all where the scene is elastic."""
+    """Yield stresses of both bodies, in proportion to their moduli; none if the model is elastic."""
     young = scene.young[number - 1]
     deck.material(number, float(f"{young:.5g}"), float(f"{scene.nu:.4f}"))
     if scene.stress > 0.0 and (scene.young[number - 1] == min(scene.young) or scene.young[0] == scene.young[1]):
@@ -336,7 +336,7 @@ def material(deck, number, scene):
 
 
 def hole(scene, element, mesh):
-    """A pin in a hole, of two materials."""
+    """A pin in a hole, with two materials."""
     around = max(12.0, mesh.pairs * 360.0 / scene.flat)
     deck = quads.pin_in_lug(scene.flat, around, max(1.0, mesh.finer), 8.0, element)
     at = [i for i, line in enumerate(deck.lines) if line.startswith("MAT1")]

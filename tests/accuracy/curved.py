@@ -1,5 +1,5 @@
-"""Curved contact on meshes as people draw them: press fits of whole circles whose divisions are unlike, cylinders and balls on blocks
-whose elements grow away from the contact by a power, their sides curved or straight."""
+"""Curved contact on typical meshes: press fits of whole circles with different divisions, cylinders and balls on blocks
+whose elements grow away from the contact by a power, with curved or straight edges."""
 import dataclasses
 import math
 import pathlib
@@ -12,24 +12,24 @@ from scenes.deck import Deck  # noqa: E402
 from scenes.patches import arc, even, join, patch, straight  # noqa: E402
 
 YOUNG, NU = 1.0e5, 0.3
-#: Of the cylinder and the ball.
+#: For the cylinder and the ball.
 RADIUS, WIDE, DEEP = 10.0, 4.0, 8.0
 
 
 def lame(pressure=100.0, inside=0.5, outside=3.0, middle=1.0, ratio=1.0, nu=NU, overlap=0.0):
-    """Contact pressure of a pin in a hole that is held outside, under a pressure in its bore; `ratio`: of the hole's modulus."""
+    """Contact pressure of a pin in a hole that is fixed outside, with a pressure in its bore; `ratio`: modulus of the hole over that of the pin."""
     young = YOUNG
     low = inside ** 2 / (middle ** 2 - inside ** 2)
     # radial displacement of each at the contact: a times the bore's pressure - b times the contact's; c times the contact's
     a = 2.0 * (1.0 - nu ** 2) * middle * low / young
     b = (1.0 + nu) * middle * low * ((1.0 - 2.0 * nu) * (middle / inside) ** 2 + 1.0) / young
-    grow = 1.0 / middle - middle / outside ** 2   # u = k (r - outside**2/r): none outside
+    grow = 1.0 / middle - middle / outside ** 2   # u = k (r - outside**2/r): zero outside
     c = (1.0 + nu) * (outside ** 2 - middle ** 2) / middle / ((1.0 / (1.0 - 2.0 * nu)) + (outside / middle) ** 2) / (young * ratio)
     return (a * pressure + overlap) / (b + c)
 
 
 def whole_ring(inside, outside, around, layers, element, straight_sides):
-    """A ring of elements all around, in two halves that share their ends, with the nodes of its inner and outer circle."""
+    """A ring of elements in two halves that share their ends, with the nodes of its inner and outer circle."""
     def half(begin):
         e = even(around // 2)
         ends = [tuple(r * f(math.radians(begin)) for f in (math.cos, math.sin)) for r in (inside, outside)]
@@ -45,7 +45,7 @@ def whole_ring(inside, outside, around, layers, element, straight_sides):
 
 
 def press_fit(element, hole, pin, layers=3, ratio=1.0, inside=0.5, exchanged=False, straight_sides=False, pressure=100.0, stress=0.0, hardening=0.0, sheet=False):
-    """A pin that a pressure in its bore presses into a hole held outside. `hole`, `pin`: elements around."""
+    """A pin pressed by a pressure in its bore into a hole that is fixed outside. `hole`, `pin`: elements around."""
     deck = Deck("PRESS FIT OF WHOLE CIRCLES", ["A pin in a hole, unlike divisions."], from_geometry=False, strain=not sheet)
     bodies = [whole_ring(1.0, 3.0, hole, layers, element, straight_sides), whole_ring(inside, 1.0, pin, layers, element, straight_sides)]
     first = [1, 100001]
@@ -60,22 +60,22 @@ def press_fit(element, hole, pin, layers=3, ratio=1.0, inside=0.5, exchanged=Fal
     deck.hold(1, [min(bore, key=lambda n: abs(inner.point[n][0]) - 1e-9 * inner.point[n][1])], first[1])
     deck.press(inner, bore + bore[:1], pressure, first[1])
     deck.segments(1, pin_circle + pin_circle[:1], first[1])
-    deck.segments(2, hole_circle[:1] + hole_circle[::-1], first[0])   # the body is outside of it
+    deck.segments(2, hole_circle[:1] + hole_circle[::-1], first[0])   # the body is outside
     deck.touches(1, *((2, 1) if exchanged else (1, 2)))
     return deck
 
 
 @dataclasses.dataclass
 class Cylinder:
-    """A cylinder, or a ball, on a block. Its places are a power of even ones."""
+    """A cylinder, or a ball, on a block. Node coordinates are a power of uniform ones."""
     element: str
-    across: int             # elements of the upper body's surface, of the whole
-    below: int              # of the block's
+    across: int             # number of elements of the upper body's surface
+    below: int              # the same for the block
     layers: int
-    power: float = 2.0      # of the places along the surface
-    deep: float = 2.2       # of those in depth
+    power: float = 2.0      # exponent of the coordinates along the surface
+    deep: float = 2.2       # exponent in depth
     load: float = 400.0
-    ratio: float = 1.0      # of the block's modulus
+    ratio: float = 1.0      # ratio to the block's modulus
     straight_sides: bool = False
     exchanged: bool = False
     stress: float = 0.0
@@ -146,12 +146,12 @@ class Cylinder:
         return deck
 
 
-#: What fine meshes of six-node sides on the curve converge to (112 across, 36 layers): approaches of the cylinder, by load and ratio of
+#: Limits of fine meshes with six-node edges on the curve (112 across, 36 layers): approaches of the cylinder, by load and ratio of
 #: moduli, and of the ball, by load.
 APPROACH = {(100.0, 1.0): -0.00566444, (400.0, 1.0): -0.0194535, (1000.0, 1.0): -0.0433596, (100.0, 4.0): -0.00374472,
             (400.0, 4.0): -0.0129793, (1000.0, 4.0): -0.0291418}
 BALLS = {10.0: -0.00123382, 40.0: -0.00310325, 150.0: -0.00748432}
-#: Beyond yield: scenes, with largest pressure, half-width, approach.
+#: Yielded: models, with largest pressure, half-width, approach.
 YIELDING_FITS = (({"stress": 80.0, "hardening": 0.02}, 38.8775), ({"stress": 60.0, "hardening": 0.1}, 45.5711),
                  ({"stress": 90.0, "hardening": 0.01, "ratio": 3.0, "inside": 0.6}, 57.235),
                  ({"stress": 60.0, "hardening": 0.03, "ratio": 0.5, "inside": 0.4}, 31.3178))
@@ -162,13 +162,13 @@ YIELDING = (({"load": 400.0, "stress": 350.0, "hardening": 0.02}, 721.8, 0.3280,
             ({"load": 100.0, "stress": 200.0, "hardening": 0.05}, 393.1, 0.1551, -0.00569685))
 YIELDING_BALLS = (({"load": 40.0, "stress": 250.0, "hardening": 0.05}, 505.4, 0.1831, -0.0031649),
                   ({"load": 150.0, "stress": 350.0, "hardening": 0.02}, 733.3, 0.2876, -0.0077448))
-#: What these leave open, of the largest pressure and of the half-width.
+#: Their own errors, for the largest pressure and the half-width.
 DOUBT = {"p": 1.0e-3, "b": 1.0e-2, "q": 3.0e-4}
 ELEMENTS = ("ctria3", "ctria6", "cquad4", "ctrax3", "ctrax6")
 
 
 def press_fits(seed, element, yielding):
-    """One by chance: (name, true figures, deck)."""
+    """A random one: (name, true values, deck)."""
     chance = random.Random(f"press fit {seed} {element} {yielding}")
     if yielding:
         more, true = chance.choice(YIELDING_FITS)
@@ -182,7 +182,7 @@ def press_fits(seed, element, yielding):
 
 
 def cylinders(seed, element, yielding):
-    """A cylinder, or ball, by chance."""
+    """A random cylinder or ball."""
     chance = random.Random(f"cylinder {seed} {element} {yielding}")
     rings = element.startswith("ctrax")
     if yielding:
@@ -202,7 +202,7 @@ def cylinders(seed, element, yielding):
 
 
 def draw(first, count):
-    """Press fits, and cylinders and balls on blocks, elastic and beyond yield, of each element: (name, true figures, deck, element)."""
+    """Press fits, and cylinders and balls on blocks, elastic and yielded, with each element type: (name, true values, deck, element)."""
     for seed in range(first, first + count):
         for element in ELEMENTS:
             for yielding in (False, True):

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Is the true error within what the listing says of it?
+"""Compare true errors with the estimates of the listing.
 
     tests/accuracy/score.py PROGRAM [SET...] [--every N] [-v]
 
-Runs the program on scenes with known answers (cases.py) and compares the errors of largest pressure (p), half-width (b) of each zone
-and approach (q) with the estimates in summary.csv. -v prints each figure: value, true error and estimate as parts of it, ratio.
-The score of each set, and exit status 1 where figures are left out, estimates cover too few of them, or, of the set `unseen`, are too
-seldom within a factor of 3 of the true error. Of a part of a set so much less will do as chance makes of so few figures, twice its
-standard deviation. Only half-widths may be left out, some of them: no end is found where a zone has too few pairs.
+Runs the program on models with known answers (cases.py) and compares the errors of largest pressure (p), half-width (b) of each zone
+and approach (q) with the estimates in summary.csv. -v prints each figure: value, relative true error and estimate, ratio.
+Prints the score of each set. Exit status 1 if figures are missing, if estimates cover too few of them, or if too few of the set `unseen`
+are within a factor of 3 of the true error. For a part of a set the limit is reduced by twice the standard
+deviation of so few figures. Only half-widths may be missing, some of them: a zone with few pairs has no end.
 """
 import argparse
 import contextlib
@@ -20,15 +20,15 @@ import tempfile
 
 import cases
 
-#: Least part of the figures that estimates must cover: of all, and of each kind.
+#: Smallest fraction of the figures that estimates must cover: all, and each quantity.
 COVERED, COVERED_OF_KIND = 0.92, 0.90
-#: Known answers of each set, and least part of them of each kind that the program gives with an estimate.
+#: Number of known answers of each set, and for each quantity the smallest fraction with an estimate.
 KNOWN = {"tuned": 265, "second": 259, "fresh": 269, "third": 321, "unseen": 331}
 GIVEN = {"p": 1.0, "b": 0.9, "q": 1.0, "all": 0.96}
-#: Least part of each kind within a factor of 3, in the set that gave no weight its value. Scenes whose meshes have a node where contact truly ends
-#: have errors of the half-width next to nothing, which no estimate is near.
+#: Smallest fraction of each quantity within a factor of 3, in the set without influence on the weights. If a mesh has a node at the true end of
+#: contact, the error of the half-width is nearly zero, and no estimate is close to it.
 NEAR = {"p": 0.50, "b": 0.38, "q": 0.70, "all": 0.52}
-#: Errors below this part of a figure are as good as none: an estimate need not be within a factor of 3 of them.
+#: Relative errors below this count as zero: their estimates need not be within a factor of 3.
 SMALL = 5.0e-3
 KINDS = {"p": "largest pressure", "b": "half-width", "q": "approach"}
 
@@ -75,7 +75,7 @@ def figures_of(path):
 
 
 def judge(program, which, every, aloud):
-    """Ratios of estimate to true error, and whether that is small, of each kind; how many there should be."""
+    """Ratios of estimate to true error, and whether the error is small, for each quantity; and the expected number of figures."""
     ratios, known = {kind: [] for kind in KINDS}, {kind: 0 for kind in KINDS}
     for name, truth, make in list(getattr(cases, which)())[::every]:
         figures = solve(program, make())
@@ -94,7 +94,7 @@ def judge(program, which, every, aloud):
 
 
 def too_little(parts, count, whole):
-    """Those of the parts, (what, measured, least), that are too small: in part of a set, by more than chance."""
+    """Scores (name, measured, least) that are too low; for a part of a set, by more than chance."""
     return [f"{what} {part:.1%}, which should be {least:.0%} or more" for what, part, least in parts
             if part < least - (0.0 if whole else 2 * math.sqrt(least * (1 - least) / count))]
 

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""Is the true error within what the listing says of it, in scenes drawn by chance (chance.py)?
+"""Compare true errors with the estimates of the listing, for random models (chance.py).
 
     tests/accuracy/score_by_chance.py PROGRAM FIRST COUNT [--meshes N] [--known FILE] [--figures FILE]
 
-Draws COUNT scenes from each of four bowls (plane or rings, elastic or beyond yield), those of the seeds FIRST, FIRST + 1, ... The true
-figures are those of two fine meshes of six-node elements; what these leave open counts for the program, and a figure that they do not know
-better than to 3 % of itself, or a third of its error, is left out. Each scene is solved on coarse meshes of each kind of element. Of largest pressures without
-limit, under wedges and at sharp edges, the program must say so. A table tells of each kind of element, elastic and beyond yield, how
-many errors are within what is said of them, how many within a factor of 3 of it, and the median of what is said over the true error;
-exit status 1 below 90 %. --known keeps the true figures in a file, for the next time; --figures writes each figure.
+Draws COUNT models from each of four groups (plane or axisymmetric, elastic or yielded), with the seeds FIRST, FIRST + 1, ... The true
+values are those of two fine meshes of six-node elements, within their difference; a value with an uncertainty of more than
+3 %, or a third of its error, is omitted. Each model is solved on coarse meshes of each element type. The program must call the largest pressures
+under wedges and at sharp edges singular. A table gives for each element type, elastic and yielded, the number of
+errors that the estimates cover, of those within a factor of 3, and the median of estimate over true error;
+exit status 1 below 90 %. --known keeps the true values in a file for later runs; --figures writes each figure.
 """
 import argparse
 import dataclasses
@@ -22,15 +22,15 @@ import sys
 import chance
 from score import Failed, run, tables
 
-#: Least part of the figures of a kind that estimates must cover.
+#: Smallest fraction of the figures of a group that estimates must cover.
 COVERED = 0.90
-#: Estimates are near that are within this factor of the true error.
+#: Estimates within this factor of the true error count as near.
 NEAR = 3.0
-#: A truth's own error, of the error that it judges.
+#: Largest error of a true value, relative to the error that it judges.
 DOUBT = 0.3
-#: A figure that two fine meshes do not know better than to this part of itself has no truth.
+#: A value with a larger relative difference between two fine meshes has no true value.
 VAGUE = 0.03
-#: True errors below this part of a figure do not count in the median of estimates over true errors.
+#: Smaller relative errors do not count in the median of estimates over true errors.
 TINY = 1.0e-4
 FIGURES = {"p": "largest pressure", "b": "half-width", "q": "approach"}
 
@@ -42,7 +42,7 @@ def solve(program, deck):
 
 
 def figures_of(summary, zones, listing):
-    """(value, estimate, what else is said) of the figures of the zone that bears most, and of the approaches."""
+    """(value, estimate, further remarks) of the figures of the zone with the largest force, and of the approaches."""
     zone = max(zones, key=lambda z: float(z["force"]))
     k = zone["zone"]
     said = next(line.split(f"zone {k}")[1].strip() for line in listing.splitlines() if f"mesh: largest pressure of zone {k}" in line)
@@ -54,7 +54,7 @@ def figures_of(summary, zones, listing):
 
 
 def find_truth(program, scene):
-    """Width and yield stress of a scene, from coarse meshes; its true figures, each (value, doubt)."""
+    """Width and yield stress of a model, from coarse meshes; its true values, each with its uncertainty."""
     element = "ctrax6" if scene.rings else "ctria6"
     pilot = chance.known(1)
     pilot.pairs = 10.0
@@ -71,7 +71,7 @@ def find_truth(program, scene):
     truth = {key: (value, doubt) for key, (value, doubt) in truth.items() if doubt <= VAGUE * abs(value)}
     if scene.family in chance.SHARP:
         truth["p"] = None
-    elif fine["p"][1] is None:   # not resolved, even by the finest
+    elif fine["p"][1] is None:   # too coarse, even the finest mesh
         truth.pop("p", None)
     if scene.family in ("sharp punch", "stack"):   # no half-width to find
         truth.pop("b", None)
@@ -79,7 +79,7 @@ def find_truth(program, scene):
 
 
 def scenes(program, first, count, known):
-    """Scenes with their truth, each with its number in the bowl."""
+    """Models with their true values, each with its number in the group."""
     for seed in range(first, first + count):
         for rings in (False, True):
             for yielding in (False, True):
@@ -98,7 +98,7 @@ def scenes(program, first, count, known):
 
 
 def judge(program, name, scene, truth, meshes):
-    """Each figure of a scene on its coarse meshes."""
+    """Each figure of a model on its coarse meshes."""
     for element in chance.RINGS if scene.rings else chance.PLANE:
         for turn in range(meshes):
             mesh = chance.fineness(random.Random(f"{name} {element} {turn}"))
@@ -119,7 +119,7 @@ def judge(program, name, scene, truth, meshes):
 
 
 def table(rows):
-    """Cover and caution of each kind of element, state and figure; faults."""
+    """Coverage and median ratio for each element type, state and figure; faults."""
     faults = []
     for figure, word in FIGURES.items():
         for element in chance.PLANE + chance.RINGS:

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Is the true error within what the listing says of it, in curved contact on uneven meshes (curved.py)?
+"""Compare true errors with the estimates of the listing, for curved contact on uneven meshes (curved.py).
 
     tests/accuracy/score_curved.py PROGRAM FIRST COUNT [-v]
 
-Press fits of whole circles, elastic (Lame) and beyond yield, and cylinders and balls on blocks, those of the seeds FIRST, FIRST + 1, ...
-The weights in src/accuracy were chosen on the seeds 0 to 13. A table tells of each kind of element, elastic and beyond yield, how many
-errors are within what is said of them; exit status 1 below 90 %, but for what chance makes of so few figures, twice its standard
-deviation. Two minutes for ten seeds; run by hand. -v prints each figure.
+Press fits of whole circles, elastic (Lame) and yielded, and cylinders and balls on blocks, with the seeds FIRST, FIRST + 1, ...
+The weights in src/accuracy were chosen on the seeds 0 to 13. A table gives for each element type, elastic and yielded, the number of
+errors that the estimates cover; exit status 1 below 90 %, reduced by twice the standard deviation of so few
+figures. Two minutes for ten seeds; run by hand. -v prints each figure.
 """
 import argparse
 import math
@@ -18,7 +18,7 @@ from score_by_chance import COVERED, Failed, figures_of, solve
 
 
 def judge(program, first, count, aloud):
-    """(scene, element, state, figure) -> list of true error and estimate, as parts of the value; how many have no estimate."""
+    """(model, element, state, figure) -> list of relative true error and estimate; number without an estimate."""
     found = {}
     for name, truth, make, element in curved.draw(first, count):
         try:

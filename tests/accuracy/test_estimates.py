@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Is anything said of errors that was not said before?
+"""Check that error estimates have not changed.
 
     tests/accuracy/test_estimates.py PROGRAM [--accept]
 
-A coarse scene of each kind of element, elastic and beyond yield, and a bent column of tall ones, whose pressure is largest at its edge:
-largest pressure, half-width and approach with their estimates, within 0.1 % of estimates.csv. What they are worth is for score.py and score_by_chance.py to say, of many scenes; there a weight that
-counts for a single kind of element, or beside others, hardly shows. --accept writes what is said today.
-For crowned punches on plates with lines of unlike fineness, the stated error of the largest pressure covers the true one and is at most three
+A coarse model of each element type, elastic and yielded, and a bent column of tall elements, whose pressure is largest at its edge:
+largest pressure, half-width and approach with their estimates, within 0.1 % of estimates.csv. score.py and score_by_chance.py judge the estimates for many models; a weight that
+matters for a single element type, or beside others, hardly shows there. --accept writes the present values.
+For crowned punches on plates with lines of different mesh size, the estimate for the largest pressure covers the true error and is at most three
 times as large.
 """
 import argparse
@@ -23,7 +23,7 @@ TOLERANCE = 1e-3
 
 
 def scene(rings, yields):
-    """A round body on a flat one, three times as stiff."""
+    """A cylinder or ball on a flat body, three times as stiff."""
     drawn = chance.Scene("round", rings, (1000.0, 3000.0), wide=(6.0, 6.0), deep=(8.0, 8.0))
     drawn.load = chance.nominal_load(drawn) * (2.0 if yields else 1.0)
     if yields:
@@ -32,14 +32,14 @@ def scene(rings, yields):
 
 
 def column():
-    """A block on another, pressed more at one corner."""
+    """A block on another, with more pressure at one corner."""
     drawn = chance.Scene("stack", False, (1000.0, 3000.0), whole=True, wide=(1.0, 1.0), deep=(6.0, 6.0))
     drawn.load = chance.nominal_load(drawn)
     return drawn
 
 
 def crowned():
-    """(what, deck, largest pressure) of crowned punches on plates. The pressures are those of six-node elements, 34 across half of the contact."""
+    """(name, deck, largest pressure) of crowned punches on plates. The pressures are those of six-node elements, 34 across half of the contact."""
     drawn, mesh = chance.draw_crowned(5, False)
     yield "slave line 2.7 times finer, peak 9 % too high", chance.make(drawn, ("ctria3", "cquad4"), mesh), 5.5696
     drawn, mesh = chance.draw_crowned(16, False)

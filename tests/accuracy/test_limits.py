@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Largest pressures that have no limit are said to have none, by every kind of element and however the bodies touch; those of smooth
+"""Singular largest pressures are called singular with every element type and every kind of contact; those of smooth
 contact never are, on any mesh.
 
     test_limits.py PROGRAM
@@ -19,19 +19,19 @@ from score_by_chance import figures_of, solve
 PROGRAM = sys.argv.pop(1)
 UNBOUNDED, NOT_RESOLVED = "singular: diverges with mesh refinement", "mesh too coarse: too few pairs in contact where it is largest"
 GIVEN = r"^\d\.\dE[-+]\d\d +[\d.]+ %$"
-#: How bodies touch.
+#: Kinds of contact.
 TOUCH = {"pairs": {}, "rigid": {"rigid": True}, "lines": {"lines": True}, "exchanged": {"lines": True, "exchanged": True}}
 
 
 def said(family, element, pairs, touch, **more):
-    """What the listing says of the largest pressure of all."""
+    """Text of the listing about the largest pressure."""
     scene = chance.Scene(family, element in chance.RINGS, (1000.0, 1500.0), **TOUCH[touch], **more)
     scene.load = chance.nominal_load(scene)
     mesh = chance.Fineness(pairs, 1.3, 0.8 if touch == "exchanged" else 1.4, 0.4, 1.0, 0.0, 1)   # the slave is the coarser one
     summary, zones, listing = solve(PROGRAM, chance.make(scene, element, mesh))
     largest = max(zones, key=lambda zone: float(zone["max_pressure"]))
     words = figures_of(summary, [largest], listing)["p"][2]
-    # The same is said beside the figure, in the summary of the listing and in the tables.
+    # The value, the summary of the listing and the tables have the same text.
     word = words.split(":")[0] if ":" in words else "bounded"
     beside = next(line for line in listing.splitlines() if line.startswith("  largest pressure "))
     if not (word == largest["max_pressure_is"] == summary["max_pressure_is"] and beside.endswith(words) == (word != "bounded")):
@@ -41,7 +41,7 @@ def said(family, element, pairs, touch, **more):
 
 class Limits(unittest.TestCase):
     def each(self, check, touches=tuple(TOUCH), **more):
-        """Check what is said of each kind of element, half of the scene and, in the plane, all of it."""
+        """Check the text for each element type, for half of the model and, in the plane, for all of it."""
         for element, touch in itertools.product(chance.PLANE + chance.RINGS, touches):
             for pairs, whole in ((3.4, False), (7.0, element in chance.PLANE and more["family"] != "sharp punch")):
                 with self.subTest(element=element, touch=touch, pairs=pairs, **more):
@@ -58,13 +58,13 @@ class Limits(unittest.TestCase):
             self.each(self.assertNotEqual, family=family, lasts=2.2)
 
     def test_flush_ends(self):
-        """Two blocks of one width end together: pressures are finite there."""
+        """Two blocks of equal width end together: pressures are finite there."""
         for element, touch in itertools.product(chance.PLANE, ("pairs", "lines", "exchanged")):
             with self.subTest(element=element, touch=touch):
                 self.assertRegex(said("stack", element, 5.0, touch, whole=True, wide=(1.0, 1.0), deep=(2.0, 2.0)), GIVEN)
 
     def test_held_base(self):
-        """A base of elements that are held all over, cut off at the line of symmetry, has no tip there."""
+        """A base of elements whose nodes are all fixed, cut off at the symmetry line, has no corner there."""
         for element in chance.PLANE:
             with self.subTest(element=element):
                 self.assertRegex(figures_of(*solve(PROGRAM, quads.layer_lines(11, element)))["p"][2], GIVEN)
@@ -77,7 +77,7 @@ class Limits(unittest.TestCase):
                 self.assertRegex(run.stdout, rf"^{path.stem}  valid  p_max +\d\.\d{{5}}E[-+]\d\d{words}  approach +-\d\.\d{{5}}E[-+]\d\d\n$")
 
     def test_whole_circles(self):
-        """A zone that goes all around has no end, and of its even pressure (Lame) the error is told."""
+        """A closed zone has no end, and its even pressure (Lame) has an error estimate."""
         for element in chance.PLANE:
             for hole, pin in ((60, 40), (40, 8), (60, 12), (30, 24)):
                 with self.subTest(element=element, hole=hole, pin=pin):
@@ -86,7 +86,7 @@ class Limits(unittest.TestCase):
                     self.assertLess(abs(pressure - curved.lame()), estimate)
 
     def test_chords(self):
-        """Middle nodes on the chords of a cylinder make the gap wave: its pressure and approach are off by several times what they are on the arc."""
+        """Mid-side nodes on the chords of a cylinder make the gap oscillate: errors of pressure and approach are several times those on the arc."""
         for straight in (False, True):
             scene = curved.Cylinder("ctria6", 24, 30, 10, straight_sides=straight)
             figures = figures_of(*solve(PROGRAM, scene.deck()))

@@ -1,4 +1,4 @@
-"""PARAM ACCURACY: what it chooses, what the answers are worth, and the words of it."""
+"""PARAM ACCURACY: its choices, the accuracy reached, and its messages."""
 import csv
 import os
 import pathlib
@@ -19,7 +19,7 @@ class Wanted(unittest.TestCase):
         return self.run_text((INPUT / f"{name}.dat").read_text(), *parameters, **more)
 
     def run_text(self, text, *parameters, left_out="none"):
-        """The run, the listing and the contact pressures of a deck with further PARAMs, one left out."""
+        """The run, the listing and the contact pressures of a deck with further PARAMs and one removed."""
         names = [parameter.split(",")[0] for parameter in parameters] + [left_out]
         text = "".join(line for line in text.splitlines(True) if not re.match(rf"PARAM +({'|'.join(names)}) ", line))
         text = text.replace("BEGIN BULK\n", "BEGIN BULK\n" + "".join(f"PARAM,{parameter}\n" for parameter in parameters), 1)
@@ -37,7 +37,7 @@ class Wanted(unittest.TestCase):
         return max(abs(a - b) for a, b in zip(some, others, strict=True)) / max(others)
 
     def test_twelve_modes_have_an_error(self):
-        """Of 14 bodies that rise and turn the upper six, whose motions are largest; the same by both contact rules."""
+        """The upper six of 14 bodies that rise and rotate, which have the largest modes; equal for both contact solvers."""
         found = {}
         for rule in ("CONRY", "JOINED"):
             run, listing, _ = self.run_text(many.stack(15, 6, 4).text(), f"RULE,{rule}")

@@ -1,4 +1,4 @@
-"""The manual page: roff without a warning, its files are those of a run, its examples run."""
+"""The manual page: no roff warnings, the files of a run, and working examples."""
 import os
 import pathlib
 import re
@@ -13,7 +13,7 @@ PAGE = subprocess.run([PROGRAM, "--man"], capture_output=True, check=True).stdou
 
 
 def section(name):
-    """Lines of a section, as they are typed."""
+    """Lines of a section, as typed."""
     text = re.search(rf"^\.SH {name}\n(.*?)(?=^\.SH |\Z)", PAGE, re.MULTILINE | re.DOTALL)[1]
     return text.replace(r"\-", "-").replace(r"\&", "").splitlines()
 
@@ -28,13 +28,13 @@ class Page(unittest.TestCase):
     def test_groff(self):
         shown, said, status = self.quiet("groff", "-man", "-ww", "-Tutf8")
         self.assertEqual(("", 0), (said, status))
-        self.assertIn("\nEXIT STATUS\n", re.sub(".\b", "", shown))   # bold letters are struck twice
+        self.assertIn("\nEXIT STATUS\n", re.sub(".\b", "", shown))   # bold letters are printed twice
 
     def test_mandoc(self):
         self.assertEqual(("", "", 0), self.quiet("mandoc", "-T", "lint", "-W", "style"))
 
     def test_a_fault_would_be_seen(self):
-        """What judges the page sees a font that is never closed and a request that there is none of."""
+        """The checker detects a font that is never closed and an unknown request."""
         if not shutil.which("groff"):
             self.skipTest("no groff")
         run = subprocess.run(["groff", "-man", "-ww", "-Tutf8"], input=PAGE.encode() + b".XYZ\n", capture_output=True)
@@ -53,16 +53,16 @@ class Page(unittest.TestCase):
         self.assertEqual(f"epcont {version}\n", said)
 
     def test_lines(self):
-        """No blank line, which roff would take for a paragraph, and no blank at an end."""
+        """No blank line, which roff would take for a paragraph, and no blank at the end of a line."""
         for line in PAGE.splitlines():
             self.assertTrue(line and line == line.rstrip(), line)
 
     def test_files(self):
-        """The files of a run with all that can be asked for are those of FILES, and the columns of its tables those told there."""
+        """FILES lists the files of a run with all outputs, and the columns of its tables."""
         with tempfile.TemporaryDirectory() as place:
             subprocess.run([PROGRAM, DECK, "-o", place, "--tables", "all", "--vtk", "--quiet"], check=True)
             written = {path.name.replace("hertz44", "", 1): path.read_bytes() for path in pathlib.Path(place).iterdir()}
-        with tempfile.TemporaryDirectory() as place:   # and those that several load cases have beside them
+        with tempfile.TemporaryDirectory() as place:   # with those that only several load cases have
             deck = pathlib.Path(place, "hertz44.dat")
             text = pathlib.Path(DECK).read_text(encoding="ascii")
             deck.write_text("SUBCASE 1\nLOAD = 1\nSUBCASE 2\nLOAD = 1\n" + text[text.index("BEGIN BULK"):], encoding="ascii")
@@ -95,7 +95,7 @@ class Page(unittest.TestCase):
 
 class Options(unittest.TestCase):
     def test_the_parser_knows_no_other_option(self):
-        """A name that the table of options has not can never be given; one that nothing asks for does nothing."""
+        """A name that is not in the table of options cannot be given; one that is not used has no effect."""
         source = "".join(file.read_text() for file in (ROOT / "src" / "app").glob("*.f90"))
         asked = set(re.findall(r"(?:case \(|%asks\()'(-[^']+)'\)", source))
         listed = subprocess.run([PROGRAM, "--help"], capture_output=True, check=True).stdout.decode().split("exit status")[0]
@@ -104,4 +104,4 @@ class Options(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(verbosity=2)   # tells why a test is skipped
+    unittest.main(verbosity=2)   # shows why a test is skipped

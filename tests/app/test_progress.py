@@ -1,4 +1,4 @@
-"""Progress and timing: who sees them, that they go, and that nothing of them reaches the results."""
+"""Progress and timing: who sees them, that they disappear, and that they do not affect results."""
 import os
 import pathlib
 import pty
@@ -28,7 +28,7 @@ class Case(unittest.TestCase):
         return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, cwd=self.place)
 
     def on_terminal(self, *arguments, columns=None, both=False):
-        """Status, standard output and all that a terminal behind standard error (or behind both) gets."""
+        """Status, standard output and everything that a terminal on standard error (or on both) receives."""
         master, slave = pty.openpty()
         if columns:
             import fcntl
@@ -55,7 +55,7 @@ class Case(unittest.TestCase):
 
     @staticmethod
     def screen(seen):
-        """What a terminal shows at last: a carriage return goes back to the first column, what follows replaces what is there."""
+        """Final content of a terminal: a carriage return goes back to the first column, and later text replaces earlier text."""
         rows = []
         for line in seen.split("\n"):
             row = ""
@@ -92,7 +92,7 @@ class Progress(Case):
             self.assertTrue(line.endswith(f", yielded {row[4]}, in contact {row[3]}"), line)
 
     def test_elastic_run(self):
-        """The operations of the solve, then what it has found."""
+        """The operations of the solve, then its results."""
         lines = self.run_it(ELASTIC, "--progress").stderr.splitlines()
         self.assertEqual(2, len(lines))
         self.assertRegex(lines[0], rf"^hertz44_elastic: {TIME}, solving: \S+ operations$")
@@ -110,7 +110,7 @@ class Progress(Case):
         self.assertRegex(output, r"^hertz44  valid  p_max .*\n$")
 
     def test_width(self):
-        """Parts that have no room are left out, never cut; a line that has none at all is."""
+        """Parts that do not fit are omitted, never cut; a line without any space is omitted."""
         wide = self.on_terminal(YIELDING, "--progress", columns=200)[2].split("\r")
         self.assertRegex(wide[3].rstrip(), rf"^hertz44: {SOLVE}$")
         for columns in (20, 40, 60, 81):
@@ -124,7 +124,7 @@ class Progress(Case):
         self.assertTrue(all(len(part) <= 9 for part in self.on_terminal(YIELDING, "--progress", columns=10)[2].split("\r")))
 
     def test_nothing_is_mixed(self):
-        """Output, messages and progress on one terminal: what stays is what there is without progress."""
+        """Output, messages and progress on one terminal: the remaining text is that without progress."""
         decks = [YIELDING, REJECTED, ELASTIC, ROOT / "input" / "faults" / "pulled_apart.dat"]
         plain, told = (self.on_terminal(*decks, *options, both=True) for options in ([], ["--progress"]))
         self.assertEqual(plain[0], told[0])
@@ -135,7 +135,7 @@ class Progress(Case):
         self.assertEqual(self.run_it(YIELDING).stdout, self.run_it(YIELDING, "--progress", "--timing").stdout)
 
     def test_long_run(self):
-        """On a terminal a run of more than a second tells of itself, unless it is to be quiet; elsewhere it does not."""
+        """On a terminal a run of more than a second shows progress, except with --quiet; elsewhere it does not."""
         deck, text = self.place / "long.dat", (ROOT / "input" / "tube" / "tube16.dat").read_text()
         for steps in (1000, 1800, 3200, 5600, 10000):
             deck.write_text(text.replace("BEGIN BULK\n", f"BEGIN BULK\nPARAM,NLOAD,{steps}\n"))
@@ -156,7 +156,7 @@ class Progress(Case):
 
 class Timing(Case):
     def table(self, text, stem):
-        """Rows of a timing table by their names; it must be whole."""
+        """Rows of a timing table by their names; it must be complete."""
         lines = text.splitlines()
         self.assertTrue(all(line.startswith(f"{stem}: ") for line in lines), text)
         rows = [line[len(stem) + 2:].split() for line in lines]
@@ -177,7 +177,7 @@ class Timing(Case):
         self.assertGreater(times["all"][0], 0.0)
 
     def test_many_decks(self):
-        """Each has a table of its own, the rejected one too: it was read, and nothing was solved."""
+        """Each deck has its own table, also the rejected one: it was read, but nothing was solved."""
         run = self.run_it(YIELDING, REJECTED, "--timing")
         lines = run.stderr.splitlines(keepends=True)
         self.table("".join(line for line in lines if line.startswith("hertz44: ")), "hertz44")
@@ -185,7 +185,7 @@ class Timing(Case):
         self.assertEqual([0.0, 0.0], times["factor"])
 
     def test_work_shows_where_it_is(self):
-        """A large mesh: most of the time is in what grows with it, and all of it within the run."""
+        """A large mesh: most of the time is in the parts that grow with it, and all of it within the run."""
         deck = self.place / "large.dat"
         subprocess.run([ROOT / "tools" / "decks", "hertz", "6000", "--plastic", "-o", deck], check=True)
         times = self.table(self.run_it(deck, "--timing").stderr, "large")

@@ -1,4 +1,4 @@
-"""What the tests of tools/batch and tools/sweep share: places, and programs that misbehave."""
+"""Shared by the tests of tools/batch and tools/sweep: folders, and programs that misbehave."""
 import csv
 import os
 import pathlib
@@ -18,7 +18,7 @@ PROGRAM = str(pathlib.Path(os.environ["EPCONT_PROGRAM"]).resolve())
 SMALL = ROOT / "input" / "hertz" / "hertz44_elastic.dat"
 REJECTED = ROOT / "input" / "faults" / "no_suport.dat"
 
-# Misbehaves as the names of the decks say; else it is the program itself.
+# Misbehaves as the names of the decks tell it; otherwise it runs the program.
 FAKE = """#!/bin/sh
 [ "$1" = --version ] && exec "{program}" --version
 out=; before=; for word; do [ "$before" = -o ] && out=$word; before=$word; done
@@ -67,7 +67,7 @@ class Case(unittest.TestCase):
         return [sys.executable, "-B", str(ROOT / "tools" / tool), *map(str, arguments), *program]
 
     def run_it(self, status, *arguments, tool="batch", env=None):
-        """The tool in a copy of this process, ten times as impatient with Slurm and with what does not end."""
+        """Run the tool in a copy of this process, with ten times shorter waits for Slurm and for runs that hang."""
         def start():
             slurm.SHORTEST, running.GRACE = slurm.SHORTEST / 10, running.GRACE / 10
             runpy.run_path(words[2], run_name="__main__")
@@ -85,21 +85,21 @@ class Case(unittest.TestCase):
         return {row["deck"]: row["status"] for row in self.table(directory)}
 
     def calls(self):
-        """How often the fake program was called, by deck; forgets."""
+        """Number of calls of the fake program, by deck; it is reset."""
         path = self.place / "calls"
         found = path.read_text().split("\n")[:-1] if path.exists() else []
         path.write_text("")
         return sorted(pathlib.Path(name).name for name in found)
 
     def nothing_runs(self):
-        """The processes that the fake program noted have ended, with their children. A killed process may need a moment on a busy machine."""
+        """Check that the processes noted by the fake program have ended, with their children. A killed process may need a moment on a busy machine."""
         limit = time.monotonic() + 5
         while (left := self.running()) and time.monotonic() < limit:
             time.sleep(0.05)
         self.assertEqual([], left)
 
     def running(self):
-        """Process ids of the noted groups, without zombies, which wait for their parent only."""
+        """Process ids of the noted groups, without zombies, which only wait for their parent."""
         groups, left = (self.place / "pids").read_text().split(), []
         for path in pathlib.Path("/proc").glob("[0-9]*/stat"):
             try:

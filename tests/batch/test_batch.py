@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""tools/batch on this machine: the table, places, resuming, and programs that crash, hang or write half."""
+"""tools/batch on this machine: the table, places, resuming, and programs that crash, hang or write half a file."""
 import collections
 import os
 import pathlib
@@ -10,14 +10,14 @@ import sys
 import time
 import unittest
 
-from common import PROGRAM, ROOT, SMALL, Case  # and where the modules of tools are
+from common import PROGRAM, ROOT, SMALL, Case  # and the modules of tools
 from batching.outcome import first_fault
 from batching.slurm import Watch
 
 
 class Whole(Case):
     def test_warnings(self):
-        """Counted, the first of them told, and in the closing line."""
+        """Warnings are counted, the first is shown, and the closing line has the total."""
         blseg = "BLSEG,7,1,2\n"
         text = SMALL.read_text().replace("ENDDATA", blseg + "ENDDATA")
         self.deck("a.dat")
@@ -30,7 +30,7 @@ class Whole(Case):
         self.assertIn("2 valid (1 of them with warnings)\n", run.stdout)
 
     def test_no_formulas(self):
-        """Neither in names nor in values that a table of decks brings along; numbers are numbers."""
+        """Also in names and values from a table of decks; numbers stay numbers."""
         self.decks("=1+1.dat", "b.dat")
         (self.place / "list.csv").write_text("deck,+a\n=1+1.dat,@SUM(1)\nb.dat,-1.5\n")
         self.run_it(0, "--list", "list.csv", "-o", "out")
@@ -52,7 +52,7 @@ class Whole(Case):
         self.assertIn("\n  missing.dat: refused: no such file", run.stdout)
 
     def test_load_cases(self):
-        """A row a case; a deck without any has one, without a number."""
+        """One row per case; a deck without cases has one row, without a number."""
         cards = SMALL.read_text().split("BEGIN BULK")[1]
         (self.place / "cases.dat").write_text(f"SUBCASE 7\nLOAD = 1\nSUBCASE 3\nLOAD = 99\nBEGIN BULK\nLOAD,99,-1.0,1.0,1{cards}")
         self.decks("plain.dat")
@@ -66,7 +66,7 @@ class Whole(Case):
                 self.assertIn("cases.dat SUBCASE 3: no equilibrium: the load moves the body of GRID 1", run.stdout)
 
     def test_titles_and_warnings_of_load_cases(self):
-        """SUBTITLE and LABEL, those above the first SUBCASE for all; a warning of a case arrives in its row, though the deck has only notes."""
+        """SUBTITLE and LABEL, those above the first SUBCASE for all; a warning of a case is in its row, even if the deck has only notes."""
         cards = SMALL.read_text().split("BEGIN BULK")[1]
         (self.place / "cases.dat").write_text("LABEL = of all\nSUBCASE 7\nSUBTITLE = first, of two\nLOAD = 1\nSUBCASE 3\nlabel=heavy\nLOAD = 99\nBEGIN BULK\n"
                                               f"LOAD,99,4000.0,1.0,1\nFORCE,77,41,,1.0,0.0,1.0{cards}")
@@ -77,7 +77,7 @@ class Whole(Case):
             self.assertEqual([row["first_warning"].partition(":")[0] for row in rows], ["", "warning"])
 
     def test_half_width_and_approach(self):
-        """The zone with the largest pressure; the approach of whatever node in one column; both in one table too."""
+        """The zone with the largest pressure; all approaches in one column; also with one table."""
         deck = self.deck("roller.dat", ROOT / "input" / "hertz" / "hertz_ctria6.dat")
         renamed = re.sub(r"(?m)^(SUPORT +|RBE2 +\d+ +|FORCE +\d+ +)41 ", r"\g<1>43 ", SMALL.read_text()).replace("      43      44", "      41      44")
         (self.place / "other.dat").write_text(renamed)
@@ -121,7 +121,7 @@ class Whole(Case):
         deck = self.deck("a.dat", ROOT / "input" / "pin_in_hole" / "pin_in_hole.dat")
         self.run_it(0, deck, "-o", "out")
         memory = self.table()[0]["memory_MB"]
-        self.assertTrue(memory == "" or 15 < float(memory) < 5000, memory)   # unknown below what Python itself takes
+        self.assertTrue(memory == "" or 15 < float(memory) < 5000, memory)   # unknown below Python's own memory
 
     def test_memory_limit_is_passed_on(self):
         self.deck("a.dat", ROOT / "input" / "pin_in_hole" / "pin_in_hole.dat")
@@ -157,7 +157,7 @@ class Places(Case):
         self.assertFalse((self.place / "out").exists())
 
     def test_names_that_mislead(self):
-        """No cell that a spreadsheet takes for a formula; no line of the screen that is not one."""
+        """No cell is taken for a formula by a spreadsheet, and no name breaks a line of the screen."""
         names = ["=1+1.dat", "+a.dat", "@b.dat", "rejected\n  c.dat: valid"]
         self.decks(*names)
         run = self.run_it(1, *names, "-o", "out")
@@ -242,7 +242,7 @@ class Lists(Case):
             self.assertIn("start the batch again", self.run_it(3, "--collect", "out").stderr)
 
     def test_bytes_of_another_encoding(self):
-        """They are handed on as they are."""
+        """Arguments are passed on unchanged."""
         self.decks("a.dat")
         (self.place / "list.csv").write_bytes(b"deck,note\na.dat,Gr\xf6\xdfe\n")
         self.run_it(0, "--list", "list.csv", "-o", "out")
@@ -251,7 +251,7 @@ class Lists(Case):
 
 class Misbehaving(Case):
     def test_a_full_disk(self):
-        """It is said, with its status; the table is whole."""
+        """The run is reported with its status; the table is complete."""
         self.decks(*(f"d{k}.dat" for k in range(12)))
         small = self.place / "small"
         small.mkdir()
@@ -309,7 +309,7 @@ class Misbehaving(Case):
             self.assertEqual([], [name for name in names if (self.place / "out" / (name[:-4] + suffix)).read_bytes() != wanted])
 
     def test_one_table(self):
-        """All figures of the summaries as columns, of valid and other answers; files beside it are listings alone, the same as without."""
+        """All values of the summaries are columns, for valid and other answers; the only other files are listings, the same as without the option."""
         names = [f"d{k:02d}.dat" for k in range(20)]
         self.decks(*names, "z_rejected.dat")
         apart = self.deck("apart.dat", ROOT / "input" / "faults" / "pulled_apart.dat")
@@ -335,7 +335,7 @@ class Misbehaving(Case):
             self.assertEqual(["a.dat", "b.dat"], self.calls())
 
     def test_a_deck_that_changes_while_others_run(self):
-        """What it holds is noted as it was run."""
+        """The digest recorded is that of the file as it was run."""
         from batching.decks import Deck, fingerprint, inputs_of, look_at
         deck = Deck(str(self.deck("a.dat")))
         look_at(deck)
@@ -347,7 +347,7 @@ class Misbehaving(Case):
         (self.place / "b.dat").write_text("INCLUDE 'a.dat'\n")
         including = Deck(str(self.place / "b.dat"))
         look_at(including)
-        self.assertEqual("", including.digest)   # what it includes may change unseen
+        self.assertEqual("", including.digest)   # a change of an included file may go unnoticed
 
     def test_warnings_are_no_faults(self):
         said = "a.dat:3:9-16: warning: a remark\n  GRID 1\n  ^^^^\na.dat:5:1-4: unknown card\n  GRIT 1\na.dat:9: later\n"
@@ -385,7 +385,7 @@ class Resumed(Case):
         path = self.place / "a.dat"
         times = path.stat()
         path.write_bytes(path.read_bytes().replace(b"20400.", b"20500."))
-        os.utime(path, ns=(times.st_atime_ns, times.st_mtime_ns))   # a copy may be older than the listing, and other
+        os.utime(path, ns=(times.st_atime_ns, times.st_mtime_ns))   # a copy may be older than the listing, and differ
         self.assertEqual(["a.dat", "c_rejected.dat", "d_segfault.dat"], self.again(1))
 
     def test_a_touched_deck_does_not(self):
@@ -431,7 +431,7 @@ class Resumed(Case):
     def test_a_journal_that_was_cut_off(self):
         kept, here = (self.place / "out" / ".batch" / f"{name}.journal" for name in ("kept", "here"))
         text = here.read_bytes()
-        here.write_bytes(text[:text.rindex(b'"row"') + 30])   # the end of the last deck, in its middle
+        here.write_bytes(text[:text.rindex(b'"row"') + 30])   # the end record of the last deck, in its middle
         self.assertEqual(3, len(self.again(1)))
         self.assertEqual(2, len(kept.read_text().splitlines()))
         self.assertEqual(["c_rejected.dat", "d_segfault.dat"], self.again(1))
@@ -469,7 +469,7 @@ class StoppedBatch(Case):
                 (self.place / "calm").unlink()
 
     def test_sigkill_leaves_a_whole_table_and_what_ended(self):
-        """All but the deck that hangs have ended; the batch is killed at once, its children are not."""
+        """All decks except the hanging one have ended; the batch is killed immediately, its children are not."""
         process = self.begin("-j", "4")
         until = time.monotonic() + 60
         while len(list((self.place / "out").glob("*.history.csv"))) < 3 and time.monotonic() < until:
@@ -492,7 +492,7 @@ class StoppedBatch(Case):
         process.communicate()
 
 
-# Runs the tasks at once, one after the other. (tests/slurm/run has the real thing.)
+# Runs the tasks immediately, in sequence. (tests/slurm/run uses a real Slurm.)
 SBATCH = """#!/bin/sh
 cat > {folder}/script
 for word; do case $word in --array=*) tasks=${{word#--array=}} ;; esac; done
@@ -543,7 +543,7 @@ class StandIn(Case):
         self.assertEqual(3, self.calls().count("killed.dat"))
 
     def test_none_is_lost_for_anothers_sake(self):
-        """A task whose time is up again and again: each deck that takes too long ends one, then come those behind them."""
+        """A task whose time limit expires repeatedly: each deck that takes too long ends one, then the decks after it run."""
         sbatch = self.place / "bin" / "sbatch"
         sbatch.write_text(sbatch.read_text().replace("sh " + str(self.place), "timeout 3 sh " + str(self.place)))
         (self.place / "bin" / "scontrol").write_text("#!/bin/sh\necho JobState=TIMEOUT Reason=None\n")
@@ -558,7 +558,7 @@ class StandIn(Case):
         self.assertEqual(3, sum(name.startswith("d") for name in self.calls()))
 
     def test_when_a_task_is_given_up(self):
-        """What somebody cancels is submitted three times; so is what gets no deck further."""
+        """A cancelled task is submitted three times; also one that makes no progress."""
         for why, begun, wanted in (("TIMEOUT", [{}, {}], [False, True]), ("CANCELLED by 0", [{}, {"a": 0}], [True, True]),
                                    ("TIMEOUT", [{}, {"a": 0}, {"a": 0}], [False, False, True]), ("TIMEOUT", [{"a": 0}, {"a": 1}], [False, False]),
                                    ("TIMEOUT", [{"a": 1, "b": 1}], [True])):
@@ -580,7 +580,7 @@ class StandIn(Case):
         self.assertEqual(2, len((self.place / "submitted").read_text().splitlines()))
 
     def test_sbatch_that_reads_no_script(self):
-        """It may end before the script is written; the batch does not end of it."""
+        """It may end before the script is written; the batch continues."""
         self.decks("a.dat")
         (self.place / "bin" / "sbatch").write_text("#!/bin/sh\nexec <&-\necho no such partition >&2\nexit 1\n")
         for _ in range(20):
@@ -588,7 +588,7 @@ class StandIn(Case):
             self.assertEqual("tools/batch: sbatch: no such partition\n", run.stderr)
 
     def test_waiting_that_is_stopped(self):
-        """By its own exit status; the job continues."""
+        """With its own exit status; the job continues."""
         self.decks("a.dat")
         (self.place / "bin" / "sbatch").write_text("#!/bin/sh\necho 7\n")
         (self.place / "bin" / "squeue").write_text("#!/bin/sh\necho 7 0\n")
@@ -610,7 +610,7 @@ class StandIn(Case):
         self.assertIn("sbatch cannot be started", run.stderr)
 
     def path_without(self):
-        """Nothing but the shell's own tools."""
+        """Only the shell's own tools."""
         folder = self.place / "few"
         folder.mkdir()
         for name in ("sh", "cat", "env"):
@@ -619,4 +619,4 @@ class StandIn(Case):
 
 
 if __name__ == "__main__":
-    unittest.main(verbosity=2)   # tells why a test is skipped
+    unittest.main(verbosity=2)   # shows why a test is skipped

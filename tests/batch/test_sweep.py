@@ -32,7 +32,7 @@ class Sweep(Case):
         self.assertFalse((self.place / "set").exists())
 
     def checked(self):
-        """The program takes every deck."""
+        """The program accepts every deck."""
         for path in (self.place / "set").glob("*.dat"):
             run = subprocess.run([PROGRAM, "--check", path], capture_output=True, text=True)
             self.assertEqual(0, run.returncode, run.stderr)
@@ -101,7 +101,7 @@ class Refusals(Sweep):
                              words, "\ntools/sweep: 1 error, nothing is written\n")
 
     def test_continued_large_fields(self):
-        """A small-field line behind half a row of large fields begins a new row."""
+        """A small-field line after half a row of large fields begins a new row."""
         deck = TEXT.replace("MAT1    1       20400.          .29", "MAT1*   1               20400.                          .29\n+       %a%")
         self.refused(deck, "a\nx\n", ":9-16: MAT1 field 12 (ST): not a real: write it as")
         deck = deck.replace("+       %a%", "*       %a%")
@@ -115,11 +115,11 @@ class Refusals(Sweep):
     def test_digits_of_other_scripts(self):
         deck = SMALL_FIELD.replace("FORCE   1       41      0 ", "FORCE   1       %node%  0 ")
         self.refused(deck, "E,nu,node\n1.,.3,\uff14\uff11\n", "t.csv:2: column node, '\uff14\uff11': s.in:", "(G): not a whole number: give one")
-        for card, value in (("XYZ     ", "\uff15"), ("PARAM   NOSUCH  ", "\uff15")):   # of a kind that is not known
+        for card, value in (("XYZ     ", "\uff15"), ("PARAM   NOSUCH  ", "\uff15")):   # of an unknown type
             self.refused(deck.replace("BEGIN BULK", f"BEGIN BULK\n{card}%x%"), f"E,nu,node,x\n1.,.3,41,{value}\n", f"column x, '{value}'", ": not a ")
 
     def test_unlike_rows_of_one_deck(self):
-        """A field of 8 columns rounds both to the same: whatever titles say, they would be one deck."""
+        """A field of 8 columns rounds both to the same value: whatever the titles, they would be one deck."""
         line = SMALL_FIELD.splitlines().index("MAT1    1       %E%             %nu%") + 1
         more = ": use a large field (a * after the card's name) or free format (commas)"
         for deck in (SMALL_FIELD, SMALL_FIELD.replace("CEND", "CEND\n$ %E%")):
@@ -136,7 +136,7 @@ class Refusals(Sweep):
                      f"s.in:{line}:8-10: MAT1 field 3 (E): both are 0.12345678901234567892: a real holds 16 digits\n")
 
     def test_like_rows_and_other_decks(self):
-        """The same number otherwise written is meant; a free field tells apart what a small one does not."""
+        """The same number in another form is accepted; a free field distinguishes values that a small one does not."""
         self.sweep(0, SMALL_FIELD, "E,nu\n20400,.3\n2.04e4,0.30\n20400.0,.3\n")
         self.sweep(0, FREE_FIELD, "E,nu\n66666.671,.3\n66666.672,.3\n", directory="free")
         self.assertNotEqual((self.place / "free" / "s_1.dat").read_text(), (self.place / "free" / "s_2.dat").read_text())
@@ -220,7 +220,7 @@ class Sets(Sweep):
         self.assertEqual("1 deck; tools/batch --list 'a set/sweep.csv' -o 'a set/results'\n", run.stdout)
 
     def test_a_large_table(self):
-        """Rows are not looked for one in another."""
+        """The comparison of rows takes linear time."""
         begun = time.monotonic()
         self.sweep(0, "BEGIN BULK\nMAT1,1,%E%\nENDDATA\n", "E\n" + "".join(f"{k}.\n" for k in range(1, 2001)))
         self.assertLess(time.monotonic() - begun, 20)
@@ -233,4 +233,4 @@ class Sets(Sweep):
 
 
 if __name__ == "__main__":
-    unittest.main(verbosity=2)   # tells why a test is skipped
+    unittest.main(verbosity=2)   # shows why a test is skipped

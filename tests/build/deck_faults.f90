@@ -1,4 +1,4 @@
-!> What the program says of a deck that is written in a line, and makes of it.
+!> Messages of the program for a deck that is written in a line, and the model that it makes.
 module deck_faults
   use deck_texts, only: bars, read_lines, told
   use epcont_deck_deck, only: deck_type
@@ -12,7 +12,7 @@ module deck_faults
   private
   public :: faults_of, model_of, notes_of, told
 
-  !> A square of two triangles: nodes 1 to 4, elements 1 and 2; two of its nodes held.
+  !> A square of two triangles: nodes 1 to 4, elements 1 and 2; two of its nodes are fixed.
   character(len=*), parameter, public :: square = &
     'PARAM,PLANE,STRAIN|' // &
     'GRID,1,,0.0,0.0|' // &
@@ -25,7 +25,7 @@ module deck_faults
     'MAT1,1,1.0+5,,0.3|'
   character(len=*), parameter, public :: held = 'SPC1,1,12,1,2|'
 
-  !> Two squares, one over the other, 0.1 apart, and what pairs between them need.
+  !> Two squares, one over the other, 0.1 apart, and the cards that pairs between them need.
   character(len=*), parameter, public :: squares = &
     'PARAM,PLANE,STRAIN|PSHELL,1,1,1.0|MAT1,1,1.0+5,,0.3|SPC1,1,12,1,2,13,14|' // &
     'GRID,1,,0.0,0.0|GRID,2,,1.0,0.0|GRID,3,,1.0,1.0|GRID,4,,0.0,1.0|' // &
@@ -35,7 +35,7 @@ module deck_faults
 
 contains
 
-  !> The errors and warnings of a deck, its lines ended by bars; the lines of the answer are, too.
+  !> The errors and warnings of a deck whose lines end with bars; lines of the result do, too.
   function faults_of(cards) result(words)
     character(len=*), intent(in) :: cards
     character(len=:), allocatable :: words
@@ -46,7 +46,7 @@ contains
     words = bars(render(faults, deck%source))
   end function faults_of
 
-  !> The warnings and notes of a deck, as the listing has them.
+  !> The warnings and notes of a deck, as in the listing.
   function notes_of(cards) result(words)
     character(len=*), intent(in) :: cards
     character(len=:), allocatable :: words
@@ -82,7 +82,7 @@ contains
     end do
   end subroutine check_deck
 
-  !> The scene of a deck that is sound, its lines ended by bars.
+  !> The model of a valid deck whose lines end with bars.
   function model_of(cards) result(model)
     character(len=*), intent(in) :: cards
     type(model_type) :: model

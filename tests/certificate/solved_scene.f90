@@ -1,4 +1,4 @@
-!> Scenes solved from decks that are written in a line.
+!> Models solved from decks that are written in a line.
 module solved_scene
   use deck_texts, only: write_lines
   use epcont_base_error, only: error_type
@@ -18,7 +18,7 @@ module solved_scene
   character(len=*), parameter, public :: square = &
     'PARAM,PLANE,STRAIN|GRID,1,,0.0,0.0|GRID,2,,1.0,0.0|GRID,3,,1.0,1.0|GRID,4,,0.0,1.0|' // &
     'CTRIA3,1,1,1,2,3|CTRIA3,2,1,1,3,4|PSHELL,1,1,1.0|MAT1,1,2.1+5,,0.3|'
-  !> It stands on a rigid floor of two nodes, free to move up and down.
+  !> It stands on a rigid floor of two nodes, unconstrained vertically.
   character(len=*), parameter, public :: block_on_floor = square // &
     'GRID,11,,0.0,0.0|GRID,12,,1.0,0.0|SPC1,1,1,1,4|SPC1,1,12,11,12|SUPORT,3,2|CORD2R,1,,0.0,0.0,0.0,0.0,0.0,1.0,+|' // &
     '+,0.0,1.0,0.0|CGAP,21,21,11,1,,,,1|CGAP,22,21,12,2,,,,1|PGAP,21,0.0|'
@@ -28,7 +28,7 @@ module solved_scene
 
 contains
 
-  !> Solve a deck whose lines end in bars.
+  !> Solve a deck whose lines end with bars.
   subroutine solve(cards, solved)
     character(len=*), intent(in) :: cards
     type(scene), intent(out) :: solved
@@ -56,7 +56,7 @@ contains
     call solved%solve(huge(1.0_wp), watch, error)
   end subroutine solve_file
 
-  !> The certificate of what a test has changed.
+  !> The certificate of a result that a test has changed.
   subroutine certify_again(solved, curve_tolerance)
     type(scene), intent(inout) :: solved
     real(wp), intent(in), optional :: curve_tolerance
@@ -67,7 +67,7 @@ contains
     call certify(solved%model, solved%answer, tolerance, solved%certificate)
   end subroutine certify_again
 
-  !> Mean displacement outwards of the nodes at a radius.
+  !> Mean radial displacement of the nodes at a radius.
   real(wp) function outward(solved, radius)
     type(scene), intent(in) :: solved
     real(wp), intent(in) :: radius
