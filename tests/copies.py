@@ -1,4 +1,4 @@
-"""Tools in copies of the process that tests them: it has loaded their modules once, which takes longer than most tools run."""
+"""Run tools in copies of the process that tests them: it has loaded their modules once, which takes longer than most tools run."""
 import multiprocessing
 import os
 import subprocess
@@ -7,7 +7,7 @@ import tempfile
 
 
 def run(start, *arguments, cwd=".", env=None, timeout=120):
-    """What subprocess.run gives of a Python program that `start` runs: exit status and what it prints."""
+    """The equivalent of subprocess.run for a Python program that `start` runs: exit status and output."""
     with tempfile.TemporaryFile("w+", errors="replace") as output, tempfile.TemporaryFile("w+", errors="replace") as errors:
         copy = multiprocessing.get_context("fork").Process(target=begin, args=(start, arguments, cwd, env, output.fileno(), errors.fileno()))
         copy.start()

@@ -1,4 +1,4 @@
-!> Reference for small problems: every state of the pairs is tried. A pair is closed, or its force is at one of its bounds.
+!> Reference for small problems: try every state of the pairs. A pair is closed, or its force is at one of its bounds.
 module enumeration
   use epcont_base_kinds, only: wp
   use epcont_contact_problem, only: contact_problem
@@ -13,7 +13,7 @@ module enumeration
 
 contains
 
-  !> Forces of all basic answers [n, answers]; none if the problem has no answer. A of full column rank.
+  !> Forces of all basic solutions [n, answers]; empty if the problem has none. A has full column rank.
   function all_answers(problem) result(answers)
     type(contact_problem), intent(in) :: problem
     real(wp), allocatable :: answers(:, :)
@@ -35,7 +35,7 @@ contains
     end do
   end function all_answers
 
-  !> Forces if the pairs are in these states; of size 0 (or unlike n) if they are no answer.
+  !> Forces if the pairs are in these states; of size 0 (or unlike n) if they are not a solution.
   function answer_of_state(problem, state, lower, upper) result(force)
     type(contact_problem), intent(in) :: problem
     integer, intent(in) :: state(:)
@@ -62,7 +62,7 @@ contains
     call lu_solve(copy, right, info)
     allocate (force(n + 1), source=0.0_wp)
     if (info /= 0) return
-    if (maxval([abs(right), 0.0_wp]) > 1.0e8_wp) return   ! singular but for rounding
+    if (maxval([abs(right), 0.0_wp]) > 1.0e8_wp) return   ! singular within rounding
     if (any(right(:s, 1) < lower(closed) - tolerance) .or. any(right(:s, 1) > upper(closed) + tolerance)) return
     force(:n) = given
     force(closed) = right(:s, 1)

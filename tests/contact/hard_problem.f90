@@ -1,4 +1,4 @@
-!> Large contact problems of the kinds that make a solver stumble, with a kernel like that of a half-plane.
+!> Large contact problems that are difficult for a solver, with a kernel like that of a half-plane.
 module hard_problem
   use epcont_base_kinds, only: wp
   use epcont_contact_problem, only: contact_problem
@@ -8,7 +8,7 @@ module hard_problem
   private
   public :: hard
 
-  !> Kinds of problem, and what they are called.
+  !> Types of problem, and their names.
   integer, parameter, public :: kinds = 13
   character(len=16), parameter, public :: kind_name(kinds) = [character(len=16) :: 'parabola', 'flat', 'ties', 'twice', &
                                                              'badly scaled', 'three motions', 'held', 'rough', 'overlaps', &
@@ -16,7 +16,7 @@ module hard_problem
 
 contains
 
-  !> A problem of one kind with n pairs; `random` varies what the kind leaves open.
+  !> Make a problem of one type with n pairs; `random` varies its other parameters.
   function hard(random, kind, n) result(problem)
     type(generator), intent(inout) :: random
     integer, intent(in) :: kind, n
@@ -46,7 +46,7 @@ contains
         problem%flexibility(k, :) = problem%flexibility(k, :)*1.0e-3_wp
         problem%flexibility(:, k) = problem%flexibility(:, k)*1.0e-3_wp
       end do
-    case ('three motions')   ! along the normal, a rotation, and half of the pairs by themselves
+    case ('three motions')   ! along the normal, a rotation, and half of the pairs on their own
       problem%motion = dense_motions(reshape([[(1.0_wp, i=1, n)], place, merge(1.0_wp, 0.0_wp, place > 0)], [n, 3]))
       problem%resultant = problem%motion%carried([(random%uniform()/n, i=1, n)])
     case ('held')
@@ -55,7 +55,7 @@ contains
       problem%initial_gap = problem%initial_gap - 0.3_wp
     case ('rough')
       problem%initial_gap = problem%initial_gap + [(0.05_wp*random%uniform(), i=1, n)]
-    case ('flat, turning')   ! pressed and turned, all gaps zero
+    case ('flat, turning')   ! force and moment, all gaps zero
       problem%initial_gap = 0.0_wp
       problem%motion = dense_motions(reshape([[(1.0_wp, i=1, n)], place], [n, 2]))
       problem%resultant = [1.0_wp, 0.4_wp*(2*random%uniform() - 1)*maxval(place)]
@@ -75,8 +75,8 @@ contains
     end select
   end function hard
 
-  !> Displacements taken some pairs deep, where forces hardly show one by one: F has a condition of 1e6 at 3, of 1e10 at 6.
-  !> Half of the pairs are loaded, the others clear of contact.
+  !> Displacements some pair distances below the surface, where single forces have little effect: condition of F 1e6 at 3, 1e10 at 6.
+  !> Half of the pairs are loaded, the others open.
   pure subroutine load_half(place, depth, problem)
     real(wp), intent(in) :: place(:), depth
     type(contact_problem), intent(inout) :: problem
@@ -95,7 +95,7 @@ contains
     problem%resultant = [sum(force)]
   end subroutine load_half
 
-  !> -log|x_i - x_j|, over a segment of its own for i = j; the bodies end at a distance of 20.
+  !> -log|x_i - x_j|, integrated over a segment for i = j; the bodies end at a distance of 20.
   pure function kernel(n) result(flexibility)
     integer, intent(in) :: n
     real(wp) :: flexibility(n, n)

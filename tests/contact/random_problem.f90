@@ -1,4 +1,4 @@
-!> Random contact problems for the tests, the same in every run, and the conditions their answers must meet.
+!> Random contact problems for the tests, the same in every run, and the conditions for their solutions.
 module random_problem
   use epcont_base_kinds, only: i8, wp
   use epcont_contact_problem, only: contact_problem, contact_solution
@@ -45,8 +45,8 @@ contains
     yes = self%uniform() < probability
   end function chance
 
-  !> n pairs and m motions with, by chance, all that is awkward: singular F, repeated and zero rows, ties,
-  !> gaps all zero, overlaps, loads in the gaps, loads that nothing carries or no load at all.
+  !> n pairs and m modes with random difficulties: singular F, repeated and zero rows, ties,
+  !> gaps all zero, overlaps, loads in the gaps, loads without equilibrium or no load at all.
   function new_problem(random, n, m) result(problem)
     type(generator), intent(inout) :: random
     integer, intent(in) :: n, m
@@ -67,7 +67,7 @@ contains
     call spoil(random, problem)
   end function new_problem
 
-  !> Entries from -1 to 1, or whole numbers from -2 to 2.
+  !> Entries from -1 to 1, or integers from -2 to 2.
   function matrix(random, n, m, whole) result(entry)
     type(generator), intent(inout) :: random
     integer, intent(in) :: n, m
@@ -112,7 +112,7 @@ contains
     if (random%chance(0.15_wp)) gap = 0.0_wp
   end function gaps
 
-  !> A load that some forces R >= 0 carry, any load, or none.
+  !> A load that some forces R >= 0 balance, any load, or none.
   function resultant(random, motion, whole) result(load)
     type(generator), intent(inout) :: random
     real(wp), intent(in) :: motion(:, :)
@@ -149,7 +149,7 @@ contains
     end if
   end subroutine spoil
 
-  !> Give the forces of some pairs two finite bounds, some of them equal. There is still often a load that forces within them carry.
+  !> Give the forces of some pairs two finite bounds, some of them equal. Often a load remains that forces within them can balance.
   subroutine bound(random, problem)
     type(generator), intent(inout) :: random
     type(contact_problem), intent(inout) :: problem
@@ -170,8 +170,8 @@ contains
     problem%resultant = problem%motion%carried(force)
   end subroutine bound
 
-  !> Largest failure of the conditions (3-2)..(3-5), as a part of the largest quantity of its kind. For a
-  !> semidefinite F they are sufficient: an answer that meets them is right.
+  !> Largest violation of the conditions (3-2)..(3-5), relative to the largest quantity of its type. For a
+  !> semidefinite F they are sufficient: a solution that satisfies them is correct.
   function residual_of(problem, solution) result(residual)
     type(contact_problem), intent(in) :: problem
     type(contact_solution), intent(in) :: solution
@@ -186,7 +186,7 @@ contains
     gap_size = maxval([largest(problem%initial_gap), largest(problem%load_gap), tiny(1.0_wp), &
                        largest(pack(problem%flexibility, .true.))*force_size, &
                        largest(problem%motion%closing)*largest(solution%approach)])
-    ! Nothing has a length: no gap, no flexibility. What rounding leaves of zero has no measure.
+    ! All lengths are zero: no gap, no flexibility. Then rounding has no scale.
     if (max(largest(problem%initial_gap), largest(problem%load_gap), &
             largest(pack(problem%flexibility, .true.))) <= 0.0_wp) gap_size = huge(1.0_wp)
     if (any(problem%flexibility /= 0.0_wp)) then
@@ -204,7 +204,7 @@ contains
                        max(-solution%gap, 0.0_wp)/gap_size*below, abs(load_error)/load_size, 0.0_wp])
   end function residual_of
 
-  !> Largest absolute value; 0 of none.
+  !> Largest absolute value; 0 if empty.
   pure function largest(values)
     real(wp), intent(in) :: values(:)
     real(wp) :: largest
@@ -213,8 +213,8 @@ contains
     if (size(values) > 0) largest = maxval(abs(values))
   end function largest
 
-  !> Is y a motion that the load drives and that no forces within their bounds resist: P'y > 0 and A y <= 0, or more than bounded
-  !> forces do along it?
+  !> Does the load drive mode y, and can no forces within their bounds resist it: P'y > 0 and A y <= 0, or more work than bounded
+  !> forces can do along it?
   function is_escape(problem, motion) result(escape)
     type(contact_problem), intent(in) :: problem
     real(wp), intent(in) :: motion(:)

@@ -5,28 +5,28 @@ module two_blocks
   private
   public :: blocks_type, write_blocks, write_cell
 
-  !> Nodes of a cell, from its first one, in halves of columns and rows: corners, middles of the sides, centre.
+  !> Nodes of a cell, from its first one, in half columns and rows: corners, mid-side nodes, centre.
   integer, parameter, public :: across(9) = [0, 2, 2, 0, 1, 2, 1, 0, 1], up(9) = [0, 0, 2, 2, 0, 1, 2, 1, 1]
 
   type :: blocks_type
     integer :: columns(2) = [4, 4]         !! of the lower and the upper block
     character(len=6) :: element = 'CTRIA3' !! CTRIA3, CTRIA6, CQUAD4, CTRAX3, CTRAX6
-    logical :: lines = .true.              !! contact by BCONP, else by CGAP; the columns must be equal then
+    logical :: lines = .true.              !! contact by BCONP, otherwise by CGAP; then the columns must be equal
     logical :: upper_is_slave = .true.
-    real(wp) :: inside = 0.0_wp            !! x where the blocks begin; their width is 1
+    real(wp) :: inside = 0.0_wp            !! x of the left ends of the blocks; their width is 1
     real(wp) :: rise = 0.0_wp              !! y of the upper surface of the lower block at its right end
-    real(wp) :: pressure = 10.0_wp         !! on top
+    real(wp) :: pressure = 10.0_wp         !! pressure on top
     character(len=8) :: poisson = ''       !! of both, if given
-    logical :: stuck = .false.             !! the lower block's base holds sideways too
-    real(wp) :: gap = 0.0_wp               !! by which the upper block is drawn above the lower one
-    real(wp) :: stretch = 1.0_wp           !! of the columns: the last is wider than the first by this factor
+    logical :: stuck = .false.             !! the lower block's base is also fixed sideways
+    real(wp) :: gap = 0.0_wp               !! initial height of the upper block above the lower one
+    real(wp) :: stretch = 1.0_wp           !! ratio of the widths of the last and the first column
   end type blocks_type
 
   integer, parameter :: rows = 2
 
 contains
 
-  !> Write the deck: grids of columns by 2, the upper one free to move up and down.
+  !> Write the deck: grids of columns by 2, the upper one unconstrained vertically.
   subroutine write_blocks(path, blocks)
     character(len=*), intent(in) :: path
     type(blocks_type), intent(in) :: blocks
@@ -118,7 +118,7 @@ contains
     integer :: i
 
     if (blocks%lines) then
-      ! Walked in either sense; middle nodes are left out.
+      ! Listed in either direction, without mid-side nodes.
       write (unit, '(a, i0, a, i0, a, i0)') 'BLSEG,1,', node(1, 0, 2*rows), ',THRU,', &
         node(1, 2*blocks%columns(1), 2*rows), ',BY,', 2
       write (unit, '(a, i0, a, i0, a, i0)') 'BLSEG,2,', node(2, 2*blocks%columns(2), 0), ',THRU,', node(2, 0, 0), ',BY,', -2

@@ -1,4 +1,4 @@
-!> Decks and what is said of them as one text each, its lines ended by bars.
+!> Decks and their messages as one text each, whose lines end with bars.
 module deck_texts
   use epcont_base_error, only: error_type
   use epcont_base_text, only: text_of
@@ -33,7 +33,7 @@ contains
     call read_deck(path, deck, faults, error)
   end subroutine read_lines
 
-  !> A text with bars for the ends of its lines.
+  !> A text with bars for line ends.
   pure function bars(text)
     character(len=*), intent(in) :: text
     character(len=len(text)) :: bars
@@ -41,8 +41,8 @@ contains
     bars = replaced(text, newline, '|')
   end function bars
 
-  !> All that is said of a deck whose faults are told in short, `11:7-9: what is wrong|what would be right|` each, or `0: ...`
-  !! of the deck as a whole: with its name, the line, carets below the place, and how many there are.
+  !> All messages for a deck, from a short form: `11:7-9: fault|remedy|` each, or `0: ...`
+  !! for the deck as a whole; with its name, the line, carets below the position, and their number.
   function told(cards, faults) result(words)
     character(len=*), intent(in) :: cards, faults
     character(len=:), allocatable :: words
@@ -89,7 +89,7 @@ contains
     part = part(:index(part, '|') - 1)
   end function part
 
-  !> A text with one character for another.
+  !> A text with a character replaced.
   pure function replaced(text, old, new) result(other)
     character(len=*), intent(in) :: text
     character(len=1), intent(in) :: old, new

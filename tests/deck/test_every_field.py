@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Every field of every card, every PARAM and every statement of case control changes the tables, is noted, or is an error.
+"""Check that every field of every card, every PARAM and every statement of case control changes the tables, is noted, or is an error.
 
 The catalogue (`epcont --cards`) is compared with the changes below, so that a new field needs one here. All decks run in one process."""
 import os
@@ -17,7 +17,7 @@ import cards  # noqa: E402
 
 PROGRAM = os.environ["EPCONT_PROGRAM"]
 VERBOSE = "EPCONT_VERBOSE" in os.environ
-#: What may come of a change: other tables; another listing, the tables perhaps the same; a note or a warning, and the same tables; exit status 2.
+#: Outcomes of a change: other tables; another listing, perhaps with the same tables; a note or a warning, and the same tables; exit status 2.
 CHANGES, LISTED, NOTED, ZERO, BLANK = ("changes",), ("listed",), ("note", None), ("error", "is out of range"), ("error", "must be blank")
 
 
@@ -77,7 +77,7 @@ ELEMENT = [("EID", "9", CHANGES), ("PID", "2", CHANGES)]
 SPC = [("SID", "9", error("SPC")), ("G1", "10", error("held at another")), ("C1", "2", error("held at another")), ("D1", ".003", CHANGES), ("G2", "5", error("SPCD 4: direction 1 of GRID 2 is not fixed")),
        ("C2", "2", error("held at another")), ("D2", ".004", CHANGES)]
 ANYTHING = ("", "1", NOTED)
-#: For each card the base deck, which of its cards there, and for each field in its order its name, another value, and what must come of it.
+#: For each card the base deck, the number of its card there, and for each field in order its name, another value, and the outcome.
 #: A value such as `6=3 7=2` changes several fields, counted from 1.
 CARDS = {
     "GRID": ("plane", 2, [("ID", "99", error("there is no GRID 3")), ("CP", "1", ZERO), ("X1", "1.1", CHANGES), ("X2", "1.1", CHANGES),
@@ -152,7 +152,7 @@ PARAMETERS = {
     "WTMASS": ("plane", "2.", CHANGES), "LGDISP": ("plane", "-1", NOTED), "INREL": ("plane", "0", NOTED)}
 WITHOUT = {"PLANE": "ctrax3", "RULE": "yield", "GAPGEOM": "lines", "METHOD": "plane", "TOL": "plane", "MAXIT": "plane", "MUP": "plane", "NLOAD": "plane", "THEORY": "plane",
            "SEARCH": "plane", "FLEXIB": "yield", "CORNER": "plane", "WTMASS": "yield"}
-#: The same for each statement of case control, put before the others of `plane` or in place of the one of its name.
+#: The same for each statement of case control, put before the others of `plane` or in place of the one with its name.
 STATEMENTS = {
     "SOL": ("SOL 103", note("SOL: epcont solves for static loads")), "CEND": ("CEND 1", error("CEND takes no value")), "TITLE": ("TITLE = X", LISTED), "ECHO": ("ECHO = SORT", LISTED),
     "CNTNLSUB": ("CNTNLSUB = YES", error("a sequence of SUBCASEs")), "SUBCASE": ("SUBCASE 9", CHANGES), "SUBTITLE": ("SUBTITLE = X", LISTED),
@@ -196,13 +196,13 @@ def changed(card, value, slot):
 
 
 class EveryField(unittest.TestCase):
-    """All changes at once, each a deck of its own beside the base that it changes."""
+    """All changes at once, each in a separate deck beside the base that it changes."""
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
-        self.decks = {}     # what must come of each: base, outcome, what is changed
+        self.decks = {}     # expected outcome of each: base, outcome, change
         self.catalogue = cards.Catalogue(PROGRAM)
         for base, text in DECKS.items():
             self.write(base, *read(text))
@@ -218,7 +218,7 @@ class EveryField(unittest.TestCase):
         self.decks[name] = base, outcome, what
 
     def run_all(self):
-        """What is said of each deck, its tables, and its listing without the number of PARAMs."""
+        """Messages for each deck, its tables, and its listing without the number of PARAMs."""
         names = [f"{name}.dat" for name in [*DECKS, *self.decks]]
         done = subprocess.run([PROGRAM, "--quiet", *names], capture_output=True, text=True, cwd=self.folder, check=False,
                               env={**os.environ, "OMP_NUM_THREADS": "1"})

@@ -1,4 +1,4 @@
-!> Shapes of every kind of element, patches of them, and what tests ask of an element: strains, stiffness, eigenvalues.
+!> Shapes of every element type, patches of them, and properties of an element: strains, stiffness, eigenvalues.
 module element_kinds
   use epcont_base_kinds, only: wp
   use epcont_element_element_kind, only: element_kind, most_nodes
@@ -17,17 +17,17 @@ module element_kinds
   integer, parameter, public :: node_numbers(4) = [3, 6, 4, 8]
   real(wp), parameter, public :: thickness = 0.7_wp
   real(wp), parameter, public :: rounding = 1.0e-13_wp
-  !> A general displacement gradient and shift, and a turn.
+  !> A general displacement gradient and translation, and a rotation.
   real(wp), parameter, public :: gradient(2, 2) = reshape([0.6_wp, -0.3_wp, 0.8_wp, -0.5_wp], [2, 2])
   real(wp), parameter, public :: shift(2) = [0.4_wp, -0.7_wp]
   real(wp), parameter, public :: turn(2, 2) = reshape([real(wp) :: 0, 1, -1, 0], [2, 2])
   character(len=*), parameter, public :: kinematics_name(3) = [', plane strain', ', plane stress', ', ring        ']
 
-  !> One element; all are to the right of the axis of rings.
+  !> One element; all are to the right of the axis of axisymmetric bodies.
   type, public :: element_shape
     character(len=30) :: name
     real(wp), allocatable :: x(:, :)   !! [2, nodes]
-    logical :: straight                !! sides, with their nodes in their middles
+    logical :: straight                !! edges, with their nodes in their middles
   end type element_shape
 
   !> Elements that share nodes.
@@ -99,7 +99,7 @@ contains
     text = trim(shape%name)//trim(kinematics_name(kinematics))
   end function label
 
-  !> Six or eight nodes from three or four corners, the middle ones moved by `bend`.
+  !> Six or eight nodes from three or four corners, the mid-side ones moved by `bend`.
   pure function with_middles(corner, bend) result(x)
     real(wp), intent(in) :: corner(:, :)
     real(wp), intent(in), optional :: bend(:, :)
@@ -112,7 +112,7 @@ contains
     end associate
   end function with_middles
 
-  !> The corners, or these with the middles between them.
+  !> The corners, or these with the mid-side nodes between them.
   pure function with_nodes(nodes, corner) result(x)
     integer, intent(in) :: nodes
     real(wp), intent(in) :: corner(:, :)
@@ -125,7 +125,7 @@ contains
     end if
   end function with_nodes
 
-  !> Places all over the square from -1 to 1, without pattern.
+  !> Points all over the square from -1 to 1, without pattern.
   pure function sample_place(i) result(place)
     integer, intent(in) :: i
     real(wp) :: place(2)
@@ -133,7 +133,7 @@ contains
     place = 2.0_wp*modulo(i*[0.754877666246693_wp, 0.569840290998053_wp], 1.0_wp) - 1.0_wp
   end function sample_place
 
-  !> Local places of the nodes.
+  !> Local coordinates of the nodes.
   pure function local_node(nodes) result(place)
     integer, intent(in) :: nodes
     real(wp) :: place(2, nodes)
@@ -145,7 +145,7 @@ contains
     end if
   end function local_node
 
-  !> The row of the table with so many nodes.
+  !> The row of the table with this number of nodes.
   function kind_with(nodes) result(kind)
     integer, intent(in) :: nodes
     type(element_kind) :: kind
@@ -192,7 +192,7 @@ contains
     corner = x(:, :merge(4, 3, modulo(size(x, 2), 4) == 0))
   end function corners_of
 
-  !> Signed area of a polygon: positive where its corners turn counter-clockwise.
+  !> Signed area of a polygon: positive if its corners are counter-clockwise.
   pure real(wp) function polygon_area(x) result(area)
     real(wp), intent(in) :: x(:, :)
 
@@ -211,7 +211,7 @@ contains
     radius = radius/polygon_area(corner)
   end function centroid_radius
 
-  !> What `evaluate_points` gives.
+  !> Result of `evaluate_points`.
   function points_of(x, kinematics) result(point)
     real(wp), intent(in) :: x(:, :)
     integer, intent(in) :: kinematics
@@ -223,7 +223,7 @@ contains
     end associate
   end function points_of
 
-  !> Where the integration points are.
+  !> Coordinates of the integration points.
   function places_of(x) result(place)
     real(wp), intent(in) :: x(:, :)
     real(wp), allocatable :: place(:, :)
@@ -249,7 +249,7 @@ contains
     end do
   end function strains_of
 
-  !> Displacements u = gradient x + shift.
+  !> Displacements u = gradient x + translation.
   pure function linear_field(x, gradient, shift) result(u)
     real(wp), intent(in) :: x(:, :), gradient(2, 2), shift(2)
     real(wp) :: u(2, size(x, 2))
@@ -257,7 +257,7 @@ contains
     u = matmul(gradient, x) + spread(shift, 2, size(x, 2))
   end function linear_field
 
-  !> D of Young's modulus 1.
+  !> D for a Young's modulus of 1.
   pure function elasticity(kinematics, poisson) result(d)
     integer, intent(in) :: kinematics
     real(wp), intent(in) :: poisson
@@ -297,10 +297,10 @@ contains
     if (info /= 0) value = -huge(1.0_wp)
   end function eigenvalues
 
-  !> An irregular patch: 4 triangles about a node, or 5 quadrilaterals, one of them within the others.
+  !> An irregular patch: 4 triangles about a node, or 5 quadrilaterals, one of them inside the others.
   function patch_of(nodes, bend) result(made)
     integer, intent(in) :: nodes
-    real(wp), intent(in) :: bend       !! by how much middle nodes leave the middles of their sides
+    real(wp), intent(in) :: bend       !! displacement of mid-side nodes from the middles of their edges
     type(patch) :: made
     real(wp), parameter :: outer(8) = [1.0_wp, 0.0_wp, 3.0_wp, 0.2_wp, 3.3_wp, 2.1_wp, 0.8_wp, 1.7_wp]
     real(wp), parameter :: within(8) = [1.6_wp, 0.5_wp, 2.3_wp, 0.7_wp, 2.6_wp, 1.6_wp, 1.2_wp, 1.1_wp]
@@ -318,7 +318,7 @@ contains
     if (nodes > 4) call add_middles(made, bend)
   end function patch_of
 
-  !> Nodes in the middles of all sides; those of the outer sides, which one element alone has, are on the boundary.
+  !> Nodes in the middles of all edges; those of the outer edges, which only one element has, are on the boundary.
   subroutine add_middles(made, bend)
     type(patch), intent(inout) :: made
     real(wp), intent(in) :: bend
@@ -352,7 +352,7 @@ contains
     type(patch), intent(in) :: given
     integer, intent(in) :: kinematics
     real(wp), intent(in) :: poisson
-    real(wp), intent(in) :: u(:, :)   !! of all nodes; those of inner ones do not count [2, nodes]
+    real(wp), intent(in) :: u(:, :)   !! of all nodes; those of inner ones are ignored [2, nodes]
     real(wp) :: solved(2, size(u, 2))
     real(wp) :: k(size(u), size(u)), flat(size(u))
     real(wp), allocatable :: a(:, :), b(:, :)
@@ -377,7 +377,7 @@ contains
     solved = reshape(flat, shape(solved))
   end function solved_patch
 
-  !> Nodes of one element of a distorted grid: cell (i, j) of n by n, a triangle being one half of it.
+  !> Nodes of one element of a distorted grid: cell (i, j) of n by n, or one half of it for a triangle.
   pure function grid_element(nodes, n, i, j, half) result(x)
     integer, intent(in) :: nodes, n, i, j, half
     real(wp) :: x(2, nodes)

@@ -1,6 +1,6 @@
-"""Scenes for the tests of extremes: decks written from a few parameters, run, and their tables read back.
+"""Models for the tests of extremes: decks written from a few parameters, run, and their tables read back.
 
-Cards are written in free field with 17 digits, so that a deck holds the very reals of the test.
+Cards are written in free field with 17 digits, so that a deck holds the exact reals of the test.
 """
 import csv
 import os
@@ -25,7 +25,7 @@ def written(value):
 
 
 class Deck:
-    """Cards in the order of their making; with material 1, if its figures are given."""
+    """Cards in the order of the calls; with material 1, if its properties are given."""
 
     def __init__(self, *material, plane=PLANE_STRAIN):
         self.cards = []
@@ -58,7 +58,7 @@ class Deck:
         self.card("MAT1", number, young, None, poisson)
 
     def curve(self, number, points):
-        """Yielding along (strain, stress) points, the first of them the yield point."""
+        """Yielding along (strain, stress) points; the first is the yield point."""
         self.card("MATS1", number, number, "NLELAST", None, 1, 1, points[0][1])
         flat = [0.0, 0.0] + [value for point in points for value in point] + ["ENDT"]
         self.card("TABLES1", number, *[None]*7, *flat)
@@ -72,7 +72,7 @@ class Deck:
         return self.elements
 
     def block(self, material, xs, ys, first=1, triangles=False):
-        """Nodes and elements of a grid of lines, of a material or of that of (column, row); returns its nodes, row by row upwards."""
+        """Nodes and elements of a grid of lines, of one material or of that of (column, row); returns its nodes, row by row upwards."""
         of = material if callable(material) else lambda i, j: material
         nodes = [[self.grid(first + j*len(xs) + i, x, y) for i, x in enumerate(xs)] for j, y in enumerate(ys)]
         for j, (lower, upper) in enumerate(zip(nodes, nodes[1:])):
@@ -82,15 +82,15 @@ class Deck:
         return nodes
 
     def stand(self, nodes, load, gaps=None, first=70001):
-        """Press a block by its upper row on a floor that lets it spread; its left end is held, the approach that of the upper corners."""
+        """Press a block by its upper row on a floor that lets it spread; its left end is fixed, the approach is that of the upper corners."""
         self.floor(nodes[0], gaps, first)
         self.hold(1, nodes[0][0])
         self.press(nodes[-1], load)
         self.support(2, nodes[-1][0], nodes[-1][-1])
 
     def stack(self, blocks, step):
-        """Blocks (xs, ys) one upon the other, their ids so far apart, with pairs between them; the lowest is held, the others are
-        free to move up and to turn. Returns the upper row of each."""
+        """Stacked blocks (xs, ys), their ids far apart, with pairs between them; the lowest is fixed, the others are
+        unconstrained vertically and in rotation. Returns the upper row of each."""
         tops = []
         for k, (xs, ys) in enumerate(blocks):
             nodes = self.block(1, xs, ys, step*(k + 1))
@@ -116,11 +116,11 @@ class Deck:
             self.card("SUPORT", node, direction)
 
     def force(self, node, x, y):
-        """The vector is written as it is, of length 1.0."""
+        """The vector is written unchanged, with length 1.0."""
         self.card("FORCE", 1, node, 0, 1.0, x, y, 0.0)
 
     def press(self, nodes, total, direction=(0.0, -1.0)):
-        """A uniform pressure on an even row of nodes, as its nodal forces."""
+        """A uniform pressure on a uniform row of nodes, as its nodal forces."""
         for k, node in enumerate(nodes):
             share = total/(len(nodes) - 1)*(0.5 if k in (0, len(nodes) - 1) else 1.0)
             self.force(node, share*direction[0], share*direction[1])
@@ -132,7 +132,7 @@ class Deck:
         return self.axes[normal]
 
     def pair(self, number, a, b, gap=0.0, normal=(0.0, 1.0)):
-        """GA pushes GB along the normal; each pair has a property of its own."""
+        """GA pushes GB along the normal; each pair has its own property."""
         self.card("CGAP", number, 90000000 + number, a, b, None, None, None, self.axis(normal))
         self.card("PGAP", 90000000 + number, gap)
 
@@ -143,14 +143,14 @@ class Deck:
         self.card("BCONP", 1, slave, 3 - slave)
 
     def floor(self, nodes, gaps=None, first=70001, normal=(0.0, 1.0)):
-        """A held node under each of these, which it pushes along the normal, and a pair of its number."""
+        """A fixed node under each of these, which it pushes along the normal, and a pair with its number."""
         for k, node in enumerate(nodes):
             ground = self.grid(first + k, *self.x[node])
             self.hold(12, ground)
             self.pair(ground, ground, node, gaps[k] if gaps else 0.0, normal)
 
     def text(self, order=None):
-        """The deck; `order` puts its cards into another order."""
+        """The deck; `order` changes the order of its cards."""
         cards = self.cards if order is None else [self.cards[k] for k in order]
         lines = ["BEGIN BULK"]
         for name, *fields in cards:
@@ -161,7 +161,7 @@ class Deck:
 
 
 class Result:
-    """Exit status, message, and what the tables say."""
+    """Exit status, message, and the content of the tables."""
 
     def __init__(self, status, message, directory):
         self.status, self.message = status, message
@@ -216,10 +216,10 @@ def solve(deck, order=None, threads=None, preexec_fn=None):
 
 
 class Extremes(unittest.TestCase):
-    """What may come of an extreme scene: the right figures, or a refusal that says why."""
+    """Allowed outcome of an extreme model: the correct results, or a rejection with its cause."""
 
     def valid(self, deck, **options):
-        """Solved, and found to be an answer."""
+        """Solved, and valid."""
         result = solve(deck, **options)
         self.assertEqual(result.status, 0, result.message)
         self.assertEqual(result.summary["status"], "valid")
@@ -233,7 +233,7 @@ class Extremes(unittest.TestCase):
         return result
 
     def right_or_refused(self, deck, cause, status=4):
-        """Solved, for the test to say whether rightly; or not, with a message that `cause` matches: then nothing."""
+        """Solved, so that the test checks the result; or not, with a message that matches `cause`: then None."""
         result = solve(deck)
         if result.status == 0:
             return result
@@ -242,7 +242,7 @@ class Extremes(unittest.TestCase):
         return None
 
     def near(self, actual, expected, relative=1e-10, scale=None):
-        """Lists or reals agree, by the largest of those expected."""
+        """Lists or reals agree, relative to the largest of the expected values."""
         actual, expected = [values if isinstance(values, list) else [values] for values in (actual, expected)]
         self.assertEqual(len(actual), len(expected))
         scale = scale or max(map(abs, expected), default=0.0)
@@ -250,7 +250,7 @@ class Extremes(unittest.TestCase):
             self.assertLessEqual(abs(a - e), relative*scale, f"value {k}: {a!r} where {e!r} was expected, of {scale!r}")
 
     def twins(self, one, other, force=1.0, length=1.0, relative=1e-10):
-        """The second scene is the first in other units, so many of which are one of the first's."""
+        """The second model is the first in other units; `force`, `length`: second units in one first unit."""
         stress = force/length/length
         self.assertEqual(one.touching, other.touching)
         for table, names, factor in (("pairs", ["force"], force), ("pairs", ["gap"], length), ("nodes", ["ux", "uy"], length),
@@ -258,7 +258,7 @@ class Extremes(unittest.TestCase):
             for name in names:
                 values = [value*factor for value in one.column(table, name)]
                 scale = max((abs(value)*factor for beside in names for value in one.column(table, beside)), default=0.0)
-                if name == "gap":   # of closed pairs it is what is left of displacements
+                if name == "gap":   # for closed pairs it is a small difference of displacements
                     scale = max(scale, *(abs(value)*length for value in one.column("nodes", "uy")))
                 with self.subTest(table=table, column=name):
                     self.near(other.column(table, name), values, relative, scale)

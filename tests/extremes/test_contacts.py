@@ -1,4 +1,4 @@
-"""Extremes of pairs: how many, how far apart, how alike."""
+"""Extremes of pairs: number, distance, similarity."""
 import unittest
 
 from scene import Deck, Extremes, written
@@ -6,7 +6,7 @@ from test_scales import punch
 
 
 def bar(gap=0.0, load=1.0, pairs=1):
-    """One square of stiffness 1, held below, pushed up against a ceiling: it gives load until the gap is closed. So many
+    """One square of stiffness 1, fixed below, pushed up against a ceiling: it carries the load until the gap is closed. A number of
     equal pairs at each of its two upper nodes."""
     deck = Deck(1.0, 0.0)
     deck.nodes = bottom, top = deck.block(1, [0.0, 1.0], [0.0, 1.0])
@@ -18,7 +18,7 @@ def bar(gap=0.0, load=1.0, pairs=1):
 
 
 def held_pair(gap):
-    """A bar, and a pair of two nodes that are held."""
+    """A bar, and a pair of two fixed nodes."""
     deck = bar(0.25)
     for node in (3001, 3002):
         deck.grid(node, 5.0, 5.0)
@@ -28,7 +28,7 @@ def held_pair(gap):
 
 
 def row(count, gap=lambda k: 0.0, load=1.0, rule=None):
-    """A block of so many cells, a third as high as it is long, pressed on a floor."""
+    """A block of some cells, a third as high as it is long, pressed on a floor."""
     deck = Deck(1000.0, 0.0)
     nodes = deck.block(1, [float(k) for k in range(count + 1)], [0.0, count/3.0])
     deck.stand(nodes, load, [gap(k) for k in range(count + 1)], 5_000_001)
@@ -46,7 +46,7 @@ class Gaps(Extremes):
                 self.near(result.gap, [max(0.0, gap - 1.0)]*2, scale=1.0)
 
     def test_a_load_that_just_closes_a_pair(self):
-        """Biactive: no force, no gap; a rounding to either side is no other answer."""
+        """Biactive: no force, no gap; rounding in either direction does not change the answer."""
         for gap in (1.0, 1.0 - 2.0**-53, 1.0 + 2.0**-52):
             result = self.valid(bar(gap))
             self.near(result.force, [0.0]*2, scale=1.0)
@@ -59,7 +59,7 @@ class Gaps(Extremes):
             self.near(result.force, [1.0/40*(0.5 if k in (0, 40) else 1.0) for k in range(41)])
 
     def test_gaps_beyond_sight(self):
-        """1e-60 is a gap like any other: of no size. Below, an overlap would do work that is no number."""
+        """A gap of 1e-60 is treated as any small gap. Below that, an overlap would do work out of the range of numbers."""
         exact = self.valid(row(20))
         for size in (1e-60, 1e-46, 1e-30):
             result = self.valid(row(20, lambda k: size*(k % 3)))
@@ -69,7 +69,7 @@ class Gaps(Extremes):
             self.refused(row(20, lambda k: size), 2, "PGAP.*U0. is too far from 1.0")
 
     def test_gaps_of_places_beyond_sight(self):
-        """What a mesher's iterations leave of zero in coordinates is zero: no gap, no overlap."""
+        """Coordinates that are nearly zero after a mesher's iterations count as zero: no gap, no overlap."""
         for place in (1e-300, -1e-100, 0.9e-60):
             deck = bar(load=1.0)
             deck.parameter("GAPGEOM", "YES")
@@ -83,14 +83,14 @@ class Gaps(Extremes):
             self.assertEqual(result.gap[-1], 0.0)
 
     def test_gaps_within_one_rounding(self):
-        """Ties within one unit of the last place leave no pair out and none in twice."""
+        """Ties within one unit of the last digit leave no pair out and none in twice."""
         exact = self.valid(row(20, lambda k: 1.0, load=10.0))
         for rule in ("CONRY", "JOINED"):
             result = self.valid(row(20, lambda k: 1.0 + 2.0**-52*(k % 2), load=10.0, rule=rule))
             self.near(result.force, exact.force)
 
     def test_gaps_so_wide_that_the_give_is_rounding(self):
-        """A travel of 1e12 times what the bodies give way: forces would be noise where gaps differ by a rounding."""
+        """A prescribed displacement of 1e12 times the deformation: forces would be noise if gaps differ by a rounding."""
         for gap in (1e-3, 1e6, 1e12, 1e15):
             deck = row(20, lambda k: gap, load=1e-3)
             with self.subTest(gap=gap):
@@ -100,7 +100,7 @@ class Gaps(Extremes):
                     self.refused(deck, 4, "rounding error of gaps")
 
     def test_pairs_never_reached(self):
-        """Gaps of 1e30 beside one that closes; beyond that is beyond the range of a field."""
+        """Gaps of 1e30 beside one that closes; larger ones are out of the range of a field."""
         result = self.valid(row(20, lambda k: 0.0 if k in (0, 20) else 1e30))
         self.near(result.force, [0.5] + [0.0]*19 + [0.5])
         self.refused(row(20, lambda k: 0.0 if k in (0, 20) else 1e300), 2, "U0. is too far from 1.0")
@@ -117,7 +117,7 @@ class Gaps(Extremes):
 
 class Many(Extremes):
     def test_three_thousand_pairs(self):
-        """Uniform load, uniform forces: a strip lifted against a ceiling, and the block that is free to move, whose condition
+        """Uniform load, uniform forces: a strip lifted against a ceiling, and the unconstrained block, whose condition
         leaves fewer digits."""
         deck = Deck(1.0, 0.0)
         nodes = deck.block(1, [float(k) for k in range(3000)], [0.0, 1.0])
@@ -132,7 +132,7 @@ class Many(Extremes):
             self.near(result.force, [1.0/2999*(0.5 if k in (0, 2999) else 1.0) for k in range(3000)], 1e-6)
 
     def test_long_fine_strip(self):
-        """Rounding leaves forces 2.7e-9 out of balance, a step of refinement takes it down to 1e-13."""
+        """Rounding leaves a residual of 2.7e-9 in the forces, iterative refinement reduces it to 1e-13."""
         deck = Deck(1.0, 0.3)
         nodes = deck.block(1, [9.0*k/6000 for k in range(6001)], [0.0, 0.5, 1.0])
         deck.stand([nodes[0][::40], nodes[2]], 1.0, first=5_000_001)
@@ -141,7 +141,7 @@ class Many(Extremes):
         self.near([sum(result.force)], [1.0])
 
     def test_every_pair_twice(self):
-        """F is singular: forces of the twins are one choice of many, said so, and their sums are right."""
+        """F is singular: the forces of the twins are one choice of many, with a message, and their sums are correct."""
         for rule in ("CONRY", "JOINED"):
             for copies in (2, 5):
                 once = self.valid(bar(0.25))
@@ -181,7 +181,7 @@ class Many(Extremes):
 
 class Walls(Extremes):
     def test_pair_between_held_nodes(self):
-        """It can neither open nor close, and says so; closed by its supports it carries nothing."""
+        """It can neither open nor close, with a message; closed by its supports it carries nothing."""
         for gap in (0.0, 0.5, 1e-60):
             result = self.valid(held_pair(gap))
             self.assertIn("can neither open nor close", result.message)
@@ -192,7 +192,7 @@ class Walls(Extremes):
             self.refused(held_pair(gap), 1, "pairs overlap and no body can deform: CGAP 3001")
 
     def test_tongue_between_two_walls(self):
-        """A bar with walls above and below it, loaded either way, or wedged in by an overlap."""
+        """A bar with walls above and below it, loaded in either direction, or with an overlap on both sides."""
         for load, above, below in ((1.0, 0.25, 0.1), (-1.0, 0.25, 0.1), (0.0, 0.25, 0.1), (0.0, -0.5, 0.6)):
             deck = bar(above, load)
             deck.floor(deck.nodes[1], [below]*2, 4001)
@@ -202,7 +202,7 @@ class Walls(Extremes):
             self.near(result.force, [upper/2]*2 + [lower/2]*2, scale=1.0)
 
     def test_tongue_too_thick(self):
-        """Walls nearer to each other than the tongue is thick cannot both hold the same nodes."""
+        """If the distance of walls is below the thickness of the tongue, both cannot restrain the same nodes."""
         deck = bar(-0.5, 0.0)
         deck.floor(deck.nodes[1], [0.25]*2, 4001)
         self.refused(deck, 1, "pairs overlap and no body can deform: CGAP 100[12] 400[12]")

@@ -1,4 +1,4 @@
-"""What a stack of bodies takes grows as they do: of four times as many each stage takes about four times as long, not sixteen."""
+"""Cost of a stack of bodies grows linearly: with four times as many bodies each stage takes about four times as long, not sixteen."""
 import os
 import pathlib
 import re
@@ -10,12 +10,12 @@ import unittest
 from scene import PROGRAM
 
 DECKS = pathlib.Path(os.environ["EPCONT_SOURCE_DIR"])/"tools"/"decks"
-#: What is done for each body or contact of lines (contact itself is solved in all of them at once).
+#: Stages that run for each body or contact of lines (contact itself is solved for all of them at once).
 STAGES = ("model", "plan", "numbering", "flexibility", "stresses", "accuracy")
 
 
 def seconds(bodies, directory):
-    """Of the processor, for all these stages; the least of three runs."""
+    """Processor time of all these stages; the shortest of three runs."""
     deck = pathlib.Path(directory)/f"stack{bodies}.dat"
     subprocess.run([sys.executable, DECKS, "stack", "--bodies", str(bodies), "--across", "6", "--rows", "6", "-o", deck],
                    check=True, stdout=subprocess.DEVNULL)

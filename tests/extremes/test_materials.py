@@ -1,4 +1,4 @@
-"""Extremes of elasticity, of curves, and of stiff beside soft."""
+"""Extremes of elasticity, of stress-strain curves, and of stiffness contrast."""
 import math
 import unittest
 
@@ -8,7 +8,7 @@ from test_scales import column, column_answer
 
 def tower(stiff, soft, stiff_above, bonded=False):
     """Two blocks of different moduli, one upon the other, with pairs between them or (bonded) one mesh; the lower one is
-    held below, the upper one is free to travel. Without Poisson's ratio all is uniaxial."""
+    fixed below, the upper one is unconstrained vertically. Without Poisson's ratio all is uniaxial."""
     deck = Deck()
     upper, lower = (stiff, soft) if stiff_above else (soft, stiff)
     deck.material(1, lower, 0.0)
@@ -32,7 +32,7 @@ def tower(stiff, soft, stiff_above, bonded=False):
 
 
 def inclusion(ratio, cells=6):
-    """A quarter of a square that is pulled at both sides, so many times stiffer in its middle."""
+    """A quarter of a square that is pulled at both sides, with a stiffer centre."""
     deck = Deck(1.0, 0.3)
     deck.material(2, ratio, 0.3)
     ticks = [k/cells for k in range(cells + 1)]
@@ -44,7 +44,7 @@ def inclusion(ratio, cells=6):
 
 
 def floating(ratio, loads, cells=12):
-    """A layer of two cells on a base of four, so many times softer, that is held below; loads on the upper side, by place."""
+    """A layer of two cells on a softer base of four that is fixed below; loads on the upper side, by position."""
     deck = Deck(1.0, 0.3)
     deck.material(2, ratio, 0.3)
     nodes = deck.block(lambda i, j: 2 if j >= 4 else 1, [float(i) for i in range(cells + 1)], [float(j) for j in range(7)])
@@ -59,7 +59,7 @@ LOST = "elements differ too much in size or stiffness"
 
 class Elasticity(Extremes):
     def test_poisson(self):
-        """The nearer to 0.5, the fewer digits are left: their loss is that of 1/(1 - 2 nu)."""
+        """The nearer to 0.5, the fewer digits are left: the loss is that of 1/(1 - 2 nu)."""
         for poisson in (0.0, 1e-300, 0.25, 0.49, 0.4999, 0.499999):
             for triangles in (False, True):
                 with self.subTest(poisson=poisson, triangles=triangles):
@@ -74,7 +74,7 @@ class Elasticity(Extremes):
             self.refused(column(poisson=poisson), 2, "MAT1 1: .*NU")
 
     def test_poisson_near_the_end(self):
-        """0.5 less one rounding: what is left is right, or it is refused."""
+        """0.5 minus one rounding: the remaining digits are correct, or it is rejected."""
         for left in range(7, 17):
             poisson = 0.5 - 10.0**-left
             with self.subTest(poisson=poisson):
@@ -108,7 +108,7 @@ class Contrast(Extremes):
                         self.near(result.column("elements", "sy"), [-5.0]*4, 1e-6)
 
     def test_inclusion(self):
-        """Right: as with a contrast ten times less (it no longer matters), which holds its own digits."""
+        """Correct: equal to a contrast ten times less (it no longer matters), which keeps its digits."""
         stiff, hollow = self.valid(inclusion(1e7)), self.valid(inclusion(1e-7))
         for exponent in (8, 10, 12, 14):
             for sign, reference in ((1, stiff), (-1, hollow)):
@@ -120,8 +120,8 @@ class Contrast(Extremes):
                         self.near(result.column("elements", "sx"), reference.column("elements", "sx"), 1e-5)
 
     def test_stiff_layer_on_a_soft_base(self):
-        """Loads of the layer that balance each other bend it and hardly press the base: the certificate is blind to errors of
-        its rigid motion, which are some 10 times what rounding takes of the weakest pivot. Displacements times the contrast
+        """Loads of the layer that balance each other bend it and hardly press the base: the certificate does not see errors of
+        its rigid-body displacement, which are some 10 times the rounding of the weakest pivot. Displacements times the contrast
         no longer change with it, so that a wrong one shows."""
         balanced = ((0, -1.0), (4, 1.0), (8, 1.0), (12, -1.0))
         for loads, worth in ((balanced, 1.0), (((4, -1.0),), 0.0)):
@@ -137,7 +137,7 @@ class Contrast(Extremes):
 
 
 def yielding(points, pressure, method=None):
-    """A column in plane stress under a pressure: uniaxial, so that its stress is on the curve as written."""
+    """A column in plane stress under a pressure: uniaxial, so that its stress is on the given curve."""
     deck = Deck(1000.0, 0.3, plane=PLANE_STRESS)
     deck.curve(1, points)
     if method:
@@ -161,7 +161,7 @@ class Curves(Extremes):
             self.assertEqual(result.summary["plastic_elements"], 2)
 
     def test_yield_point_far_below_the_next(self):
-        """A load near a yield stress that is 1e-12 to 1e-32 of the next stress: no digits of the next point are in the answer."""
+        """A load near a yield stress that is 1e-12 to 1e-32 of the next stress: the result has no digits of the next point."""
         for stress in (1e-10, 1e-20, 1e-30):
             for method in ("NEWTON", "INISTR"):
                 with self.subTest(stress=stress, method=method):
@@ -178,7 +178,7 @@ class Curves(Extremes):
                 self.near(result.approach, [-0.5*(points[k - 1][0] + points[k][0])]*2, 1e-8)
 
     def test_last_point(self):
-        """At it the table has not ended; a thousandth beyond it has."""
+        """At the last point the table has not ended; a thousandth above it has."""
         points = [(0.001, 1.0), (0.01, 1.4), (0.02, 1.5)]
         for method in ("NEWTON", "MODSEC"):
             at, beyond = (self.valid(yielding(points, pressure, method=method)) for pressure in (1.5, 1.501))
@@ -188,19 +188,19 @@ class Curves(Extremes):
                              beyond.message)
 
     def test_flat_curve(self):
-        """Below the yield stress it carries, at it and beyond it nothing says how far it goes."""
+        """Below the yield stress it carries the load; at it and above, the strain is undetermined."""
         flat = [(0.001, 1.0), (1.0, 1.0)]
         self.near(self.valid(yielding(flat, 0.999999)).approach, [-0.000999999]*2)
         self.refused(yielding(flat, 1.000001), 1, "limit load")
         self.refused(yielding(flat, 1e6), 1, "limit load")
 
     def test_flat_to_the_last_digit(self):
-        """A second slope of 1e-9 of the first is one: the strain is large, and right."""
+        """A second slope of 1e-9 of the first is valid: the strain is large, and correct."""
         result = self.valid(yielding([(0.001, 1.0), (1e6 + 0.001, 2.0)], 1.001, method="NEWTON"))
         self.near(result.approach, [-(0.001 + 1e3)]*2, 1e-6)
 
     def test_steps_and_teeth(self):
-        """Curves that fall, stand still in strain, or begin elsewhere are refused with their point."""
+        """Curves that fall, have equal strains, or do not begin on the elastic line are rejected with the point."""
         for points in ([(0.001, 1.0), (0.002, 0.9)], [(0.001, 1.0), (0.001, 1.1)], [(0.001, 1.0), (0.002, 1.1), (0.0015, 1.2)]):
             self.refused(yielding(points, 1.0), 2, "TABLES1 1.*(?:strain|stress)")
         self.refused(yielding([(0.002, 1.0), (0.003, 1.1)], 1.0), 2, "(?:TABLES1|MATS1) 1")

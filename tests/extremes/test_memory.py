@@ -1,5 +1,5 @@
-"""Memory as it is forecast in the plan, against what the run has held at its peak: 0.8 to 1.3 of it, and of small decks
-within what that differs by from run to run."""
+"""The memory forecast of the plan is 0.8 to 1.3 of the peak of the run; for small decks the difference is
+within its variation from run to run."""
 import os
 import pathlib
 import re
@@ -10,12 +10,12 @@ import unittest
 from scene import PROGRAM, Deck
 
 INPUT = pathlib.Path(os.environ["EPCONT_SOURCE_DIR"])/"input"
-#: MB by which peaks differ from run to run and from deck to deck: pages of shared libraries that are touched or not.
+#: Variation of peaks between runs and decks [MB]: pages of shared libraries that are in use or not.
 WAVERS = 3.0
 
 
 def blocks_in_a_row(count, parts):
-    """Each held at its bottom, and against the one before; the first is pushed."""
+    """Bars in a row, each fixed at its bottom, in contact with the one before; the first is pushed."""
     deck = Deck(1000.0, 0.3)
     before = None
     for k in range(count):
@@ -32,7 +32,7 @@ def blocks_in_a_row(count, parts):
 
 
 def stack(count, parts):
-    """Blocks one upon the other, each free to move up and to turn."""
+    """Stacked blocks, each unconstrained vertically and in rotation."""
     deck = Deck(1000.0, 0.0)
     ticks = [float(i) for i in range(parts + 1)]
     tops = deck.stack([(ticks, [k*parts + y for y in ticks]) for k in range(count)], (parts + 1)**2)
@@ -41,7 +41,7 @@ def stack(count, parts):
 
 
 def strip(pairs, rows, length, height=1.0):
-    """On a floor, pressed from above: all pairs touch."""
+    """On a floor, pressed from above: all pairs are in contact."""
     deck = Deck(1.0, 0.3)
     nodes = deck.block(1, [length*k/(pairs - 1) for k in range(pairs)], [height*j/(rows - 1) for j in range(rows)])
     deck.stand(nodes, 1.0, first=5_000_001)
@@ -49,14 +49,14 @@ def strip(pairs, rows, length, height=1.0):
 
 
 def peak(deck, directory):
-    """Exit status and MB. The shell is small: what a process holds counts from where it was born."""
+    """Exit status and peak [MB]. A small shell starts the process, because its memory counts from there."""
     run = subprocess.run(["sh", "-c", '"$@"; exit $?', "sh", PROGRAM, str(deck), "-o", directory, "--timing", "--quiet"],
                          capture_output=True, text=True, timeout=200, env={**os.environ, "OMP_NUM_THREADS": "1"})
     return run.returncode, float(re.search(r"peak memory +([\d.]+) MB", run.stderr)[1])
 
 
 def forecast(deck):
-    """MB in the plan; None for a deck that is rejected."""
+    """Forecast of the plan [MB]; None for a rejected deck."""
     run = subprocess.run([PROGRAM, str(deck), "--plan"], capture_output=True, text=True, timeout=100)
     found = re.search(r"^  memory (\d+) MB", run.stdout, re.MULTILINE)
     return found and float(found[1])
@@ -67,7 +67,7 @@ class Memory(unittest.TestCase):
         place = tempfile.TemporaryDirectory()
         self.addCleanup(place.cleanup)
         self.directory = place.name
-        # What the least deck takes more than its forecast is that of libraries, which differ from machine to machine.
+        # The difference of the smallest deck from its forecast is that of libraries, which depend on the machine.
         least = INPUT/"one_element"/"one_element.dat"
         self.libraries = max(0.0, peak(least, self.directory)[1] - forecast(least))
 
@@ -93,7 +93,7 @@ class Memory(unittest.TestCase):
             self.compare(deck, deck.stem)
 
     def test_a_thousand_bodies(self):
-        """The pairs of all were once counted for each: 100 times too much, and the deck refused."""
+        """The pairs of all bodies were once counted for each: the forecast was 100 times too large, and the deck rejected."""
         self.compare(blocks_in_a_row(1000, 2), "row")
 
     def test_bodies_that_are_free_to_move(self):
@@ -106,7 +106,7 @@ class Memory(unittest.TestCase):
         self.compare(strip(300, 60, 5.0), "fine")
 
     def test_load_cases(self):
-        """Cases that yield hold the factors of the unloaded state too, however many they are."""
+        """Yielding cases keep the factors of the unloaded state too, for any number of cases."""
         for cases, yields in ((2, True), (25, True), (2, False), (25, False)):
             text = strip(300, 60, 5.0).text()
             if yields:

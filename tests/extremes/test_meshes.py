@@ -1,4 +1,4 @@
-"""Extremes of elements; and of the order of a deck, which must not matter."""
+"""Extremes of elements; and the order of a deck, which must not matter."""
 import random
 import unittest
 
@@ -7,7 +7,7 @@ from test_scales import punch
 
 
 def flat(aspect, size=1.0, triangles=False):
-    """A column of 2 x 3 cells whose cells are so many times wider than high."""
+    """A column of 2 x 3 cells, each `wide` times wider than high."""
     deck = Deck(*STEEL)
     deck.stand(deck.block(1, [size*k for k in range(3)], [size/aspect*k for k in range(4)], triangles=triangles), 10.0)
     return deck
@@ -26,7 +26,7 @@ class Shapes(Extremes):
                         self.near(result.approach, [give]*2, 1e-6)
 
     def test_thin_layer(self):
-        """One row of flat elements in a body that is not: the foil has the strain of all."""
+        """One row of flat elements in a body of normal ones: the foil has the strain of all."""
         for height in (1e-2, 1e-4, 1e-6, 1e-8):
             for triangles in (False, True):
                 with self.subTest(height=height, triangles=triangles):
@@ -43,14 +43,14 @@ class Shapes(Extremes):
                         self.near(result.column("elements", "sy"), [-5.0]*len(result.elements), 1e-8)
 
     def test_areas(self):
-        """Areas of 1e-14 and 1e14 are areas like others."""
+        """Areas of 1e-14 and 1e14 are valid."""
         for size in (1e-7, 1e7, 1e-14, 1e14):
             for triangles in (False, True):
                 result = self.valid(flat(1.0, size, triangles))
                 self.near(result.force, [2.5, 5.0, 2.5])
 
     def test_no_area(self):
-        """Elements on one line, or a billionth of a billionth from it."""
+        """Elements on one line, or 1e-18 from it."""
         for height in (0.0, 1e-18, 1e-13):
             deck = Deck(*STEEL)
             for node, (x, y) in enumerate(((0.0, 0.0), (1.0, 0.0), (0.5, height)), 1):
@@ -60,8 +60,8 @@ class Shapes(Extremes):
             self.refused(deck, 2, "CTRIA3 1: its corners 1 2 3 lie on one line|CTRIA3 1.*one line")
 
     def test_small_beside_large(self):
-        """Sizes from 1 down to 1e-9 in one mesh, each half of the next one round it: a uniform pressure stays one. Measured
-        from the small end all digits are there; from the other one the small elements travel too far for theirs."""
+        """Sizes from 1 down to 1e-9 in one mesh, each half of the next: a uniform pressure stays uniform. Measured
+        from the small end all digits are there; from the other one the small elements move too far for their digits."""
         for halvings in (10, 20, 30):
             for at in (0, 2):
                 with self.subTest(halvings=halvings, at=at):
@@ -76,7 +76,7 @@ class Shapes(Extremes):
                         self.near(top, [-0.01*(1.0 - 0.3**2)]*2)
 
     def nested(self, halvings, at):
-        """Squares about one corner, its pressed sides, and the approach at the corner (0) or at the top (2)."""
+        """Squares about one corner, its loaded edges, and the approach at the corner (0) or at the top (2)."""
         deck = Deck(1000.0, 0.3)
         sizes = [2.0**-k for k in range(halvings + 1)]
         deck.grid(9000, 0.0, 0.0)
@@ -104,7 +104,7 @@ class Repeated(Extremes):
             self.twins(base, self.valid(deck, order=order))
 
     def test_any_numbers(self):
-        """Other ids in another order: the same scene."""
+        """Other ids in another order: the same model."""
         deck = punch()
         base = self.valid(deck)
         generator = random.Random(6)

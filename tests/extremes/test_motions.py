@@ -1,4 +1,4 @@
-"""Extremes of supports and free motions."""
+"""Extremes of supports and rigid-body modes."""
 import math
 import unittest
 
@@ -6,7 +6,7 @@ from scene import RINGS, STEEL, Deck, Extremes
 
 
 def plate(load=(0.0, -1.0), at=None, feet=(0.0, 2.0), gaps=(0.0, 0.0), measured=(1, 9)):
-    """A block of 2 x 1 on feet at these places of its lower side (nodes 1 to 9), free to move; all of the load at one upper
+    """A block of 2 x 1 on feet at these coordinates of its lower side (nodes 1 to 9), unconstrained; all of the load at one upper
     node (or a third at each end and the middle); the approach of these nodes."""
     deck = Deck(*STEEL)
     deck.nodes = deck.block(1, [k/4.0 for k in range(9)], [0.0, 0.5, 1.0])
@@ -22,13 +22,13 @@ def plate(load=(0.0, -1.0), at=None, feet=(0.0, 2.0), gaps=(0.0, 0.0), measured=
 
 class Supports(Extremes):
     def test_support_on_a_contact_node(self):
-        """The node that measures the approach touches: its approach is none."""
+        """The node that measures the approach is in contact: its approach is zero."""
         result = self.valid(plate())
         self.near(result.force, [0.5, 0.5])
         self.near(result.approach, [0.0, 0.0], scale=1e-10)
 
     def test_support_anywhere(self):
-        """Which freedoms measure the motion changes no force, gap or displacement."""
+        """The choice of SUPORT DOFs changes no force, gap or displacement."""
         reference = None
         for measured in ((1, 9), (1, 2), (5, 9), (19, 27), (10, 27), (4, 6)):
             result = self.valid(plate(at=3, gaps=(0.0, 0.01), measured=measured))
@@ -37,7 +37,7 @@ class Supports(Extremes):
             self.near(result.column("nodes", "uy"), reference.column("nodes", "uy"))
 
     def test_supports_next_to_each_other(self):
-        """1e-6 of the size apart they still tell the motions apart, to fewer digits; nearer, they do not."""
+        """At a distance of 1e-6 of the size they still define the modes, with fewer digits; closer, they do not."""
         for apart in (1e-3, 1e-4, 1e-5, 1e-6, 1e-8):
             with self.subTest(apart=apart):
                 result = self.right_or_refused(self.supported(apart, 1, 2), "rounding|condition|hardly distinguish its rigid-body modes")
@@ -58,7 +58,7 @@ class Supports(Extremes):
         return deck
 
     def test_round_fits(self):
-        """A disc, or a ring, free to turn in the next ring bears what it bears held, whatever digits and chords; an oval turns."""
+        """A disc, or a ring, free to rotate in the next ring, carries the same as a fixed one, whatever digits and chords; an oval rotates."""
         for kind, around in (("CTRIA3", (22, 31)), ("CQUAD4", (24, 48)), ("CTRIA6", (16, 32)), ("CQUAD8", (9, 18)), ("CQUAD4", (24, 37, 48))):
             for digits in (16, 6):
                 with self.subTest(kind=kind, around=around, digits=digits):
@@ -73,8 +73,8 @@ class Supports(Extremes):
         return max(abs(one - other) for one, other in zip(held.force, free.force)) > 1e-6 * sum(held.force)
 
     def fit(self, hold, kind, around, digits, oval=0.0, aside=0.0):
-        """Rings with so many sides around, each .001 too large for the next; the first is loaded towards its centre, if that is exact or it
-        is held."""
+        """Rings with some edges around, each .001 too large for the next; the first is loaded towards its centre, if that is exact or it
+        is fixed."""
         deck, step = Deck(*STEEL), 2 if kind[-1] in "68" else 1
         for k, n in enumerate(around):
             n, first = n * step, 1000 * (k + 1)
@@ -114,7 +114,7 @@ class Supports(Extremes):
         return deck
 
     def test_feet_that_lean(self):
-        """By less than 1e-10 they push nothing."""
+        """Below 1e-10 they push nothing."""
         for lean in (1e-12, 1e-9):
             deck = Deck(*STEEL)
             nodes = deck.block(1, [0.0, 1.0, 2.0], [0.0, 1.0])
@@ -125,7 +125,7 @@ class Supports(Extremes):
             self.valid(deck) if lean < 1e-10 else self.refused(deck, 1, "and no contact resists it")
 
     def test_no_load(self):
-        """A free body without load rests where it is; without SUPORT it is refused with the card to paste."""
+        """An unconstrained body without load stays at rest; without SUPORT it is rejected with the card to add."""
         for at in (0, None):
             result = self.valid(plate(load=(0.0, 0.0), at=at))
             self.near(result.force + result.approach, [0.0]*4, scale=1e-300)
@@ -150,10 +150,10 @@ class Supports(Extremes):
             self.refused(plate(at=at, feet=(1.0,)), 1, "and no contact resists it")
 
     def test_at_the_edge_of_equilibrium(self):
-        """The load above the last foot: that foot has it all; a little beyond it the body turns over."""
+        """The load above the last foot: that foot has all of it; a little beyond it the body falls over."""
         for beyond, falls in ((-1e-3, False), (-1e-9, False), (0.0, False), (1e-9, True), (1e-3, True)):
             deck = plate(load=(0.0, 0.0), at=0, feet=(0.25, 1.75))
-            deck.force(19 + 1, 0.0, -1.0 - beyond)     # above the first foot, and a lever that turns beyond it
+            deck.force(19 + 1, 0.0, -1.0 - beyond)     # above the first foot, and a lever arm that tips the body beyond it
             deck.force(19 + 0, 0.0, -beyond*5.0)
             deck.force(19 + 8, 0.0, beyond*5.0)
             with self.subTest(beyond=beyond):
@@ -168,7 +168,7 @@ class Supports(Extremes):
         self.refused(plate(load=(0.0, 1e-12)), 1, "and no contact resists it")
 
     def test_turning_nearly_free(self):
-        """Feet 1e-6 of the size apart: forces are 1e6 of the load, and exact."""
+        """Feet at a distance of 1e-6 of the size: forces are 1e6 of the load, and exact."""
         for apart in (1e-2, 1e-4, 1e-6):
             deck = Deck(*STEEL)
             nodes = deck.block(1, [0.0, 1.0 - apart, 1.0, 2.0], [0.0, 1.0])
@@ -185,7 +185,7 @@ class Supports(Extremes):
 
 class Ties(Extremes):
     def two_blocks(self, upper_load):
-        """Two blocks that share one node, a hinge; the lower is held, the upper leans on a wall that faces -x."""
+        """Two blocks that share one node, a hinge; the lower is fixed, the upper leans on a wall that faces -x."""
         deck = Deck(*STEEL)
         lower = deck.block(1, [0.0, 1.0], [0.0, 1.0])
         deck.hold(12, *lower[0])
@@ -196,7 +196,7 @@ class Ties(Extremes):
         return deck
 
     def test_hinge(self):
-        """Node 4 of the block below carries the next one, which turns about it against the wall."""
+        """Node 4 of the block below carries the next one, which rotates about it against the wall."""
         deck = self.two_blocks(-1.0)
         self.refused(deck, 2, "SUPORT")
         deck.support(1, 12)
@@ -207,8 +207,8 @@ class Ties(Extremes):
         self.refused(deck, 1, "and no contact resists it")
 
     def test_chain_of_hinges(self):
-        """Forty bars that hang in a row, each by one node of the last: as many free motions. Pushed aside at the lower end,
-        each leans on a wall at its middle with twice the load if the walls stand on alternate sides, else one swings free."""
+        """Forty bars in a hanging row, each on one node of the last: as many rigid-body modes. Pushed sideways at the lower end,
+        each leans on a wall at its middle with twice the load if the walls are on alternate sides, otherwise one swings freely."""
         result = self.valid(self.chain(alternate=True))
         self.near(result.force, [2.0]*40)
         self.refused(self.chain(alternate=False), 1, "and no contact resists it")
@@ -232,7 +232,7 @@ class Ties(Extremes):
         return deck
 
     def test_platen_that_slides(self):
-        """The upper side follows one node, up and down, as a rigid platen; it is the approach."""
+        """The upper side follows one node vertically, as a rigid platen; it gives the approach."""
         for leader_at in (0, 2):
             deck = Deck(*STEEL)
             nodes = deck.block(1, [0.0, 1.0, 2.0], [0.0, 1.0])
@@ -248,8 +248,8 @@ class Ties(Extremes):
 
 
     def test_nearly_a_hinge(self):
-        """Two parts joined through one short side turn about it the more, the shorter it is: as 1/side, that of the coordinates
-        as they are rounded."""
+        """Two parts joined by one short edge rotate about it the more, the shorter it is: as 1/edge, with the length of the
+        rounded coordinates."""
         turned = {}
         for side in (1e-2, 1e-4, 1e-5, 1e-6, 1e-8, 1e-10, 1e-14):
             deck = Deck(1000.0, 0.3)
@@ -271,7 +271,7 @@ class Ties(Extremes):
             self.near(turned[side], turned[1e-6], 1e-6)
 
     def test_travel_prescribed(self):
-        """Supports may move far more than the body gives way: their common motion takes no digits of its strains."""
+        """Supports may move much farther than the body deforms: their common displacement takes no digits of the strains."""
         for travel in (0.0, 1.0, 1e3, 1e6, 1e9, 1e12):
             deck = Deck(1000.0, 0.3)
             nodes = deck.block(1, [0.0, 1.0, 2.0], [0.0, 1.0, 2.0])
@@ -285,13 +285,13 @@ class Ties(Extremes):
                 self.near(result.column("nodes", "uy")[:3], [travel]*3, 1e-15)
 
     def test_slender_ring(self):
-        """So far from its axis that hardly anything resists its spreading; pressed on a floor evenly."""
+        """So far from its axis that hardly anything resists its expansion; pressed uniformly on a floor."""
         for radius in (1e1, 1e2, 1e3, 1e4, 1e6, 1e9):
             deck = Deck(1000.0, 0.0, plane=RINGS)
             nodes = deck.block(1, [radius + i for i in range(4)], [0.0, 1.0, 2.0], triangles=True)
             deck.floor(nodes[0])
             deck.support(2, nodes[2][0])
-            # A pressure of 1.0 as nodal forces of whole rings, exact for sides with linear displacement.
+            # A pressure of 1.0 as nodal forces of the full circle, exact for edges with linear displacement.
             forces = [ring_force(radius, i, sides) for i, sides in enumerate(((1,), (-1, 1), (-1, 1), (-1,)))]
             for node, force in zip(nodes[2], forces):
                 deck.force(node, 0.0, -force)
@@ -303,14 +303,14 @@ class Ties(Extremes):
 
 
 def ring_force(radius, place, sides):
-    """Of a unit pressure on the sides inward (-1) and outward (1) of a node: 2 pi times the integral of its share times r."""
+    """Nodal force of a unit pressure on the edges inward (-1) and outward (1) of a node: 2 pi times the integral of its shape function times r."""
     at = radius + place
     return 2.0*math.pi*sum(at/2.0 + side/6.0 for side in sides)
 
 
 class Bodies(Extremes):
     def test_stack_of_two_hundred(self):
-        """200 blocks, one upon the other: each pair of neighbours carries the load from the top, each give adds up."""
+        """200 stacked blocks: each pair of neighbours carries the load from the top, and the deformations add up."""
         deck = Deck(1000.0, 0.0)
         count = 200
         tops = deck.stack([([0.0, 1.0], [float(k), k + 1.0]) for k in range(count)], 10)

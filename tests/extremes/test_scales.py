@@ -1,4 +1,4 @@
-"""Extremes of loads, lengths, units, places, and of what numbers are."""
+"""Extremes of loads, lengths, units, positions, and of the range of numbers."""
 import itertools
 import unittest
 
@@ -7,8 +7,8 @@ from scene import STEEL, Deck, Extremes, written
 
 def column(load=10.0, size=1.0, young=STEEL[0], poisson=STEEL[1], place=(0.0, 0.0), cells=(2, 3), first=1,
            triangles=False, thickness=1.0):
-    """A block of 2 x 3 sizes, pressed on a floor that lets it spread: uniform stress, known exactly. One body-free motion
-    along x is held, the other two are the approach."""
+    """A block of 2 x 3 sizes, pressed on a floor that lets it spread: uniform stress, known exactly. One rigid-body mode
+    along x is fixed, the other two are the approach."""
     deck = Deck(young, poisson, thickness)
     xs = [place[0] + 2.0*size*k/cells[0] for k in range(cells[0] + 1)]
     ys = [place[1] + 3.0*size*k/cells[1] for k in range(cells[1] + 1)]
@@ -24,7 +24,7 @@ def column_answer(load=10.0, size=1.0, young=STEEL[0], poisson=STEEL[1], cells=2
 
 
 def punch(force=1.0, length=1.0, load=40.0, place=(0.0, 0.0)):
-    """A block with a rounded lower side: part of it touches. In units that are so many times smaller."""
+    """A block with a rounded lower side, partly in contact, in smaller units."""
     deck = Deck(1000.0*force/length/length, 0.3, length)
     xs = [place[0] + length*k for k in range(-4, 5)]
     deck.nodes = deck.block(1, xs, [place[1] + length*k for k in range(5)])
@@ -56,7 +56,7 @@ class Scales(Extremes):
             self.column_is_right(young=young)
 
     def test_any_unit(self):
-        """Powers of two, of ten, and old ones."""
+        """Powers of two, of ten, and old units."""
         base = self.valid(punch())
         self.assertTrue(0 < sum(base.touching) < 9)
         for force, length in ((2.0**40, 1.0), (2.0**-40, 1.0), (1.0, 2.0**30), (1.0, 2.0**-30), (2.0**55, 2.0**-15), (2.0**-55, 2.0**15),
@@ -71,7 +71,7 @@ class Scales(Extremes):
                 self.twins(base, self.valid(punch(place=(far, -far))))
 
     def test_far_in_fields_that_round(self):
-        """Coordinates a million times the size keep ten digits of the size: so does what follows from them."""
+        """Coordinates a million times the size keep ten digits of the size; so do the results."""
         base = self.valid(punch(length=0.3))
         self.twins(base, self.valid(punch(length=0.3, place=(1e6/3.0, 1e6/7.0))), relative=1e-8)
 
@@ -86,7 +86,7 @@ class Scales(Extremes):
                 self.refused(deck.text().replace("MAT1,1,210000.0", "MAT1,1," + written), 2, f"MAT1 1.*(?:{cause})")
 
     def test_products_beyond_the_largest_number(self):
-        """Each field is a number of its own; stiffness, area or work would be none."""
+        """Each field is in the range of numbers, but stiffness, area or work is not."""
         for scale in ({"size": 1e200}, {"young": 1e308}, {"young": 1e-300, "load": 1e300}, {"load": 1e307, "size": 1e-6},
                       {"size": 1e31}, {"young": 0.9e-30}, {"load": -1e40}):
             with self.subTest(**scale):
@@ -96,12 +96,12 @@ class Scales(Extremes):
                 self.refused(column(**scale), 2, "its sides are shorter than 1.000E-30")
 
     def test_all_ranges_at_their_ends(self):
-        """No product of loads, lengths, moduli and thicknesses leaves the range of numbers where these are within theirs."""
+        """No product of loads, lengths, moduli and thicknesses leaves the range of numbers if they are within theirs."""
         for load, size, young, thickness in itertools.product((1e-59, 1e29), (1e-29, 1e29), (1e-30, 1e30), (1e-30, 1e30)):
             self.column_is_right(load=load, size=size, young=young, thickness=thickness)
 
     def test_causes_too_small(self):
-        """The squares of a load, over stiffness, would be no numbers: work would vanish, and equilibrium be a toss-up."""
+        """The squares of a load, over stiffness, would underflow: work would vanish, and equilibrium could not be judged."""
         deck = column()
         for card, field in (("FORCE,1,1,0,1.-61,1.0", "F"), ("FORCE,1,1,0,-1.-200,0.0,1.0", "F"), ("PLOADX1,1,1,1.-200,,1,2", "PA"),
                             ("PLOADX1,1,1,1.0,-9.-61,1,2", "PB"), ("SPC,1,1,1,1.-200", "D1"), ("SPC,1,1,1,,2,1,-1.-99", "D2")):

@@ -1,5 +1,5 @@
-"""Extremes of slender bodies: as many digits of their displacements are lost as their stiffness differs along and across; refinement
-finds them again. Right by beam theory, exact for six-node elements bent by couples; by another solver for the others."""
+"""Extremes of slender bodies: displacements lose as many digits as the ratio of the stiffnesses along and across; iterative refinement
+recovers them. Compared with beam theory, exact for six-node elements under pure bending, and with another solver for the others."""
 import unittest
 
 from scene import PLANE_STRESS, Deck, Extremes
@@ -8,7 +8,7 @@ YOUNG = 2.1e5
 
 
 def strip(length, solver, order):
-    """A bar of height 1 clamped at its left end, its elements of 3, 4 or 6 nodes; no contraction, so the clamp holds nothing back."""
+    """A bar of height 1 clamped at its left end, with elements of 3, 4 or 6 nodes; no contraction, so the clamp adds no stress."""
     deck = Deck(YOUNG, 0.0, plane=PLANE_STRESS)
     deck.parameter("SOLVER", solver)
     if order == 6:
@@ -22,7 +22,7 @@ def strip(length, solver, order):
 
 
 def six_node_block(deck, length, first, bottom):
-    """One row of squares, each of two triangles; the columns of nodes, those of the middles of sides between them."""
+    """One row of squares, each of two triangles; the columns of nodes, those of the mid-side nodes between them."""
     columns = [[deck.grid(first + 3*i + j, 0.5*i, bottom + 0.5*j) for j in range(3)] for i in range(2*length + 1)]
     for left, middle, right in zip(columns[::2], columns[1::2], columns[2::2]):
         deck.element(1, left[0], right[0], right[2], middle[0], right[1], middle[1])
@@ -32,7 +32,7 @@ def six_node_block(deck, length, first, bottom):
 
 class Slender(Extremes):
     def test_couple_on_six_node_elements(self):
-        """A couple at the end bends to a parabola, which these elements hold."""
+        """A moment at the end bends it to a parabola, which these elements represent exactly."""
         for length in (10, 40, 100, 400):
             for solver in ("BAND", "FRONTAL"):
                 with self.subTest(length=length, solver=solver):
@@ -56,11 +56,11 @@ class Slender(Extremes):
                         deck.force(deck.columns[-1][1], 0.0, -1.0)
                         tips.append(self.valid(deck).nodes[deck.columns[-1][1]]["uy"])
                     self.near(tips[1], tips[0], 1e-8)
-                    if order == 6:   # and shear: 12/5 (L/h)/E of it, where E = 2 G
+                    if order == 6:   # and shear: 12/5 (L/h)/E of it, with E = 2 G
                         self.near(tips[0], -(4.0*length**3 + 2.4*length)/YOUNG, 0.03)
 
     def test_two_bars_in_contact(self):
-        """One bar upon the end of another, of the same length: each carries half of the force."""
+        """One bar on the end of another of the same length: each carries half of the force."""
         for length in (10, 40, 400):
             with self.subTest(length=length):
                 deck = strip(length, "BAND", 6)

@@ -1,4 +1,4 @@
-"""Threads, which must not matter: the same bytes on any number of them, and as many as are granted and pay."""
+"""Threads must not matter: the same bytes with any number of them, and as many as are allowed and useful."""
 import functools
 import os
 import pathlib
@@ -12,13 +12,13 @@ from scene import PROGRAM, STEEL, Deck, Extremes, solve
 from test_contacts import row
 from test_scales import punch
 
-#: The last: of a list the first number counts, whatever the second says of regions within regions.
+#: The last one: the first number of a list counts, the second is for nested regions.
 COUNTS = (1, 2, 3, 8, "1,2")
-FEW = (1, 3)   # of large bodies, and of what differs little from a scene that runs with all of them
+FEW = (1, 3)   # for large bodies, and for models that differ little from one that runs with all of them
 
 
 def stack(bodies=4, across=28, young=STEEL[0], parameters=(), stress=None):
-    """Blocks one upon the other, each higher than the one below, the load on the left half; `stress`: where they yield."""
+    """Stacked blocks, each higher than the one below, the load on the left half; `stress`: yield stress."""
     deck = Deck(young, STEEL[1])
     for name, value in parameters:
         deck.parameter(name, value)
@@ -33,7 +33,7 @@ def stack(bodies=4, across=28, young=STEEL[0], parameters=(), stress=None):
 
 
 def brittle(deck, *bodies):
-    """A soft layer below blocks of a stack: rounding leaves nothing of their stiffness as a whole."""
+    """A soft layer below blocks of a stack: rounding destroys their stiffness as a whole."""
     deck.material(2, 1e-14*STEEL[0], STEEL[1])
     for k, (name, *fields) in enumerate(deck.cards):
         if name == "CQUAD4" and fields[2] // 100000 in bodies and fields[2] % 100000 < 29*4:
@@ -42,7 +42,7 @@ def brittle(deck, *bodies):
 
 
 class Bytes(Extremes):
-    """The same of scenes with matrices large enough for several threads."""
+    """The same for models with matrices large enough for several threads."""
 
     def same(self, deck, status=0, counts=COUNTS):
         one, *others = [solve(deck, threads=count) for count in counts]
@@ -75,7 +75,7 @@ class Bytes(Extremes):
         self.same(stack(1, 150, stress=120.0), counts=FEW)
 
     def test_joined_bodies_with_a_platen(self):
-        """Nodes of a platen share an equation: forces on them are added by one thread."""
+        """Nodes of a platen share an equation: one thread adds the forces on them."""
         deck = Deck(*STEEL)
         deck.parameter("RULE", "JOINED")
         nodes = deck.block(1, [i/300 for i in range(301)], [j/300 for j in range(81)])
@@ -85,7 +85,7 @@ class Bytes(Extremes):
         self.same(deck, counts=(1, 2, 3, 8))
 
     def test_large_body_of_triangles(self):
-        """Elements in several parts, half of them clockwise: read, checked, compared and certified by threads."""
+        """Elements in several parts, half of them clockwise: threads read, check, compare and certify them."""
         deck = Deck(*STEEL)
         deck.stand(deck.block(1, [i/150 for i in range(151)], [j/150 for j in range(151)], triangles=True), 100.0)
         for k, (name, *fields) in enumerate(deck.cards):
@@ -94,7 +94,7 @@ class Bytes(Extremes):
         self.same(deck, counts=FEW)
 
     def test_faults_of_a_long_deck(self):
-        """Whoever reads a card: its faults come in the order of the lines."""
+        """Whichever thread reads a card, errors come in the order of the lines."""
         deck = stack(1, 150)
         for k in range(3000, len(deck.cards), 4001):
             name, *fields = deck.cards[k]
@@ -108,12 +108,12 @@ class Bytes(Extremes):
         self.same(stack(12, 24, parameters=[("SOLVER", "BAND")]), counts=FEW)
 
     def test_singular_bodies(self):
-        """Whether such a body is factored or not is a matter of rounding: not of which thread comes first."""
+        """Rounding decides whether such a body can be factored, not the order of the threads."""
         result = self.same(brittle(stack(), 2, 4), status=4)
         self.assertRegex(result.message, "the stiffness of the body of GRID [24]00000")
 
     def test_little_memory(self):
-        """Where there is no memory for more threads, one does it all."""
+        """If there is no memory for more threads, one does everything."""
         free = solve(stack(), threads=1)
         for megabytes in range(720, 2000, 160):
             with self.subTest(megabytes=megabytes):
@@ -123,7 +123,7 @@ class Bytes(Extremes):
 
 
 class Counts(Extremes):
-    """How many threads there are at most in a run."""
+    """Largest number of threads in a run."""
 
     def most(self, deck, **environment):
         with tempfile.TemporaryDirectory() as directory:
@@ -142,7 +142,7 @@ class Counts(Extremes):
             return most
 
     def setUp(self):
-        """With a BLAS that bears threads, where OpenMP is built in: else there is one, always."""
+        """With a BLAS that allows threads, if OpenMP is built in: otherwise always one."""
         if self.most(stack(), OMP_NUM_THREADS="2") == 1:
             self.skipTest("one thread: built without OpenMP, or a BLAS that does not bear more")
 
@@ -162,4 +162,4 @@ class Counts(Extremes):
 
 
 if __name__ == "__main__":
-    unittest.main(verbosity=2)   # tells why a test is skipped
+    unittest.main(verbosity=2)   # shows why a test is skipped

@@ -1,4 +1,4 @@
-"""Many bodies that bear each other in many ways, by either rule: the same answers, and joined bodies find theirs by themselves."""
+"""Many bodies in contact in many ways, with both contact solvers: the same answers, and joined bodies find theirs without the flexibility matrix."""
 import math
 import os
 import pathlib
@@ -12,7 +12,7 @@ WIDTH, COLUMNS, ROWS = 2.0, 4, 2
 
 
 class Pile(Deck):
-    """Free bodies, whose pairs are numbered as they come."""
+    """Unconstrained bodies, whose pairs are numbered in the order of the calls."""
 
     def __init__(self, moduli=(1.0e5,)):
         super().__init__()
@@ -63,7 +63,7 @@ def wall(size, gap=0.0, at_top=None, side=0.1, moduli=(1.0e5,)):
 
 
 def disc(deck, x, y, parts=12, rings=2):
-    """Its middle and its rim."""
+    """Its centre and its rim."""
     middle = deck.grid(deck.nodes, x, y)
     rim = [[deck.grid(deck.nodes + 1 + parts*k + i, x + (k + 1)/rings*math.cos(2*math.pi*i/parts), y + (k + 1)/rings*math.sin(2*math.pi*i/parts))
             for i in range(parts)] for k in range(rings)]
@@ -77,7 +77,7 @@ def disc(deck, x, y, parts=12, rings=2):
 
 
 def rollers(count):
-    """Between the floor and a plate, free to roll and to turn: nothing resists either."""
+    """Between the floor and a plate, free to roll and to rotate: nothing resists either."""
     deck = Pile()
     plate = deck.block(1, [1.25*k for k in range(2*count - 1)], [2.0, 2.5], 4_000_001)
     deck.support(2, plate[-1][0], plate[-1][-1])
@@ -130,7 +130,7 @@ def stack(count, moduli):
 
 class Walls(Extremes):
     def by_rules(self, text, names=("force", "gap")):
-        """The answers by both rules; that of joined bodies is no other's."""
+        """The same answers with all solvers."""
         answers = {}
         for rule in ("CONRY", "JOINED"):
             result = answers[rule] = self.valid(re.sub("(?m)^BEGIN BULK.*$", f"BEGIN BULK\nPARAM,RULE,{rule}", text, count=1))
@@ -140,7 +140,7 @@ class Walls(Extremes):
         return answers["JOINED"]
 
     def test_walls(self):
-        """Closed; with joints that open; under a load on one brick; of bricks as stiff as steel, or as rubber."""
+        """Closed; with joints that open; under a load on one brick; with bricks as stiff as steel, or as rubber."""
         six_decades = [10.0**(3 + k) for k in (3, 0, 6, 1, 5, 2, 4)]
         for name, deck in (("closed", wall(5)), ("gaps", wall(5, 2e-4)), ("nothing from the side", wall(5, 2e-4, side=0.0)),
                            ("one brick", wall(6, at_top=3)), ("unlike bricks", wall(5, moduli=six_decades))):
@@ -148,7 +148,7 @@ class Walls(Extremes):
                 self.by_rules(deck.text())
 
     def test_rollers(self):
-        """Sixteen motions that nothing resists stay at none."""
+        """Sixteen undetermined modes stay at zero."""
         result = self.by_rules(rollers(8).text())
         self.assertEqual(16, result.listing.count("undetermined: nothing resists or drives"))
 
@@ -159,7 +159,7 @@ class Walls(Extremes):
         self.by_rules(stack(30, [1.0e3, 1.0e9, 1.0e6, 1.0e4, 1.0e8]).text())
 
     def test_springs_and_sums(self):
-        """Springs, MPC, an RBE2 that turns."""
+        """Springs, MPC, an RBE2 that rotates."""
         for deck in ("bolt/bolt.dat", "tilting_platen/tilting_platen.dat"):
             with self.subTest(deck):
                 self.by_rules((INPUT/deck).read_text(), ())

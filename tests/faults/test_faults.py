@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""test_faults.py PROGRAM: what can go wrong around a run. Files appear whole or not at all, and the exit status says so."""
+"""test_faults.py PROGRAM: failures around a run. Files appear completely or not at all, and the exit status reports the failure."""
 import csv
 import fcntl
 import os
@@ -17,8 +17,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = None
 SMALL = ROOT / "input" / "hertz" / "hertz44.dat"
 LARGE = ROOT / "input" / "pin_in_lug" / "pin_in_lug60.dat"
-ALL = ("--tables", "all", "--vtk")   # every file there is
-STOPS = 24   # moments at which a run is stopped
+ALL = ("--tables", "all", "--vtk")   # all files
+STOPS = 24   # number of moments at which a run is stopped
 
 
 def sanitized():
@@ -54,7 +54,7 @@ class Places(Case):
         self.assertEqual("mine", place.read_text())
 
     def test_folder_not_writable(self):
-        # Nobody may make files here, not even root.
+        # No user may make files here, not even root.
         self.check(self.run_it(SMALL, "-o", "/proc/self"), 3, "/proc/self/hertz44.lst: cannot be written")
 
     def test_folder_without_rights(self):
@@ -134,7 +134,7 @@ class Choices(Case):
 
 class Disk(Case):
     def test_full_device(self):
-        """Each table in turn is written to a device that is full."""
+        """Each table in turn is written to a full device."""
         self.check(self.run_it(SMALL, "-o", self.directory, *ALL), 0)
         whole = self.files(self.directory)
         for name in whole:
@@ -145,7 +145,7 @@ class Disk(Case):
             self.assertEqual({}, {other: text for other, text in left.items() if text != whole[other]})
 
     def test_file_size_limit(self):
-        """Every limit on the size of a file gives whole files or none."""
+        """Every limit on the size of a file gives complete files or none."""
         self.check(self.run_it(SMALL, "-o", self.directory, *ALL), 0)
         whole = self.files(self.directory)
         for most in range(0, max(map(len, whole.values())) + 512, 512):
@@ -174,7 +174,7 @@ class Disk(Case):
 
 class Stopped(Case):
     def stop(self, number):
-        """Stop runs at moments spread over the whole of one; what they leave is whole, and of the same bytes."""
+        """Stop runs at moments spread over the whole run; the remaining files are complete, with the same bytes."""
         self.check(self.run_it(LARGE, "-o", self.directory, *ALL, stdout=subprocess.DEVNULL), 0)
         begun = time.monotonic()
         self.check(self.run_it(LARGE, "-o", self.directory, *ALL, stdout=subprocess.DEVNULL), 0)
@@ -187,7 +187,7 @@ class Stopped(Case):
                 run.send_signal(number)
                 ended.append(run.wait(60))
                 left = self.files(pathlib.Path(place))
-                self.assertIn(left.pop("pin_in_lug60.lock", b""), (b"",))   # empty, and locked no more
+                self.assertIn(left.pop("pin_in_lug60.lock", b""), (b"",))   # empty, and no longer locked
                 yield ended[-1], left, whole, place
         self.assertIn(-number, ended, "no run was stopped before its end")
 
@@ -215,7 +215,7 @@ class Stopped(Case):
 
 
 class OneRunAtATime(Case):
-    """Results are of one run; what is there under the name of a deck is that run's."""
+    """Results belong to one run; the files with the name of a deck are that run's."""
     def deck(self, text=None):
         path = self.directory / "scene.dat"
         path.write_text(pathlib.Path(SMALL).read_text() if text is None else text)
@@ -230,11 +230,11 @@ class OneRunAtATime(Case):
                                       "or take another -o DIR\n".encode()), (run.returncode, run.stdout, run.stderr))
             self.assertEqual(b"of the other\n", self.files(self.directory)["hertz44.lst"])
             self.check(self.run_it(SMALL, "--check"), 0)
-        self.check(self.run_it(SMALL, "-o", self.directory), 0)   # left behind, and nobody's
+        self.check(self.run_it(SMALL, "-o", self.directory), 0)   # left over, without an owner
         self.assertNotIn("hertz44.lock", self.files(self.directory))
 
     def test_two_at_once(self):
-        """One of them ends, and what is there is whole and its own; the others refuse, or come after it."""
+        """One of them ends, and its files are complete; the others refuse, or run after it."""
         self.check(self.run_it(LARGE, "-o", self.directory, *ALL), 0)
         whole = self.files(self.directory)
         runs = [subprocess.Popen([PROGRAM, LARGE, "-o", self.directory, *ALL], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
@@ -281,7 +281,7 @@ class OneRunAtATime(Case):
 
 
 class Remarks(Case):
-    """Warnings and notes are in the listing, all of them, and counted in the summary."""
+    """All warnings and notes are in the listing, and counted in the summary."""
     BLOCK = ["BEGIN BULK", "GRID,1,,0.,0.", "GRID,2,,1.,0.", "GRID,3,,1.,1.", "GRID,4,,0.,1.", "CQUAD4,1,1,1,2,3,4",
              "PSHELL,1,1,1.,-1", "SPC1,1,12,1,2"]
     FORCE = "FORCE,1,3,,1.,0.,-1.,0."
@@ -314,7 +314,7 @@ class Remarks(Case):
         self.assertIn("100 warnings (5 shown)\n", said)
 
     def test_of_the_answer(self):
-        """Displacements are known, and not small, when all else is over; the text goes on below where it is long."""
+        """Displacements are known, and not small, after everything else; a long text continues on the next line."""
         said, heading, lines, summary = self.solve(force="FORCE,1,3,,300.,0.,-1.,0.")
         self.assertEqual("WARNINGS AND NOTES  (1 warning, 1 note)", heading)
         self.assertEqual(["status,valid,", "warnings,1,", "notes,1,"], summary)
@@ -342,7 +342,7 @@ class Output(Case):
         self.assertIn("hertz44.lst", self.files(self.directory))
 
     def test_standard_output_is_a_closed_pipe(self):
-        """Decks are run all the same."""
+        """Decks run nevertheless."""
         read, write = os.pipe()
         os.close(read)
         self.check(self.run_it(SMALL, LARGE, "-o", self.directory, stdout=write), 3, "standard output cannot be written")
@@ -370,7 +370,7 @@ class Memory(Case):
                 self.check(self.run_it(SMALL, "-o", self.directory, "--memory", word), 3, "give a positive number of GB")
 
     def limits(self, deck, kind):
-        """Every limit gives an answer or a refusal, never a crash or a wait without end; an answer comes at last."""
+        """Every limit gives an answer or a rejection, never a crash or an endless wait; a sufficient limit gives an answer."""
         if sanitized():
             self.skipTest("the address sanitizer maps more than any limit")
         seen = set()
@@ -387,8 +387,8 @@ class Memory(Case):
         self.assertEqual({0, 3}, seen)
 
     def loads(self, limit):
-        """Whether the libraries come so far that the program begins: a shared OpenBLAS for threads wants 134 MB for each core as it is
-        loaded, and where it cannot have them it waits without end. One that is a part of the program is held back from that."""
+        """Do the libraries load, so that the program begins? A shared OpenBLAS with threads allocates 134 MB for each core when it is
+        loaded, and waits forever without them. A statically linked one is limited before that."""
         held_back = b"than OpenBLAS takes" in pathlib.Path(PROGRAM).read_bytes()
         try:
             return self.run_it("--version", preexec_fn=limit, timeout=60 if held_back else 2).returncode != 127
@@ -422,4 +422,4 @@ class Memory(Case):
 
 if __name__ == "__main__":
     PROGRAM = str(pathlib.Path(sys.argv.pop(1)).resolve())
-    unittest.main(verbosity=2)   # tells why a test is skipped
+    unittest.main(verbosity=2)   # shows why a test is skipped

@@ -1,6 +1,6 @@
-"""A punch on a block, as a half or whole, rigid or elastic, of any element, in any position: scenes whose figures must agree.
+"""A punch on a block, as a half or whole, rigid or elastic, of any element, in any position: models whose results must agree.
 
-The block is 4 high, the punch 1; contact is at y = 0 about x = 0, the line of symmetry or the axis of rings.
+The block is 4 high, the punch 1; contact is at y = 0 about x = 0, the symmetry line or the axis.
 """
 import pathlib
 import sys
@@ -12,7 +12,7 @@ FIRST_OF_PUNCH, LEADER = 5001, 9999
 
 
 def grid(first, x0, y0, width, height, across, up, kind):
-    """Places by id, elements, and the rows of ids. Diagonals are mirrored at x = 0."""
+    """Coordinates by id, elements, and the rows of ids. Diagonals are mirrored at x = 0."""
     step = 2 if kind.endswith("6") else 1
     rows = [[first + i + j * (step * across + 1) for i in range(step * across + 1)] for j in range(step * up + 1)]
     place = {rows[j][i]: (x0 + width * i / (step * across), y0 + height * j / (step * up))
@@ -47,7 +47,7 @@ def block(deck, first, x0, y0, width, height, across, up, kind):
 
 
 class Punch:
-    """`shape`: height of the punch's face over x. `how`: rigid (tied by RBE2 to a node that is guided), held (all its nodes, and moved
+    """`shape`: height of the punch's face over x. `how`: rigid (tied by RBE2 to a guided node), held (all its nodes are fixed, and moved
     down), elastic (pressed by a platen on the nodes of its top from `platen` on). `load`: of the whole; `travel` of the held one."""
 
     def __init__(self, kind, half=True, shape=lambda x: 0.0, how="elastic", slave="punch", pairs=False, across=10, finer=1.0, load=60.0,
@@ -76,7 +76,7 @@ class Punch:
         self.driven = self.tied[0], -(load / 2 if half and not self.rings else load)
 
     def deck(self, image=None, backwards=False, rename=lambda n: n):
-        """`image`: what becomes of a vector; lines or pairs backwards; other ids."""
+        """`image`: transformation of vectors; lines or pairs in the opposite direction; other ids."""
         image = image or (lambda v: v)
         (ax, ay), (bx, by) = image((1.0, 0.0)), image((0.0, 1.0))
         turned_over = ax * by - ay * bx < 0.0
@@ -101,7 +101,7 @@ class Punch:
 
     @staticmethod
     def turned(image, c):
-        """Direction that a direction becomes, and its sign."""
+        """Image of a direction, and its sign."""
         x, y = image((1.0, 0.0) if c == 1 else (0.0, 1.0))
         return (1, x) if x else (2, y)
 

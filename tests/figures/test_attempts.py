@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The listing says which attempts were made, if there was more than one, and why."""
+"""The listing reports the attempts, if there was more than one, and their reasons."""
 import os
 import pathlib
 import subprocess
@@ -10,7 +10,7 @@ SOURCE = pathlib.Path(__file__).resolve().parent.parent.parent
 
 
 def attempts(deck):
-    """The line of the listing that says so; none if there was one attempt."""
+    """The line of the listing about attempts; empty if there was only one."""
     with tempfile.TemporaryDirectory() as folder:
         subprocess.run([os.environ["EPCONT_PROGRAM"], "--quiet", SOURCE / deck, "-o", folder], capture_output=True, check=False)
         listing, = pathlib.Path(folder).glob("*.lst")

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Flow theory: one load step is total theory, more go to the limit that is known, and load cases do not know of each other."""
+"""Flow theory: one load step is total theory, more steps converge to the known limit, and load cases are independent."""
 import csv
 import os
 import pathlib
@@ -10,7 +10,7 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = os.environ["EPCONT_PROGRAM"]
-#: Decks of `input` that yield, by NEWTON.
+#: Decks of `input` that yield, with NEWTON.
 DECKS = ["bar/bar", "cook/cook", "hertz/hertz330", "hertz/hertz44", "hertz/hertz900", "insert_joint/insert_joint", "joint_lines/joint_lines",
          "one_element/one_element", "tube/tube12", "tube/tube16", "tube/tube_cquad4", "tube/tube_ctria6", "tube/tube_hardening",
          "tube/tube_near_incompressible"]
@@ -34,7 +34,7 @@ def solve(text, folder, *options):
 
 
 def with_steps(text, steps, *cards):
-    """A deck with so many load steps of flow theory."""
+    """A deck with this number of load steps of flow theory."""
     control, _, bulk = text.partition("BEGIN BULK\n")
     return control + "NLPARM = 77\nBEGIN BULK\n" + "\n".join([f"NLPARM,77,{steps}", "PARAM,THEORY,FLOW", *cards, bulk])
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Load cases: each is what a deck of its own gives, whatever stands beside it, in whatever order, and however contact is found."""
+"""Load cases: each gives the results of a separate deck, whatever the other cases, their order, and the contact solver."""
 import csv
 import os
 import pathlib
@@ -13,7 +13,7 @@ PROGRAM = os.environ["EPCONT_PROGRAM"]
 INPUT = pathlib.Path(os.environ["EPCONT_SOURCE_DIR"]) / "input"
 SAME = 1e-9
 FACTORS = [0.5, 1.0, 0.25, 1.0]
-#: What is found is the same; how, it may not be.
+#: The results are the same; the path may differ.
 OF_THE_WAY = {"condition", "rounding_error_force", "contact_amplification", "iteration_error_displacement", "iteration_error_force", "load_factor",
               "stress_off_curve", "curve_tolerance", "energy_balance", "equilibrium_residual", "largest_force_gap_product", "smallest_gap",
               "smallest_force", "stress_off_curve_limit", "factorizations", "pivots"}
@@ -58,16 +58,16 @@ def of_factors(path, factors, above="", param=""):
 
 
 def of_one(path, factor, above="", param=""):
-    """The same of one factor alone, without cases."""
+    """The same with one factor, without cases."""
     cards, loads = bulk(path)
     return f"SOL 101\nCEND\n{above}LOAD = 1000\nBEGIN BULK\n{param}LOAD,1000,1.0,{factor!r},{loads}\n{cards}"
 
 
 class LoadCases(unittest.TestCase):
-    """Cases beside decks of one."""
+    """Cases compared with single decks."""
 
     def compare(self, rows, own, table):
-        """Rows of a case are those of its own deck, columns that say how it was found apart."""
+        """Rows of a case are those of its own deck, except columns about the path."""
         self.assertEqual(len(rows), len(own), table)
         for column in own[0] if own else []:
             values = [[row[column] for row in side] for side in (rows, own)]
@@ -122,7 +122,7 @@ class LoadCases(unittest.TestCase):
                 self.check("layer_lines/layer_lines.dat", param=f"PARAM,RULE,{rule}\n")
 
     def test_in_proportion(self):
-        """Of loads that grow or fall while the contacts stay much is kept from case to case."""
+        """If loads grow or fall while the contacts stay, much is kept from case to case."""
         for rule in ["CONRY", "JOINED"]:
             for name in ["layer_lines/layer_lines.dat", "hertz/hertz44_elastic.dat"]:
                 with self.subTest(rule + " " + name):
@@ -142,11 +142,11 @@ class LoadCases(unittest.TestCase):
             self.assertEqual(len(listings), 1, name)
 
     def test_many(self):
-        """Each of many cases is that of a deck of its own."""
+        """Each of many cases equals a separate deck."""
         self.check("hertz/hertz44.dat", factors=tuple(0.04 * k for k in range(1, 26)))
 
     def test_pairs_of_one_case(self):
-        """If nodes come near in one case, the other cases do without their pairs, in whatever order."""
+        """If nodes come near in one case, the other cases do not get their pairs, in any order."""
         before, cards = (INPUT.parent / "tests/found/cases_that_come_near.bdf").read_text().split("BEGIN BULK\n")
         cases = re.findall(r"SUBCASE \d+\n((?:  .*\n)*)", before)
         alone = [run(f"{case}BEGIN BULK\n{cards}")[1] for case in cases]
@@ -162,7 +162,7 @@ class LoadCases(unittest.TestCase):
         self.assertEqual(tables["listing"].decode().count("this load case was solved again with 2 more pairs"), 1)
 
     def test_nodes_that_come_near(self):
-        """The cases before the first in which they do so have no pairs of theirs."""
+        """The cases before the first one with near nodes do not get their pairs."""
         cards = TWO_FEET.replace("|", "\n")
         cases = "".join(f"SUBCASE {k}\nSPC = 1\nLOAD = {k}\n" for k in range(1, 25))
         moved = "".join(f"SPCD,{k},{node},2,{-0.017 * k:.3f}\n" for k in range(1, 25) for node in (24, 23, 34, 33))
@@ -186,7 +186,7 @@ class LoadCases(unittest.TestCase):
             self.compare([row for row in rows if row["subcase"] == str(k)], own, "contact")
 
     def test_wanted_accuracy(self):
-        """Of all cases the worst is named."""
+        """The worst of all cases is named."""
         for accuracy, words in (("0.1", "0.1000, worst in SUBCASE 1: not reached: the estimated mesh error is 1.7E-01"),
                                 ("0.5", "0.5000, reached in all")):
             deck = of_factors(INPUT / "hertz/hertz44_elastic.dat", [0.5, 1.0, 0.25], param=f"PARAM,ACCURACY,{accuracy}\n")
@@ -202,7 +202,7 @@ class LoadCases(unittest.TestCase):
             self.assertEqual([one.attrib["file"] for one in sets], ['a&b<"c.case1.vtu', 'a&b<"c.case2.vtu'])
 
     def test_the_largest_status_is_that_of_the_run(self):
-        """A case that nothing carries stands beside those that are answered."""
+        """A case without equilibrium does not affect the others."""
         cards, loads = bulk(INPUT / "hertz/hertz44_elastic.dat")
         deck = f"SUBCASE 1\nLOAD = {loads}\nSUBCASE 2\nLOAD = 99\nSUBCASE 3\nLOAD = {loads}\nBEGIN BULK\nLOAD,99,-1.0,1.0,{loads}\n{cards}"
         status, tables = run(deck)
@@ -210,7 +210,7 @@ class LoadCases(unittest.TestCase):
         self.assertEqual([row["value"] for row in tables["summary"] if row["key"] == "status"], ["valid", "no equilibrium", "valid"])
 
     def test_contact_off_and_on(self):
-        """Without contact a case that supports hold alone is answered; what the body passes through is warned of."""
+        """Without contact a case that supports alone restrain has an answer; penetration gives a warning."""
         cards, loads = bulk(INPUT / "hertz/hertz44_elastic.dat")
         held = cards.replace("SPC1    1", "SPC1    2")
         held = "".join(line + "\n" for line in held.split("\n") if line.startswith("SPC1"))
@@ -222,7 +222,7 @@ class LoadCases(unittest.TestCase):
         self.assertEqual({row["subcase"] for row in touching}, {"1", "3"})
 
     def test_files_of_an_earlier_run(self):
-        """What ParaView steps through is what has an answer; the next run of the deck, with other cases or none, leaves nothing of it."""
+        """ParaView's steps are the cases with an answer; the next run of the deck, with other cases or none, leaves none of them."""
         cards, loads = bulk(INPUT / "hertz/hertz44_elastic.dat")
         cases = f"SUBCASE 4\nLOAD = {loads}\nSUBCASE 7\nLOAD = 99\nBEGIN BULK\nLOAD,99,-1.0,1.0,{loads}\n{cards}"
         with tempfile.TemporaryDirectory() as folder:

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Bodies that supports move as a whole, and bodies that do not touch: a right answer, without stress."""
+"""Bodies that supports move as a whole, and bodies without contact: a correct answer, without stress."""
 import itertools
 import unittest
 
@@ -21,7 +21,7 @@ class Rest(scene.Extremes):
         return deck, [block(deck, 1 + 1000 * body, 0.3, 1.1 * body, 1.0, 1.0, 3, 3, kind)[2] for body in range(bodies)]
 
     def two(self, kind, motion):
-        """Two of them, with lines between; the lower one's bottom moves, the upper one's top is held."""
+        """Two of them, with lines between; the lower one's bottom moves, the upper one's top is fixed."""
         deck, (lower, upper) = self.deck(kind, yields=True, bodies=2)
         self.prescribe(deck, lower[0], lambda x, y: motion)
         self.prescribe(deck, upper[-1], lambda x, y: (0.0, 0.0))
@@ -36,7 +36,7 @@ class Rest(scene.Extremes):
                     deck.displace(n, c, value)
 
     def test_shifts(self):
-        """No stress at all, whatever the size of the motion and the material."""
+        """No stress at all, for any displacement and material."""
         choices = itertools.cycle(itertools.product((1e-9, 0.2, 1e6), (1e-3, 1e12), (False, True)))
         for kind, who, (size, young, yields) in zip(KINDS * 12, "bottom all ends".split() * 20, choices):
             deck, (rows,) = self.deck(kind, young, yields)
@@ -49,7 +49,7 @@ class Rest(scene.Extremes):
                 self.assertEqual({row["uy"] for row in result.nodes.values()}, {shift[1]})
 
     def test_turns(self):
-        """Small displacements: a turn t is u = t (-y, x). Written to six digits it strains by what these leave."""
+        """Small displacements: a rotation t is u = t (-y, x). Six digits leave a strain of that order."""
         for kind in KINDS[:3]:
             for size in (1e-9, 0.2, 1e6):
                 deck, (rows,) = self.deck(kind)
@@ -62,7 +62,7 @@ class Rest(scene.Extremes):
                     self.assertLess(self.valid(deck).summary["max_equivalent_stress"], 1e-4 * size * 1000.0)
 
     def test_apart(self):
-        """Two bodies with lines between them that a support has moved apart, or that were never loaded."""
+        """Two bodies with lines between them that a support has moved apart, or without load."""
         for kind in KINDS:
             for away in (0.0, 0.2, 1e5):
                 deck, lower = self.two(kind, (0.0 if kind.startswith("CTRAX") else 0.01, -away))
@@ -76,7 +76,7 @@ class Rest(scene.Extremes):
                                      f"{lower[-1][0]}, {gap} away\n")
 
     def test_moved_onto_another(self):
-        """A support moves the lower body up by 0.1 more than the gap: as if it had stood there."""
+        """A support moves the lower body up by 0.1 more than the gap: as if it had been there initially."""
         for kind in KINDS:
             answers = []
             for start in (0.0, 50.0):
@@ -119,7 +119,7 @@ class Rest(scene.Extremes):
                 self.solved(deck, rows, lambda x, y: (0.0, -0.03), "" if far else "LOAD = 1\n")
 
     def test_equations(self):
-        """All nodes of a body follow a platen, each by one MPC or in a chain; also if the body is warmer than drawn and if contact is off."""
+        """All nodes of a body follow a platen, each by one MPC or in a chain; also if the body has expanded and if contact is off."""
         for kind, young, chain, warm, size in itertools.product(KINDS, (1.0, 2.1e11), (False, True), (False, True), (1e-3, 1.0, 30.0)):
             deck, (rows,) = self.deck(kind, young)
             self.master(deck, rows, 2 if kind.startswith("CTRAX") else 12)
@@ -139,7 +139,7 @@ class Rest(scene.Extremes):
                     self.near(result.nodes[n]["uy"], -size)
 
     def test_rotating_platen(self):
-        """A platen turns a body above another, which it does not reach; beside them two bodies press on each other, or none."""
+        """A platen rotates a body above another, without contact; beside them two bodies are in contact, or none."""
         for kind, young, pressed, yields in itertools.product(KINDS[:3], (1.0, 2.1e11), (False, True), (False, True)):
             deck, (lower, rows, floor, block) = self.deck(kind, young, yields, bodies=4)
             deck.x = {n: (x + (2.0 if n > 2000 else 0.0), y - (0.3 if n > 3000 else 0.0)) for n, (x, y) in deck.x.items()}
@@ -160,7 +160,7 @@ class Rest(scene.Extremes):
                 self.solved(deck, rows, lambda x, y: (0.01 * (1.5 - y), 0.01 + 0.01 * (x - 0.5)), "LOAD = 1\n" * pressed)
 
     def test_point_far_away(self):
-        """Wherever a point without elements lies, which an MPC joins to a body that rotates, the answer is the same."""
+        """The answer does not depend on the position of a point without elements that an MPC joins to a rotating body."""
         answers = set()
         for x, y in ((0.0, 0.0), (0.0, 5000.0), (0.0, -1e6), (1e9, 1.0), (1e9, 1e9)):
             deck, (lower, rows) = self.deck("CQUAD4", bodies=2)
@@ -181,7 +181,7 @@ class Rest(scene.Extremes):
 
 
 class LargestStress(scene.Extremes):
-    """An element has yielded where it has at any integration point: so says the largest stress, with its place."""
+    """An element has yielded if any integration point has: this is the largest stress, with its position."""
 
     def test_bent_beam(self):
         """A cantilever of six-node and of four-node elements under a force at its end; yield stress 14."""

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The same scene as a half and as a whole, mirrored, turned, its lines backwards, under other ids: the same figures."""
+"""The same model as a half and as a whole, mirrored, rotated, its lines in the opposite direction, with other ids: the same results."""
 import random
 import unittest
 
@@ -9,7 +9,7 @@ import scene
 
 ROUND, FLAT = (lambda x: x * x / 40.0), (lambda x: 0.0)
 PLANE, RINGS = ("CTRIA3", "CTRIA6", "CQUAD4"), ("CTRAX3", "CTRAX6")
-#: Images of a vector: mirrored at each axis, turned by 90 degrees, mirrored at the diagonal. Rings stay about their axis.
+#: Images of a vector: mirrored at each axis, rotated by 90 degrees, mirrored at the diagonal. Axisymmetric bodies stay about their axis.
 UPSIDE_DOWN = ("upside down", lambda v: (v[0], -v[1]))
 IMAGES = [UPSIDE_DOWN, ("mirrored", lambda v: (-v[0], v[1])), ("turned", lambda v: (-v[1], v[0])), ("diagonal", lambda v: (v[1], v[0]))]
 
@@ -17,7 +17,7 @@ IMAGES = [UPSIDE_DOWN, ("mirrored", lambda v: (-v[0], v[1])), ("turned", lambda 
 class Symmetry(scene.Extremes):
 
     def figures(self, deck):
-        """Of the one zone, and of the whole: value by name."""
+        """Values of the one zone, and of the whole: value by name."""
         result = self.valid(deck)
         zone, = result.table("zones")
         found = {key: zone[key] for key in ("force", "max_pressure", "half_width_last_pair", "half_width")}
@@ -43,10 +43,10 @@ class Symmetry(scene.Extremes):
             self.near(one[key], other[key], part)
 
     def half_and_whole(self, *how):
-        """Half of the force, else the same. What smooth strains say at a boundary differs from what they say inside."""
+        """Half of the force, the rest equal. Recovered strains at a boundary differ from those inside."""
         half, whole = (self.figures(Punch(how[0], is_half, *how[1:]).deck()) for is_half in (True, False))
         self.same(half, whole, {"force": 2.0}, but=("error_pressure", "error_energy", "error_half_width"))
-        self.close(half, whole, "error_half_width", 0.01)   # a small part of it is that of the energy
+        self.close(half, whole, "error_half_width", 0.01)   # a small part of it comes from the energy
 
     def test_half_and_whole(self):
         for kind in PLANE:
@@ -56,18 +56,18 @@ class Symmetry(scene.Extremes):
                         self.half_and_whole(kind, shape, how, slave, pairs)
 
     def test_round_punch_that_is_held(self):
-        """A rigid punch whose nodes are all held is seen as half a punch too, by the block."""
+        """A rigid punch whose nodes are all fixed is also treated as half a punch by the block."""
         for kind in PLANE:
             with self.subTest(kind=kind):
                 self.half_and_whole(kind, ROUND, "held", "punch", True)
 
     def test_rigid_by_ties_and_by_supports(self):
-        """A punch that an RBE2 makes rigid, and the same punch held all over, where the other came to lie: neither bears stresses."""
+        """A punch that an RBE2 makes rigid, and the same punch with all nodes fixed at its final position: neither carries stresses."""
         for kind in PLANE + RINGS:
             tied = self.figures(Punch(kind, True, ROUND, "rigid").deck())
             held = self.figures(Punch(kind, True, ROUND, "held", travel=tied["approach"]).deck())
             with self.subTest(kind=kind):
-                # Where loads make the force it has no error, of which the pressure's is a part where supports do.
+                # If loads determine the force, it has no error; if supports do, its error is a part of the pressure's.
                 self.same(tied, held, but=("approach", "error_pressure"))
                 self.close(tied, held, "error_pressure", 0.05)
 
@@ -92,7 +92,7 @@ class Symmetry(scene.Extremes):
                     self.same(one, self.figures(punch.deck(rename=other.get)))
 
     def test_guide_is_no_line_of_symmetry(self):
-        """A block whose left side slides in a guide, on a base that goes on beyond it: the zone ends there, at a sharp edge."""
+        """A block whose left side slides in a guide, on a base that continues beyond it: the zone ends there, at a sharp edge."""
         for kind in PLANE:
             for slave in (1, 2):
                 deck = new_deck(kind)
@@ -111,10 +111,10 @@ class Symmetry(scene.Extremes):
 
 
 class Axis(scene.Extremes):
-    """A six-node side that begins on the axis has no area there, so that the force of that corner says nothing."""
+    """A six-node edge that begins on the axis has no area there, so that the force of that corner gives no pressure."""
 
     def test_pressures_that_rise_away_from_the_axis(self):
-        """The corner on the axis opens, by next to nothing: contact is whole all the same, and ends at the punch's edge."""
+        """The corner on the axis opens slightly: the contact zone is whole all the same, and ends at the punch's edge."""
         for slave, pairs in (("punch", False), ("block", False), ("punch", True)):
             with self.subTest(slave=slave, pairs=pairs):
                 result = self.valid(Punch("CTRAX6", True, FLAT, "elastic", slave, pairs, platen=1.5, reach=2.0).deck())
@@ -123,7 +123,7 @@ class Axis(scene.Extremes):
                 self.assertEqual([round(zone["half_width_last_pair"], 12) for zone in result.table("zones")], [2.0])
 
     def test_largest_pressure_on_few_sides(self):
-        """Hertz, a ball on a block: the pressure on the axis is told from three corners on, and is the largest."""
+        """Hertz, a ball on a block: the pressure on the axis needs three corners, and is the largest."""
         result = scene.solve(Punch("CTRAX6", True, ROUND, "rigid", "punch", load=40.0).deck())
         corner, *others = sorted(result.pairs.values(), key=lambda pair: pair["x"])
         self.assertEqual(result.summary["pairs_in_contact"], 5)
@@ -131,7 +131,7 @@ class Axis(scene.Extremes):
         self.assertGreater(corner["pressure"], max(pair["pressure"] for pair in others))
 
     def test_a_point_has_no_pressure(self):
-        """Contact of that corner alone: a force without an area, and no figure for what it is spread over."""
+        """Contact of that corner alone: a force without an area, and no pressure."""
         result = self.valid(Punch("CTRAX6", True, lambda x: x * x / 20.0, "elastic", "punch", load=1e-2).deck())
         self.assertEqual(result.summary["pairs_in_contact"], 1)
         self.assertEqual(result.summary["max_pressure"], "")
@@ -139,7 +139,7 @@ class Axis(scene.Extremes):
         self.assertIn("  largest pressure                                        -\n", result.listing)
 
     def test_both_lines_tell_of_a_pressure(self):
-        """The master's corner on the axis too has the pressure of its neighbour, not a force over rounding."""
+        """The master's corner on the axis also has the pressure of its neighbour, not a force over rounding."""
         result = scene.solve(Punch("CTRAX6", True, ROUND, "elastic", "punch", across=20, load=60.0).deck())
         line = result.listing.split("CONTACT LINES", 1)[1].split("\n")[2].split()
         on_slave, on_master, difference = map(float, line[-3:])

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Platens that turn (RBE2), equations (MPC) and springs (CELAS) against beams' closed forms, and what is said of those that cannot be."""
+"""Platens that rotate (RBE2), equations (MPC) and springs (CELAS) compared with closed forms of beams, and the messages for invalid ones."""
 import unittest
 
 import scenes  # noqa: F401  (the path to scene)
@@ -11,7 +11,7 @@ STIFFNESS = YOUNG * HEIGHT**3 / 12   # bending
 
 
 def beam(cards, case="", nu=0.0, hold=True):
-    """A cantilever of ten CQUAD8, plane stress, held at its left end: nodes 1 to 5 from below, 51 to 55 at the right, 53 on the axis."""
+    """A cantilever of ten CQUAD8, plane stress, fixed at its left end: nodes 1 to 5 from below, 51 to 55 at the right, 53 on the axis."""
     lines = ["DISPLACEMENT=ALL", "SPCFORCES=ALL", case, "BEGIN BULK", "PARAM,PLANE,STRESS", "PSHELL,1,1,1.0", f"MAT1,1,{YOUNG!r},,{nu!r}"]
     name = {}
     for i in range(11):
@@ -36,7 +36,7 @@ TURN = 2e-3 * LENGTH / STIFFNESS   # under a moment of 0.002
 class Ties(scene.Extremes):
 
     def test_moment(self):
-        """A moment at the leader bends the beam to a circle; so does the angle, and its support bears that moment."""
+        """A moment at the master node bends the beam to a circle; so does the angle, and its reaction is that moment."""
         run = self.valid(beam(f"GRID,900,,{LENGTH},0.0,0.0|{RIGHT}|MOMENT,1,900,,0.001,0.0,0.0,2.0"))
         self.near(run.summary["angle_900"], TURN, 1e-8)
         self.near(run.nodes[900]["uy"], TURN * LENGTH / 2, 1e-8)
@@ -46,14 +46,14 @@ class Ties(scene.Extremes):
         self.near(run.nodes[900]["uy"], TURN * LENGTH / 2, 1e-8)
 
     def test_place_of_the_leader(self):
-        """A force at a leader beside the beam has a lever: it turns, and goes where its platen takes it."""
+        """A force at a master node beside the beam has a lever arm: the platen rotates, and moves the node."""
         run = self.valid(beam(f"GRID,900,,{LENGTH},3.0,0.0|{RIGHT}|SUPORT,990,1|GRID,990,,20.0,0.0,0.0|SPC1,1,2,990|"
                               "FORCE,1,900,,1.0E-3,-1.0,0.0,0.0|MOMENT,1,900,,0.0,0.0,0.0,1.0"))
         self.near(run.summary["angle_900"], 3e-3 * LENGTH / STIFFNESS, 1e-8)
         self.near(run.nodes[900]["ux"], -3.0 * 3e-3 * LENGTH / STIFFNESS - 1e-3 * LENGTH / YOUNG, 1e-8)
 
     def test_held(self):
-        """Where nothing names its turn a leader is held; SPC1 6 holds it under a moment, which the support bears."""
+        """If nothing names its rotation, a master node is fixed; SPC1 6 fixes it under a moment, which is the reaction."""
         run = self.valid(beam(f"GRID,900,,{LENGTH},0.0,0.0|{RIGHT}|FORCE,1,900,,0.001,0.0,1.0,0.0"))
         self.assertNotIn("angle_900", run.summary)
         self.near(run.nodes[55]["ux"], 0.0, 1e-8, 1e-3)
@@ -62,7 +62,7 @@ class Ties(scene.Extremes):
         self.near(run.summary["max_displacement"], 0.0, 1e-12, 1e-3)
 
     def test_lever(self):
-        """A lever about a held leader, an approach in radians, rests on one point: forces by its arms."""
+        """A lever about a fixed master node, an approach in radians, rests on one point: forces by its arms."""
         cards = ("GRID,900,,-1.0,0.0,0.0|SPC1,1,12,900,990|RBE2,901,900,12,1,2,3,4,5|SUPORT,900,6|GRID,990,,10.0,-0.6,0.0|PGAP,5,0.001|"
                  "CGAP,970,5,990,51|FORCE,1,30,,0.02,0.0,-1.0,0.0")
         run = self.valid(beam(cards, nu=0.3, hold=False))
@@ -80,7 +80,7 @@ class Ties(scene.Extremes):
         self.near(angles[1], -2 * TURN, 1e-8)
 
     def test_equations(self):
-        """Equations that say what an RBE2 does, its angle the displacement of a point, bend the beam as that does."""
+        """Equations equivalent to an RBE2, with its angle as the displacement of a point, bend the beam in the same way."""
         arms = {51: -0.5, 52: -0.25, 54: 0.25, 55: 0.5}
         cards = "|".join(f"MPC,5,{node},1,1.0,53,1,-1.0,,+|+,,990,1,{arm!r}|MPC,5,{node},2,2.0,53,2,-2.0" for node, arm in arms.items())
         run = self.valid(beam(f"GRID,990,,0.0,5.0,0.0|SPC1,1,2,990|{cards}|FORCE,1,990,,0.002,1.0,0.0,0.0"))
@@ -88,14 +88,14 @@ class Ties(scene.Extremes):
         self.near(run.nodes[53]["uy"], TURN * LENGTH / 2, 1e-8)
 
     def test_sets_of_equations(self):
-        """MPC = n chooses, MPCADD combines; a chain of equations goes to its end."""
+        """MPC = n chooses, MPCADD combines; a chain of equations is followed to its end."""
         cards = "MPC,5,51,1,1.0,52,1,-1.0|MPC,6,52,1,1.0,53,1,-1.0|MPC,7,54,1,1.0,51,1,1.0|MPCADD,9,5,6|FORCE,1,51,,0.01,1.0,0.0,0.0"
         run = self.valid(beam(cards, case="MPC=9"))
         self.near(run.nodes[51]["ux"], run.nodes[53]["ux"], 1e-10)
         self.assertGreater(abs(run.nodes[54]["ux"] + run.nodes[51]["ux"]), 1e-6)
 
     def test_springs(self):
-        """Springs in a row with a bar: to the ground, to a point that is moved, and one that alone holds a body."""
+        """Springs in a row with a bar: to the ground, to a moved point, and one that alone restrains a body."""
         end = "RBE2,901,53,1,51,52,54,55"
         run = self.valid(beam(f"{end}|CELAS2,950,100.0,53,1|FORCE,1,53,,0.02,1.0,0.0,0.0"))
         self.near(run.nodes[53]["ux"], 0.02 / 200, 1e-9)
@@ -108,14 +108,14 @@ class Ties(scene.Extremes):
         self.near(run.summary["spring_950"], 0.02, 1e-9)
 
     def hot(self, cards, case="TEMPERATURE(LOAD) = 7", density=""):
-        """A beam that expands by 1E-5 a degree, and has mass."""
+        """A beam that expands by 1E-5 per degree, and has mass."""
         return self.valid(beam(cards, case).replace(f"MAT1,1,{YOUNG!r},,0.0", f"MAT1,1,{YOUNG!r},,0.0,{density},1.0E-5"))
 
     def test_heat_and_ties(self):
-        """What expands presses a spring, follows equations, and turns a leader: by temperatures along the beam, and across it."""
+        """Thermal expansion presses a spring, follows equations, and rotates a master node: temperatures along the beam, and across it."""
         end = "RBE2,901,53,1,51,52,54,55|SPC1,1,2,53"
         run = self.hot(f"{end}|CELAS2,950,100.0,53,1|TEMPD,7,40.0")
-        self.near(run.summary["spring_950"], -0.2, 1e-9)   # free it would go 4E-3; half of that is pressed back
+        self.near(run.summary["spring_950"], -0.2, 1e-9)   # free expansion is 4E-3; half of that is pressed back
         self.near(run.nodes[53]["ux"], 2e-3, 1e-9)
         run = self.hot(f"{end}|GRID,990,,20.0,0.0,0.0|SPC1,1,2,990|MPC,9,990,1,1.0,53,1,-2.0|TEMPD,7,40.0", "MPC = 9\nTEMPERATURE(LOAD) = 7")
         self.near(run.nodes[990]["ux"], 8e-3, 1e-9)
@@ -128,7 +128,7 @@ class Ties(scene.Extremes):
         self.near(run.summary["moment_900"], -bent * STIFFNESS / LENGTH, 1e-8)
 
     def test_weight_and_ties(self):
-        """The own weight turns the leader at a beam's end; along the beam it pulls a spring."""
+        """The dead weight rotates the master node at a beam's end; along the beam it pulls a spring."""
         weight = "GRAV,1,,1.0,0.0,-1.0,0.0|GRAV,2,,1.0,1.0,0.0,0.0|MOMENT,1,900,,0.0,0.0,0.0,1.0|MOMENT,2,900,,0.0,0.0,0.0,1.0"
         cards = f"GRID,900,,{LENGTH},0.0,0.0|{RIGHT}|CELAS2,950,100.0,900,1|{weight}"
         angle, pulled = -1e-3 * LENGTH**3 / (6 * STIFFNESS), 1e-3 * LENGTH**2 / (2 * YOUNG) / 2
@@ -145,7 +145,7 @@ class Ties(scene.Extremes):
         self.assertIn("contact solver JOINED:", run.listing)
 
     def test_yielding(self):
-        """With a spring and a platen that turns each method finds the same beyond yield."""
+        """With a spring and a platen that rotates each method finds the same yielded state."""
         cards = (f"GRID,900,,{LENGTH},0.0,0.0|{RIGHT}|MOMENT,1,900,,0.002,0.0,0.0,1.0|CELAS2,950,1.0,900,2|"
                  "MATS1,1,,PLASTIC,100.0,,,0.008|PARAM,TOL,1.E-9")
         runs = [self.valid(beam(f"{cards}|PARAM,METHOD,{word}", nu=0.3)) for word in ("NEWTON", "MODSEC", "INISTR")]
@@ -154,7 +154,7 @@ class Ties(scene.Extremes):
             self.near(run.summary["angle_900"], runs[0].summary["angle_900"], 1e-6)
 
     def test_what_is_refused(self):
-        """The exact words."""
+        """The exact text."""
         ring = "GRID,1,,1.0,0.0|GRID,2,,2.0,0.0|GRID,3,,1.0,1.0|CTRAX3,1,1,1,2,3|PSOLID,1,1|MAT1,1,1000.0,,0.3|SPC1,1,2,1|RBE2,9,1,12,3|" \
                "MOMENT,1,1,,1.0,0.0,0.0,1.0"
         for deck, words in (
@@ -181,7 +181,7 @@ class Ties(scene.Extremes):
                 self.assertIn(": 1 error\n", result.message)
 
     def test_cards_that_are_not_here(self):
-        """Their own words, and what would do."""
+        """Their messages, and the remedies."""
         for card, words in (("CBUSH", "CBUSH is not supported: connectors with several directions\n"), ("CELAS3", "CELAS3 is not supported: scalar points\n"),
                             ("BOLTFOR", "BOLTFOR is not supported: bolts with a preload\n"), ("BCTSET", "BCTSET is not supported: contact of bodies\n"),
                             ("RBE3", "RBE3 is not supported: weighted means of displacements\n")):

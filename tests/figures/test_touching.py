@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""What touches what: small scenes that were once answered wrongly (touching/*.dat), against closed forms, finer meshes, and their twins.
+"""Small models that once had wrong answers (touching/*.dat), compared with closed forms, finer meshes, and their twins.
 
-E = 1000 and nu = .3 or 0 in plane strain; right values were computed with everything nine times finer, lines both ways.
+E = 1000 and nu = .3 or 0 in plane strain; correct values were computed with a mesh nine times finer, lines both ways.
 """
 import pathlib
 import re
@@ -14,7 +14,7 @@ import scene
 FOLDER = pathlib.Path(__file__).resolve().parent / "touching"
 EXACT = 1e-9
 
-#: Scene, figure, what is right, and by which part it may be missed: what so coarse a mesh leaves.
+#: Model, quantity, correct value, and allowed relative error of such a coarse mesh.
 FIGURES = [
     ("patch_slave_split", "total", 20.0, EXACT), ("patch_slave_split", "p_max", 10.0, EXACT), ("patch_slave_split", "p_min", 10.0, EXACT),
     ("patch_master_split", "total", 20.0, EXACT), ("patch_master_split", "p_max", 10.0, EXACT), ("patch_master_split", "p_min", 10.0, EXACT),
@@ -31,7 +31,7 @@ FIGURES = [
     ("block_corner_between_floor_nodes", "p_max", 14.2, 1e-3),    # of a corner and the node beside it; 193 by its own width
 ]
 
-#: The same but for how it is written or how it lies.
+#: The same in another form or position.
 TWINS = [
     ("wall_as_floor", "wall_as_floor_rot37", EXACT), ("wall_as_floor_whole", "wall_as_floor_whole_rot37", EXACT),
     ("two_feet", "two_feet_rot10", EXACT), ("step_half_covered", "step_half_covered_rot37", EXACT),
@@ -42,7 +42,7 @@ TWINS = [
     ("corner_on_corner", "corner_beside_it", 1e-6), ("corner_on_corner", "corner_behind_it", 1e-6),   # by 1e-9
 ]
 
-#: Slave and master exchanged: the same within what the mesh leaves.
+#: Slave and master exchanged: the same within the mesh error.
 EXCHANGED = [
     ("block_corner_between_floor_nodes", 1e-3), ("wall_as_floor", 0.02), ("two_feet", 0.07), ("step_half_covered", 0.01),
     ("corner_between_floor_nodes_moved", 0.01), ("flanks_through_bodies", EXACT), ("thin_whole_outlines", 0.01),
@@ -54,7 +54,7 @@ EXCHANGED = [
 
 
 def six_nodes(deck, first, material, lines, levels, place):
-    """CTRIA6 between lines and levels, with middles between them; returns the nodes, row by row upwards."""
+    """CTRIA6 between lines and levels, with mid-side nodes between them; returns the nodes, row by row upwards."""
     def halved(values):
         return [0.5 * (values[k // 2] + values[(k + 1) // 2]) for k in range(2 * len(values) - 1)]
 
@@ -68,7 +68,7 @@ def six_nodes(deck, first, material, lines, levels, place):
 
 
 def stiff_parabola(lines, levels, columns, slave):
-    """A half of y = x**2/20 on a block, ten times softer, whose sides are .04 long where they touch."""
+    """A half of y = x**2/20 on a block, ten times softer, whose edges are .04 long at the contact."""
     deck = scene.Deck(1000.0, 0.3)
     deck.material(2, 10000.0, 0.3)
     floor = six_nodes(deck, 1, 1, [1.6 * k / columns for k in range(columns + 1)] + [2.4, 3.6, 6.0], [-4.0, -1.5, -0.5, 0.0], lambda x, y: (x, y))
@@ -102,7 +102,7 @@ def tooth(way):
 class Touching(scene.Extremes):
 
     def figures(self, name, change=lambda text: text):
-        """Of a scene that is valid."""
+        """Results of a valid model."""
         result = self.valid(change((FOLDER / f"{name}.dat").read_text()))
         pressures = [pair["pressure"] for pair in result.table("contact") if pair["status"].startswith("touching")]
         figures = {"total": result.summary["total_contact_force"], "p_max": result.summary.get("max_pressure"), "p_min": min(pressures, default=None)}
@@ -130,7 +130,7 @@ class Touching(scene.Extremes):
                 self.near(other[figure], one[figure], part)
 
     def test_contact_that_ends_within_a_side(self):
-        """Contact of coarse, uneven six-node sides on fine ones ends in the middle of a side, which the fine ones' nodes pass through."""
+        """Contact of coarse, uneven six-node edges on fine ones ends in the middle of an edge, which the fine ones' nodes pass through."""
         coarse = [0.0, 0.468, 1.325, 2.0]
         fine = self.valid(stiff_parabola([2.0 * k / 36 for k in range(37)], [0.0, 0.25, 0.5, 0.75, 1.0], 32, 1))
         right = fine.summary["max_pressure"], fine.table("zones")[0]["half_width"]
@@ -144,7 +144,7 @@ class Touching(scene.Extremes):
                 self.near(result.summary["total_contact_force"], 35.0, 2e-3)
 
     def test_zones_at_corners(self):
-        """A zone goes on along a side to the corner's pair on that side: mirrored, the zones are the same."""
+        """A zone continues along an edge to the corner's pair on that edge: mirrored, the zones are the same."""
         zones = []
         for way in (1, -1):
             zones.append(sorted([zone["force"], zone["max_pressure"]] for zone in self.valid(tooth(way)).table("zones")))
@@ -161,17 +161,17 @@ class Touching(scene.Extremes):
                 self.assertIn(each, result.message)
 
     def test_wall_that_no_line_names(self):
-        """The block is pushed into a wall that is in no line: not certified, and what would mend it."""
+        """The block is pushed into a wall that is in no line: not certified, with a remedy."""
         self.not_certified("wall_not_in_line", "bodies pass through each other: the body of GRID 15 penetrates the body of GRID 1 by 0.01348, at "
                            "-0.01296 0.1206 on side", "Possible fix: a BLSEG along side")
 
     def test_corner_at_a_corner(self):
-        """A key bulges into walls that are in no line. Its corner stands at that of the groove: rounding chooses the nearer side there."""
+        """A key bulges into walls that are in no line. Its corner is at that of the groove: rounding chooses the nearer edge there."""
         for name in ("bulging_key", "bulging_key_mirrored"):
             self.not_certified(name, " by 0.01000, at ", "; 0.003974 is allowed. Possible fix: ")
 
     def test_ways(self):
-        """A block is moved through a plate, and exactly into another; one is moved off the ledge that it stands on."""
+        """A block is moved through a plate, and exactly into another; one is moved off its ledge."""
         self.not_certified("through_a_plate", "bodies pass through each other on their way: ")
         self.not_certified("into_its_own_outline", "bodies pass through each other")
         self.not_certified("slid_off_a_ledge", "pair 69 presses beside the other body: at 4.100 0.9996 on side")

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Scenes of tools/deceive and their twins, mirrored, moved, renumbered: neither rounding nor the order of nodes decides estimates.
+"""Models of tools/deceive and their twins, mirrored, moved, renumbered: neither rounding nor the order of nodes decides estimates.
 
 Usage: EPCONT_PROGRAM=... test_twins.py
 """
@@ -18,16 +18,16 @@ from deceiving.judging import Judge, twins_of  # noqa: E402
 from deceiving.scenes import Twin, deck  # noqa: E402
 from tables import rows, summary  # noqa: E402
 
-#: Family, number; what once was decided by chance.
+#: Family, number; rounding once decided these.
 SCENES = (("nose_in_groove", 0, "two pairs at the tip: which is the neighbour of the next, and which belong to the zone"),
           ("nose_in_groove", 2, "rounding in the coordinates of straight flanks was waves as high as the tip"),
           ("shrink_fit", 0, "a zone that goes all around, cut where the deck begins it"),
           ("concave_corner", 2, "of the nodes beside a corner the first, which may be held, told how a body gives way"))
-NEAR = 1e-5   # what rounding leaves, of a figure
+NEAR = 1e-5   # relative rounding of a value
 
 
 def figures(folder, name):
-    """Estimates, and what pressures are called: sorted values by key, without the numbers of zones, bodies and nodes."""
+    """Estimates, and the names of pressures: sorted values by key, without the numbers of zones, bodies and nodes."""
     found = {}
     for key, value in summary(folder / f"{name}.summary.csv").items():
         if key.startswith("mesh_error") or key == "max_pressure_is":
@@ -41,7 +41,7 @@ def figures(folder, name):
 
 
 def solved(decks, read):
-    """Solve decks; what `read` takes from the results of each, by their folder and name."""
+    """Solve decks; return what `read` takes from the results of each, by folder and name."""
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
         for k, text in enumerate(decks):
@@ -91,21 +91,21 @@ class Twins(unittest.TestCase):
                             self.near(base[key], other[key], key)
 
     def test_order_of_elements(self):
-        """Every other element of another section: which of a node's is the first tells nothing."""
+        """Every other element has another section: the first one at a node is arbitrary."""
         cards = re.sub(r"(CQUAD4,\d*[13579]),1", r"\1,2", beam_on_posts(1.0)).replace("PSHELL", "MAT1,2,1.+11,,0.3\nPSHELL,2,2,1.0\nPSHELL")
         elements, other = ([card for card in cards.split("\n") if card.startswith("CQ") == these] for these in (True, False))
         self.near(*solved(["\n".join(other[:1] + some + other[1:]) for some in (elements, elements[::-1])],
                           lambda folder, name: figures(folder, name)["mesh_error_approach"]), "mesh_error_approach")
 
     def test_motion_that_nothing_drives(self):
-        """A press fit that is free along its axis has the errors of one that is held there: they were 0.0."""
+        """A press fit that is unconstrained along its axis has the errors of a fixed one: they were 0.0."""
         free = (pathlib.Path(__file__).resolve().parents[1] / "found/free_along_its_axis.dat").read_text(encoding="ascii")
         found = solved([free, free.replace("SUPORT,191,2", "SPC1,1,2,207")],
                        lambda folder, name: float(summary(folder / f"{name}.summary.csv")["mesh_error_total_contact_force"]))
         self.assertLess(abs(found[0] - found[1]), 0.2 * found[1], found)
 
     def test_units_of_length(self):
-        """A beam on two posts, pressed beside its middle: what each post bears is off by as much in metres as in micrometres."""
+        """A beam on two posts, pressed beside its middle: the errors of the posts' forces are the same in metres and in micrometres."""
         found = solved([beam_on_posts(1.0), beam_on_posts(1e6)],
                        lambda folder, name: [float(row["mesh_error_y"]) for row in rows(folder / f"{name}.bodies.csv")])
         self.assertGreater(found[0][1], 0.0)

@@ -1,4 +1,4 @@
-!> Scenes of two blocks, one on the other.
+!> Models of two blocks, one on the other.
 module block_scenes
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: plane_strain
@@ -9,12 +9,12 @@ module block_scenes
 
 contains
 
-  !> Two blocks of squares, about, all of it turned. The outer edges of both are held. Where they have as many columns their nodes
-  !> are pairs, else the upper one's line is the slave of the lower one's.
+  !> Two blocks of about square elements, rotated as a whole, their outer edges fixed. If they have the same number of columns their nodes
+  !> are pairs, otherwise the upper one's line is the slave of the lower one's.
   function two_blocks(columns, rows, angle, wave, below, above) result(scene)
     integer, intent(in) :: columns(2), rows   !! of the lower and the upper block; of each
     real(wp), intent(in) :: angle             !! [degree]
-    real(wp), intent(in) :: wave              !! how high the contact is
+    real(wp), intent(in) :: wave              !! height of the contact
     integer, allocatable, intent(out) :: below(:), above(:)   !! nodes at the contact
     type(scene_type) :: scene
     real(wp), allocatable :: x(:, :)
@@ -48,7 +48,7 @@ contains
     !> From its far edge to the contact.
     subroutine add_block(columns, sense)
       integer, intent(in) :: columns
-      real(wp), intent(in) :: sense   !! of what is its height
+      real(wp), intent(in) :: sense   !! relative to its height
       integer :: c, r
 
       do r = 0, rows
@@ -63,7 +63,7 @@ contains
     end subroutine add_block
   end function two_blocks
 
-  !> The matrix that turns by an angle [degree].
+  !> The matrix of a rotation by an angle [degree].
   pure function turn(angle)
     real(wp), intent(in) :: angle
     real(wp) :: turn(2, 2)
