@@ -75,7 +75,7 @@ contains
     end select
   end function hard
 
-  !> Displacements some pair distances below the surface, where single forces have little effect: condition of F 1e6 at 3, 1e10 at 6.
+  !> Displacements some pair distances deep, where single forces have little effect: condition of F 1e6 at 3, 1e10 at 6.
   !> Half of the pairs are loaded, the others open.
   pure subroutine load_half(place, depth, problem)
     real(wp), intent(in) :: place(:), depth

@@ -9,7 +9,7 @@ module block_scenes
 
 contains
 
-  !> Two blocks of about square elements, rotated as a whole, their outer edges fixed. If they have the same number of columns their nodes
+  !> Two blocks of about square elements, rotated as a whole, their outer edges fixed. With equal numbers of columns their nodes
   !> are pairs, otherwise the upper one's line is the slave of the lower one's.
   function two_blocks(columns, rows, angle, wave, below, above) result(scene)
     integer, intent(in) :: columns(2), rows   !! of the lower and the upper block; of each

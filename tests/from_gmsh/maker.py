@@ -1,4 +1,4 @@
-"""tools/deck, for tests: run by a copy of their process, which has loaded Gmsh once for all scenes."""
+"""Run tools/deck for tests in a copy of their process, which has loaded Gmsh once for all models."""
 import pathlib
 import sys
 
@@ -12,5 +12,5 @@ from wording import run  # noqa: E402
 
 
 def deck(*arguments, cwd="."):
-    """Exit status of `tools/deck ARGUMENTS` and what it prints."""
+    """Exit status of `tools/deck ARGUMENTS` and its output."""
     return copies.run(lambda: run(main), "tools/deck", *arguments, cwd=cwd)

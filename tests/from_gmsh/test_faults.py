@@ -56,7 +56,7 @@ TOP = "use one of: material, body, support, load, platen, free, contact, case, P
 CURVE = "give points of total strain and stress, the yield point first: curve = [[0.00114286, 240.0], [0.01, 260.0]]"
 FORM = 'write key = 1.5, key = "text" or [table]; quote names with blanks or dots; give each key only once'
 
-#: A text of the scene, what stands in its place, and what is said of it.
+#: A text of the model, its replacement, and the expected errors.
 SCENE = [
     ('kind = "plane strain"', "", ["kind: is missing", 'give one of: plane strain, plane stress, ring, such as kind = "plane strain"']),
     ("plane strain", "planar", ['kind: is the text "planar"', 'give one of: plane strain, plane stress, ring, such as kind = "plane strain"']),
@@ -141,7 +141,7 @@ THERE = " of the drawing; give each body in contact its own: no Coherence, no Bo
 WITHIN = ("use triangles of three or six nodes, quadrilaterals of four (Mesh.ElementOrder = 1) or eight "
           "(Mesh.SecondOrderIncomplete = 1)")
 
-#: The same of the file of Gmsh.
+#: The same for the file of Gmsh.
 MESH = [
     ("Line(4*k + 1)", "Lien(4*k + 1)", ["mesh: two.geo, line 4: Gmsh says: syntax error ({)", GMSH]),
     ("= {k + 1};\nEndFor", "= {k + 7};\nEndFor", ["mesh: two.geo: Gmsh says: Unknown curve loop 7 in GEO surface 1", GMSH]),
@@ -186,7 +186,7 @@ class Mistakes(unittest.TestCase):
         self.place = pathlib.Path(directory.name)
 
     def said(self, toml=TOML, geo=GEO, target="scene.dat"):
-        """Exit status, and what goes to both streams."""
+        """Exit status, and the text of both streams."""
         for name, text in (("scene.toml", toml), ("two.geo", geo)):
             (self.place / name).write_text(text, encoding="utf-8")
         run = deck("scene.toml", "-o", target, cwd=self.place)
@@ -213,7 +213,7 @@ class Mistakes(unittest.TestCase):
                 self.rejected(expected, toml=self.replaced(TOML, old, new))
 
     def test_all_mistakes_at_once(self):
-        """Of the keys, of the names in the mesh, and of each table: two conflicts are two errors."""
+        """Errors of keys, of names in the mesh, and of each table: two conflicts are two errors."""
         toml = TOML
         for old, new in (("units =", "unit ="), ("E = 210000.0", "E = -1.0"), ("floor.y = 0", "flor.y = 0\nface.y = 0\nunder.y = 0"), ('corner = "y"', 'corner = "z"'),
                          ("top.pressure", "tip.pressure"), ("[body.above]", "[body.abov]"), ("[free]", '[platen]\nface = "y"\nunder = "y"\n[free]')):
@@ -229,7 +229,7 @@ class Mistakes(unittest.TestCase):
                        "[load.tip] pressure: two.geo has no line 'tip'", f"{LINES}; did you mean 'top'?"], toml=toml)
 
     def test_bodies_that_coherence_has_glued(self):
-        """By the one point at which they touch, an end of both lines in contact."""
+        """At one common point, an end of both contact lines."""
         geo = """
 Point(1) = {0, 0, 0, 1};  Point(2) = {2, 0, 0, 1};  Point(3) = {2, 2, 0, 1};  Point(4) = {0, 2, 0, 1};
 Point(5) = {4, 2, 0, 1};  Point(6) = {4, 4, 0, 1};  Point(7) = {2, 4, 0, 1};
@@ -242,7 +242,7 @@ Physical Curve("under") = {5};  Physical Curve("top") = {7};  Physical Curve("wa
                        "give each body its own points and curves: no Coherence, no BooleanFragments, and Geometry.AutoCoherence = 0 in two.geo"], geo=geo)
 
     def test_output_that_nobody_reads(self):
-        """Ends it without a word; the deck is written."""
+        """A closed pipe ends it silently; the deck is written."""
         for name, text in (("scene.toml", TOML), ("two.geo", GEO)):
             (self.place / name).write_text(text, encoding="utf-8")
         reader, writer = os.pipe()
@@ -271,7 +271,7 @@ Physical Curve("under") = {5};  Physical Curve("top") = {7};  Physical Curve("wa
                       toml=toml, geo=geo)
 
     def test_free_to_move(self):
-        """What epcont says of nodes, in the words of the scene: where to hold what."""
+        """Remedies in terms of the model for epcont's message about a node."""
         free = '[free]\ncorner = "y"\n'
         for old, new, said in (
                 ("", "", ["unconstrained: above in y", '  [support] NAME.y = 0; or, if contact restrains it, [free] NAME = "y", for a point or a '
@@ -300,7 +300,7 @@ Physical Curve("under") = {5};  Physical Curve("top") = {7};  Physical Curve("wa
         self.assertRegex(text, r"\[body.below\]: 1\d of its nodes are not in the plane z = 0, the first at \(.*, 0.5\)\n  draw the surface in x and y in two.geo\n")
 
     def test_notes(self):
-        """What may be meant, and may not."""
+        """Text that may be correct or a mistake."""
         for toml, geo, note in (
                 (self.replaced(TOML, "NU = 0.3", "NU = 0.3\nyield = 240e3"), GEO,
                  "[material.steel] yield: 240000 is more than a tenth of E = 210000; are both in the same unit?"),
@@ -329,7 +329,7 @@ Physical Curve("under") = {5};  Physical Curve("top") = {7};  Physical Curve("wa
         self.assertEqual(run.stderr, "other.toml: scene: there is no such file\n  give one of the TOML files beside it: scene.toml\nother.toml: 1 error, no deck written\n")
 
     def test_one_for_another(self):
-        """A drawing or a scene where a deck is wanted, and the other way round."""
+        """A drawing or a model file instead of a deck, and vice versa."""
         for tool, name, said in (
                 ("run", "scene.toml", "scene.toml is not a deck: make one with tools/deck SCENE.toml -o DECK.dat"),
                 ("plot", "two.geo", "two.geo is not a deck: make one with tools/deck SCENE.toml -o DECK.dat"),
@@ -340,7 +340,7 @@ Physical Curve("under") = {5};  Physical Curve("top") = {7};  Physical Curve("wa
             self.assertRegex(run.stderr, rf"^.*tools/{tool}: {re.escape(said)}\n$")
 
     def test_garbage(self):
-        """Files that are nothing like what they should be."""
+        """Files with arbitrary content."""
         (self.place / "mesh.msh").write_bytes(bytes(range(256)))
         for mesh in ("mesh.msh", "two.geo"):
             status, text = self.said(toml=self.replaced(TOML, "two.geo", mesh), geo="\u20ac")
@@ -355,7 +355,7 @@ Physical Curve("under") = {5};  Physical Curve("top") = {7};  Physical Curve("wa
             self.assertIn(said, text)
 
     def test_junk(self):
-        """Whatever stands for a value or a word of a scene, it is read or rejected."""
+        """Any replacement of a value or a word is read or rejected."""
         rng, outcomes = random.Random(1), collections.Counter()
         for _ in range(1000):
             text = TOML
@@ -374,4 +374,4 @@ Physical Curve("under") = {5};  Physical Curve("top") = {7};  Physical Curve("wa
 
 
 if __name__ == "__main__":
-    unittest.main(verbosity=2)   # tells why a test is skipped
+    unittest.main(verbosity=2)   # shows why a test is skipped

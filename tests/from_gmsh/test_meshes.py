@@ -1,4 +1,4 @@
-"""Finished meshes in each form that Gmsh writes give one deck; what is lost or doubled on the way is told."""
+"""Meshes in each format of Gmsh give the same deck; lost or duplicate parts are reported."""
 import pathlib
 import subprocess
 import sys
@@ -10,7 +10,7 @@ from test_faults import GEO, TOML
 
 #: One curve and one point in two groups each.
 TWICE = GEO + 'Physical Curve("roof") = {7, -6};\nPhysical Point("peak") = {7};\n'
-#: Writes the meshes of a drawing: version, binary, order of the elements.
+#: Write the meshes of a drawing: version, binary, order of the elements.
 WRITER = """
 import gmsh, sys
 for order in (1, 2):
@@ -29,7 +29,7 @@ ORDERS = "lines and surfaces of one order in two.msh, as Gmsh makes them by Mesh
 LINES = {"[[contact]] slave": ("under", "(0, 2), (1, 2)"), "[[contact]] master": ("face", "(2, 2), (1, 2)"),
          "[support.floor]": ("floor", "(0, 0), (1, 0)"), "[support.wall]": ("wall", "(0, 2), (0, 1)"),
          "[load.top] pressure": ("top", "(2, 4), (1, 4)")}
-#: Two squares glued along a side: six-node triangles below, three-node ones above.
+#: Two squares glued along an edge: six-node triangles below, three-node ones above.
 GLUED = """$MeshFormat
 2.2 0 8
 $EndMeshFormat
@@ -53,7 +53,7 @@ $EndElements
 
 
 def changed(text, change):
-    """The fields of each element of an ASCII mesh in MSH 2, changed: number, kind, count of tags, group, curve, nodes."""
+    """Change the fields of each element of an ASCII mesh in MSH 2: number, type, count of tags, group, curve, nodes."""
     head, begin, rest = text.partition("$Elements\n")
     body, end, tail = rest.partition("$EndElements")
     count, *lines = body.splitlines()
@@ -78,7 +78,7 @@ class Meshes(unittest.TestCase):
         self.place = pathlib.Path(directory.name)
 
     def made(self, mesh, name="two.msh", toml=TOML):
-        """Exit status, what is said but of groups that nothing uses, deck and mesh."""
+        """Exit status, messages except notes on unused groups, deck and mesh."""
         self.assertIn("two.geo", toml)
         (self.place / "scene.toml").write_text(toml.replace("two.geo", name), encoding="utf-8")
         if isinstance(mesh, str):

@@ -1,4 +1,4 @@
-"""The scenes in input/from_gmsh, as they are kept and made anew: what they give, against closed forms."""
+"""The models in input/from_gmsh, kept and made again: results compared with closed forms."""
 import csv
 import math
 import os
@@ -37,7 +37,7 @@ def hertz(load=500.0, radii=(20.0, 10.0), young=210000.0, poisson=0.3):
 
 
 def lame(a=20.0, b=30.0, c=45.0, overlap=0.02, inside=50.0, inner=(110000.0, 0.34), outer=(210000.0, 0.3)):
-    """Pressure between two rings without axial stress: their radii at the fit must become one."""
+    """Pressure between two rings without axial stress: their radii at the fit must become equal."""
     gives = b / outer[0] * ((c * c + b * b) / (c * c - b * b) + outer[1]) + b / inner[0] * ((b * b + a * a) / (b * b - a * a) - inner[1])
     return (overlap + 2 * inside * a * a * b / (inner[0] * (b * b - a * a))) / gives
 
@@ -57,7 +57,7 @@ class Scenes(unittest.TestCase):
         return table
 
     def both(self, name):
-        """Tables of the deck that is kept, and of the one made from the same scene."""
+        """Tables of the kept deck, and of the one made from the same model."""
         made = self.place / f"{name}.dat"
         told = make(SCENES / f"{name}.toml", made)
         self.assertEqual(told.returncode, 0, told.stderr)
@@ -80,7 +80,7 @@ class Scenes(unittest.TestCase):
             self.near(table["summary"]["total_contact_force"], 250.0, 1e-3)
 
     def test_pin(self):
-        """Persson; the same scene on a mesh of quadrilateral patches, by tools/decks, is in input/pin_in_lug."""
+        """Persson; input/pin_in_lug has the same model on a mesh of quadrilateral patches, by tools/decks."""
         by_hand = float(self.solved(TOP / "input/pin_in_lug/pin_in_lug.dat")["summary"]["max_pressure"])
         for table in self.both("pin"):
             self.near(table["summary"]["max_pressure"], 88.2111, 0.002)
@@ -101,7 +101,7 @@ class Scenes(unittest.TestCase):
             self.near(self.approach(table), -sinks, 1e-9)
 
     def test_punch(self):
-        """No closed form: 753, .0256 and 2.24 are what ever finer meshes lead to (input/README.md)."""
+        """There is no closed form: 753, .0256 and 2.24 are the limits of finer meshes (input/README.md)."""
         for table in self.both("punch"):
             self.near(table["summary"]["max_pressure"], 753.0, 0.01)
             self.near(table["zones"][0]["half_width"], 2.24, 0.01)
@@ -109,7 +109,7 @@ class Scenes(unittest.TestCase):
             self.near(self.approach(table), -0.0256, 0.005)
 
     def test_punch_on_a_coarse_mesh(self):
-        """The listing says that the mesh is too coarse, and where."""
+        """The listing reports that the mesh is too coarse, and where."""
         geo = (SCENES / "punch.geo").read_text()
         self.assertIn("edge = 0.05;", geo)
         (self.place / "punch.geo").write_text(geo.replace("edge = 0.05;", "edge = 0.2;"))
@@ -125,7 +125,7 @@ class Scenes(unittest.TestCase):
         self.assertLess(math.hypot(x - 2.0, y), 0.5)
 
     def listed(self, *changes):
-        """Warnings in the listing of the punch with other texts in its scene."""
+        """Warnings in the listing of the punch after changes of its model."""
         text = (SCENES / "punch.toml").read_text()
         for old, new in changes:
             self.assertIn(old, text)
@@ -137,7 +137,7 @@ class Scenes(unittest.TestCase):
         return (self.place / "punch.lst").read_text().partition("warning: ")[2].partition("\nPLAN")[0].splitlines()
 
     def test_what_no_mesh_mends(self):
-        """SEARCH, where to begin, cuts nothing off; displacements that are not small: the answer holds, of another question."""
+        """SEARCH is only an initial distance and cuts nothing off; displacements that are not small: valid, but with a warning."""
         def pressure():
             rows = csv.DictReader((self.place / "punch.summary.csv").read_text().splitlines())
             return float({row["key"]: row["value"] for row in rows}["max_pressure"])
@@ -184,7 +184,7 @@ contact = [{ slave = "rim", master = "bed" }, { slave = "rim", master = "under" 
             self.assertLess(abs(line.x[line.touching][:, 1] - height).max(), 0.1)
 
     def variant(self, *changes):
-        """The two blocks on three-node triangles, from a scene with other texts; its tables."""
+        """The two blocks on three-node triangles, from a model with changes; its tables."""
         text = (SCENES / "blocks.toml").read_text()
         for old, new in changes:
             self.assertIn(old, text)
@@ -201,14 +201,14 @@ contact = [{ slave = "rim", master = "bed" }, { slave = "rim", master = "under" 
         return table
 
     def test_forces(self):
-        """On a platen; spread over a line that is none, with the motion of a point; at points, where a line is held."""
+        """On a platen; distributed over a line without platen, with a point as SUPORT; at points, where a line is fixed."""
         force = ("top.pressure = 250.0 ", "top.force = [0.0, -3750.0] ")
         for changes in ((force,), (force, ('[platen]\ntop = "y"\n', ""), ('[free]\ntop', "[free]\ncorner"))):
             with self.subTest(changes):
                 self.near(self.approach(self.variant(*changes)), -0.01735714285714, 1e-9)
 
     def test_ring_force(self):
-        """Spread over the area of the ring: the same axial stress everywhere."""
+        """Distributed over the area of the ring: the same axial stress everywhere."""
         (self.place / "ring.geo").write_text((SCENES / "press_fit.geo").read_text() + 'Physical Curve("top") = {13};')
         text = (SCENES / "press_fit.toml").read_text().replace("press_fit.geo", "ring.geo").replace("[load]", "[load]\ntop.force = [0.0, -1e5]")
         (self.place / "ring.toml").write_text(text)
@@ -221,8 +221,8 @@ contact = [{ slave = "rim", master = "bed" }, { slave = "rim", master = "under" 
             self.near(stress, -1e5 / (math.pi * (45.0**2 - 30.0**2)), 0.005)
 
     def test_gravity_and_spin(self):
-        """The contact bears the weight of the upper block, 3 by 1.5 by 5; and its mass times distance from an axis far above times the square of
-        the spin."""
+        """The contact carries the weight of the upper block, 3 by 1.5 by 5; and its mass times distance from an axis far above times the square of
+        the angular velocity."""
         text = (SCENES / "blocks.toml").read_text().replace("NU = 0.3\n", "NU = 0.3\ndensity = 7.0\n").replace("NU = 0.33", "NU = 0.33\ndensity = 2.0")
         text = text.replace("top.pressure = 250.0 ", "#")
         (self.place / "blocks.geo").write_text((SCENES / "blocks.geo").read_text())
@@ -250,8 +250,8 @@ contact = [{ slave = "rim", master = "bed" }, { slave = "rim", master = "under" 
                 self.near(row["pressure"], pressure, 1e-9)
 
     def test_dovetail(self):
-        """Flanks bear the pull of the mass, whatever their angle; what they bear across it is that over the angle's tangent. It grows as the square
-        of the spin."""
+        """The flanks carry the centrifugal load, whatever their angle; the transverse force is the load over the tangent of the angle. It grows as the square
+        of the angular velocity."""
         place = TOP / "input" / "dovetail_spin"
         (self.place / "dovetail_spin.toml").write_text((place / "dovetail_spin.toml").read_text())
         drawing = (place / "dovetail_spin.geo").read_text().replace("fine = 0.05;", "fine = 0.2;")
@@ -269,7 +269,7 @@ contact = [{ slave = "rim", master = "bed" }, { slave = "rim", master = "under" 
             self.near(abs(along[4] - along[1]), 5000.0, 1e-9)
 
     def test_travel(self):
-        """A line that is moved by so much takes the place of the force, and a force on what is held has no effect."""
+        """A prescribed displacement of a line replaces the force, and a force on fixed nodes has no effect."""
         table = self.variant(('[platen]\ntop = "y"\n', ""), ('[free]\ntop = "y"', "[support.top]\ny = -0.01735714285714286"),
                              ("top.pressure = 250.0 ", "wall.force = [7.0, 0.0] "))
         pushed = sum(float(row["ry"]) for row in table["nodes"] if float(row["y"]) == 3.5)
@@ -305,7 +305,7 @@ contact = [{ slave = "rim", master = "bed" }, { slave = "rim", master = "under" 
             self.near(row["pressure"], lame(), 0.003)
 
     def test_manual(self):
-        """The scene in input/README.md has every key there is, as it says, and no fault."""
+        """The model in input/README.md has every key, as it claims, and no error."""
         text = (TOP / "input/README.md").read_text().partition('this has every key there is:\n')[2].partition("Names with blanks")[0]
         (self.place / "wheel.toml").write_text("".join(line[4:] or "\n" for line in text.splitlines(True)))
         faults = Faults("wheel.toml")
@@ -317,7 +317,7 @@ contact = [{ slave = "rim", master = "bed" }, { slave = "rim", master = "under" 
             self.assertTrue(any(getattr(case, name) for case in scene.cases), name)
 
     def test_parameters(self):
-        """Those of the scene are those of the program, but for what the scene says otherwise or has no use for."""
+        """The keys of [PARAM] are the program's parameters, except those that the model gives otherwise or does not need."""
         told = subprocess.run([PROGRAM, "--cards", "PARAM"], capture_output=True, text=True, check=True).stdout
         names = re.findall(r"^([A-Z]+) +(?:a |[A-Z]+[, ]|NO )", told.partition("NAME      VALUE")[2], re.MULTILINE)
         self.assertEqual(sorted(set(names) - {"PLANE", "UNITS", "GAPGEOM"}), sorted(PARAMETERS))

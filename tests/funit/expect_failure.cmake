@@ -1,5 +1,5 @@
-# cmake -DFILE=x.pf -DCOMMAND=a;b -P expect_failure.cmake: the command must fail, and say what `! expect` lines of the file say
-# and nothing of what the `! expect-not` lines say.
+# cmake -DFILE=x.pf -DCOMMAND=a;b -P expect_failure.cmake: the command must fail, with the text of the `! expect` lines of the file
+# and without that of the `! expect-not` lines.
 execute_process(COMMAND ${COMMAND} RESULT_VARIABLE status OUTPUT_VARIABLE said ERROR_VARIABLE said)
 if(NOT status EQUAL 1)
   message(FATAL_ERROR "${FILE}: status ${status} where 1 was expected\n${said}")

@@ -10,7 +10,7 @@ module funit
   public :: funit_assert, funit_assert_raised, funit_runner, funit_value
   public :: anyExceptions, throw, KEEP_ALL, TRIM_ALL
 
-  !> What an integer, real or logical amounts to in a comparison.
+  !> Value of an integer, real or logical in a comparison.
   type :: value_type
     private
     integer :: sort = 0
@@ -24,25 +24,25 @@ module funit
     module procedure :: same_string, same_strings, same_table
   end interface funit_value
 
-  !> Assert that `expected relation actual` holds in every element; a scalar `expected` is meant for all elements.
+  !> Assert that `expected relation actual` holds in every element; a scalar `expected` applies to all elements.
   interface funit_assert
     module procedure :: assert_values, assert_near, assert_near_single, assert_strings
   end interface funit_assert
 
-  !> Whether blanks at both ends of strings count; as in pFUnit they do not unless one says so.
+  !> Are blanks at both ends of strings compared? As in pFUnit, only on request.
   type :: whitespace_option
     private
     logical :: trimmed = .true.
   end type whitespace_option
   type(whitespace_option), parameter :: TRIM_ALL = whitespace_option(.true.), KEEP_ALL = whitespace_option(.false.)
 
-  !> A failed assertion, or what the code under test has thrown; line 0 for the latter.
+  !> A failed assertion, or an exception of the code under test; then line 0.
   type :: exception
     integer :: line = 0
     character(len=:), allocatable :: message
   end type exception
 
-  !> Exceptions not yet caught: the one thing that assertions and runner share.
+  !> Exceptions not yet caught: shared by assertions and runner.
   type(exception), allocatable :: pending(:)
 
   !> Runs the tests of one file and counts.
@@ -88,7 +88,7 @@ contains
     value = value_type(sort_logical, merge(1_int64, 0_int64, truth), 0.0_real64)
   end function value_of_logical
 
-  ! One a rank: an elemental function of strings crashes gfortran 12.
+  ! One for each rank: an elemental function of strings crashes gfortran 12.
   pure function same_string(string) result(same)
     character(len=*), intent(in) :: string
     character(len=len(string)) :: same
@@ -174,7 +174,7 @@ contains
     end do
   end subroutine assert_strings
 
-  !> Assert that the code under test has thrown (with just this message, if given), and catch it.
+  !> Assert that the code under test has thrown (with exactly this message, if given), and catch it.
   subroutine funit_assert_raised(message, line)
     character(len=*), intent(in), optional :: message
     integer, intent(in) :: line
@@ -192,7 +192,7 @@ contains
     if (present(message)) pending(size(pending))%message = 'nothing thrown with message "'//message//'"'
   end subroutine funit_assert_raised
 
-  !> Report a failure; for test doubles of the code under test too.
+  !> Report a failure; test doubles of the code under test use it too.
   subroutine throw(message, line)
     character(len=*), intent(in) :: message
     integer, intent(in), optional :: line
@@ -204,7 +204,7 @@ contains
     pending = [pending, new]
   end subroutine throw
 
-  !> Whether anything thrown has not been caught.
+  !> Is there an exception that has not been caught?
   logical function anyExceptions()
     anyExceptions = allocated(pending)
     if (anyExceptions) anyExceptions = size(pending) > 0
@@ -212,11 +212,11 @@ contains
 
   subroutine start(self, file)
     class(funit_runner), intent(out) :: self
-    character(len=*), intent(in) :: file   !! the .pf file, as messages are to show it
+    character(len=*), intent(in) :: file   !! the .pf file, as shown in messages
     self%file = file
   end subroutine start
 
-  !> Run one test between `before` and `after`; whatever is thrown and not caught makes it fail.
+  !> Run one test between `before` and `after`; an exception that is not caught makes it fail.
   subroutine run(self, name, test, before, after)
     class(funit_runner), intent(inout) :: self
     character(len=*), intent(in) :: name
@@ -244,7 +244,7 @@ contains
     if (self%failures > 0 .or. self%tests == 0) stop 1
   end subroutine finish
 
-  !> `expected relation actual`. Nothing holds of a NaN, nor between a logical and a number.
+  !> Does `expected relation actual` hold? Never for a NaN, nor between a logical and a number.
   elemental logical function holds(expected, relation, actual, tolerance)
     type(value_type), intent(in) :: expected, actual
     character(len=*), intent(in) :: relation
@@ -275,7 +275,7 @@ contains
     end select
   end function holds
 
-  !> Throw, and be true, unless the shapes are equal or `expected` is a scalar.
+  !> Throw, and return true, unless the shapes are equal or `expected` is a scalar.
   logical function shapes_differ(expected, actual, message, line)
     integer, intent(in) :: expected(:), actual(:)
     character(len=*), intent(in), optional :: message
@@ -310,7 +310,7 @@ contains
       list = array
     rank (2)
       list = reshape(array, [size(array)])
-    rank (*)   ! how gfortran 12 sees an empty temporary
+    rank (*)   ! gfortran 12 gives an empty temporary this shape
       allocate (list(0))
     rank default
       error stop 'funit: an argument of rank 3 or more'
@@ -335,7 +335,7 @@ contains
     end select
   end function list_of_strings
 
-  !> ` at (2, 3)` for element `i` of an array; nothing for a scalar.
+  !> ` at (2, 3)` for element `i` of an array; empty for a scalar.
   pure function place_of(i, extents) result(text)
     integer, intent(in) :: i, extents(:)
     character(len=:), allocatable :: text

@@ -1,8 +1,8 @@
-!> `preprocessor test.pf test.f90`: turns a test module in the language of pFUnit into a Fortran module and a main
+!> `preprocessor test.pf test.f90`: turn a test module in the language of pFUnit into a Fortran module and a main
 !> program that runs its tests.
 !>
-!> Each line becomes just one line, so that one line marker at the top makes the compiler's messages point at
-!> the .pf file. A fault is reported as `file:line: what`, and then nothing is written.
+!> Each line becomes exactly one line, so that one line marker at the top makes the compiler's messages point at
+!> the .pf file. An error is reported as `file:line: text`, and then nothing is written.
 program preprocessor
   use, intrinsic :: iso_fortran_env, only: error_unit
   implicit none
@@ -46,7 +46,7 @@ program preprocessor
 
 contains
 
-  !> Put Fortran in place of an annotation.
+  !> Replace an annotation by Fortran.
   subroutine translate(annotation)
     character(len=*), intent(in) :: annotation   !! without blanks at either end
     character(len=:), allocatable :: name, arguments
@@ -74,7 +74,7 @@ contains
     if (i > columns) call fault(too_long(name//', as pFUnit writes it,', i))
   end subroutine translate
 
-  !> What pFUnit 4.14 makes of an assertion, as far as its first line goes; the place follows on lines of their own.
+  !> First line of pFUnit 4.14's code for an assertion; the location follows on separate lines.
   pure function pfunit_line(name, arguments) result(first_line)
     character(len=*), intent(in) :: name, arguments
     character(len=:), allocatable :: first_line
@@ -94,7 +94,7 @@ contains
     text = what//trim(numbers)
   end function too_long
 
-  !> The call that an assertion stands for.
+  !> The call for an assertion.
   function assertion(name, arguments) result(statement)
     character(len=*), intent(in) :: name, arguments
     character(len=:), allocatable :: statement
@@ -136,7 +136,7 @@ contains
                 //arguments(first + 2:second)//')'//arguments(second + 1:)//', '
   end function comparison
 
-  !> Where the argument that begins at `start` ends: before a comma outside parentheses and strings.
+  !> End of the argument that begins at `start`: before a comma outside parentheses and strings.
   pure integer function argument_end(text, start)
     character(len=*), intent(in) :: text
     integer, intent(in) :: start

@@ -1,4 +1,4 @@
-!> Boundaries drawn from points, without elements behind them.
+!> Boundaries defined by points, without elements.
 module outlines
   use epcont_base_kinds, only: wp
   use epcont_geometry_boundary_line, only: boundary_line, facing_type
@@ -12,13 +12,13 @@ module outlines
 
 contains
 
-  !> Sides through points, straight unless they have middle nodes, walked with the body to the left.
+  !> Edges through points, straight unless they have mid-side nodes, listed with the body to the left.
   function drawn(x, closed, angle, held, middle) result(line)
     real(wp), intent(in) :: x(:, :)                 !! [2, points]
     logical, intent(in), optional :: closed         !! the last point is followed by the first
     real(wp), intent(in), optional :: angle         !! of PARAM CORNER [degree]
-    integer, intent(in), optional :: held(:, :)     !! directions in which ends of sides are held [2, sides]
-    real(wp), intent(in), optional :: middle(:, :)  !! of curved sides [2, sides]
+    integer, intent(in), optional :: held(:, :)     !! directions in which ends of edges are fixed [2, sides]
+    real(wp), intent(in), optional :: middle(:, :)  !! of curved edges [2, sides]
     type(boundary_line) :: line
     real(wp) :: corner
     logical :: ring
@@ -55,10 +55,10 @@ contains
     end if
   end function drawn
 
-  !> Points of a boundary that turns by some angles, counter-clockwise, between sides of some lengths; the first side leads left.
+  !> Points of a boundary with some angles, counter-clockwise, between edges of some lengths; the first edge points left.
   pure function chain(turn, length) result(x)
     real(wp), intent(in) :: turn(:)      !! [degree]
-    real(wp), intent(in) :: length(:)    !! one more than of turns
+    real(wp), intent(in) :: length(:)    !! one more than angles
     real(wp) :: x(2, size(length) + 1)
     real(wp) :: along
     integer :: i
@@ -71,7 +71,7 @@ contains
     end do
   end function chain
 
-  !> The side of a line that a point faces nearest by.
+  !> The nearest edge that a point projects onto.
   pure type(facing_type) function find_nearest(line, obstacles, from, search) result(nearest)
     type(boundary_line), intent(in) :: line, obstacles
     type(looking_point), intent(in) :: from

@@ -1,4 +1,4 @@
-"""Nodal forces of gravity and spins, exactly: all that is integrated is a polynomial of the reference coordinates. Standard library only.
+"""Nodal forces of gravity and rotation, exact: all integrands are polynomials of the reference coordinates. Standard library only.
 
 A polynomial is a dictionary: coefficients by powers.
 """
@@ -28,7 +28,7 @@ def derived(p, c):
 
 
 def integral(p, corners):
-    """Over the triangle (0, 0), (1, 0), (0, 1), or the square from -1 to 1."""
+    """Integrate over the triangle (0, 0), (1, 0), (0, 1), or the square from -1 to 1."""
     if corners == 3:
         return sum(c * factorial(i) * factorial(j) / factorial(i + j + 2) for (i, j), c in p.items())
     return sum(4.0 * c / ((i + 1) * (j + 1)) for (i, j), c in p.items() if i % 2 == j % 2 == 0)
@@ -41,7 +41,7 @@ def shapes_of(kind):
 
 
 def body_forces(kind, x, thickness, density, loads):
-    """(fx, fy) of each node. `loads`: (acceleration, centre, revolutions, their growth) of each."""
+    """(fx, fy) of each node. `loads`: (acceleration, centre, revolutions, angular acceleration) of each."""
     shapes = shapes_of(kind)
     apart = [[p[c] - x[0][c] for c in (0, 1)] for p in x]
     place = [combined((p[c], shape) for p, shape in zip(apart, shapes)) for c in (0, 1)]

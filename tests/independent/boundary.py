@@ -1,4 +1,4 @@
-"""The sides that belong to one element only: what lies inside, how deep they are, what presses on them. Standard library only.
+"""The edges that belong to one element only: their body's side, their length, and the pressure on them. Standard library only.
 
 Nodes have any names: rows of arrays, or ids.
 """
@@ -7,23 +7,23 @@ from math import cos, fmod, pi, radians, sin, sqrt
 
 from kinds import solved
 
-#: Of a side from 0 to 1 with two or three nodes (end, end, middle): coefficients of the shape functions [node][power].
+#: For an edge from 0 to 1 with two or three nodes (end, end, middle): coefficients of the shape functions [node][power].
 WAYS = {n: list(zip(*solved([[t ** p for p in range(n)] for t in (0.0, 1.0, 0.5)[:n]],
                             [[float(i == j) for j in range(n)] for i in range(n)]))) for n in (2, 3)}
 
 
 @dataclass(frozen=True)
 class Side:
-    nodes: tuple        # end, end, middle or nothing
+    nodes: tuple        # end, end, mid-side node or nothing
     inner: tuple        # the centre of the element's corners
-    thickness: float    # None: a ring
+    thickness: float    # None if axisymmetric
 
     def depth(self, radius):
         return 2 * pi * radius if self.thickness is None else self.thickness
 
 
 def boundary(elements, x):
-    """The sides of one element only, by their ends. `elements`: (kind, nodes in the order of the card, thickness or None)."""
+    """The edges that belong to one element, by their ends. `elements`: (type, nodes in the order of the card, thickness or None)."""
     found = {}
     for kind, nodes, thickness in elements:
         corners = [x[nodes[i]] for i in kind.corners()]
@@ -41,9 +41,9 @@ GAUSS = [(0.5 + at, weight / 1800) for at, weight in ((0.0, 512), (-NEAR, 322 + 
 
 
 def side_points(x):
-    """Of each of five Gauss points on a side: shape values, place, tangent times its part, way along from 0 to 1.
+    """For each of five Gauss points on an edge: shape function values, coordinates, tangent times its weight, position from 0 to 1.
 
-    x: its ends, and its middle where it has one."""
+    x: its ends, and its mid-side node if it has one."""
     shape = WAYS[len(x)]
     for t, part in GAUSS:
         values = [sum(c * t ** p for p, c in enumerate(column)) for column in shape]
@@ -53,7 +53,7 @@ def side_points(x):
 
 
 def edge_forces(side, x, first, pressures, angle):
-    """(node, direction, force) of a pressure from that at end `first` to that at the other; `angle` turns it from the inward
+    """(node, direction, force) of a pressure that is linear between the ends; `angle` rotates it from the inward
     normal, in degrees."""
     a, b = side.nodes[:2] if side.nodes[0] == first else side.nodes[1::-1]
     nodes = [a, b, *side.nodes[2:]]

@@ -4,12 +4,12 @@
     . tools/venv && python tests/independent/compare.py build/release/epcont input/*/*.dat
     python tests/independent/compare.py build/release/epcont --random 300 --seed 1 --tolerance 1e-7
 
-Differences are relative to the largest of their kind: forces and reactions to the largest of them, gaps, displacements
+Differences are relative to the largest value of the quantity: forces and reactions to the largest of them, gaps, displacements
 and approaches to the largest displacement or initial gap, stresses to the largest stress, pressures to the largest.
 
-Decks that can yield are run with TOL 1E-12.
+Decks with yielding run with TOL 1E-12.
 
-Exit status: 0 all agree, 1 some do not, 2 usage.
+Exit status: 0 if all agree, 1 if some do not, 2 for a usage error.
 """
 import argparse
 import collections
@@ -35,7 +35,7 @@ KEPT = pathlib.Path(__file__).resolve().parents[2] / "build" / "random"
 
 
 def read(path, case):
-    """Rows of a load case, of all where there are not several."""
+    """Rows of a load case; all rows if there is only one."""
     if not path.exists():
         return []
     with open(path, newline="", encoding="ascii") as file:
@@ -43,7 +43,7 @@ def read(path, case):
 
 
 def compare(found, directory, stem, case):
-    """(kind, relative difference, where) of every kind of number, and the faults of structure."""
+    """(quantity, relative difference, position) of every number, and the faults of structure."""
     worst, faults, pieces = {}, [], {}
     for name, kinds in KINDS.items():
         header, rows = found[name]
@@ -85,7 +85,7 @@ def compare(found, directory, stem, case):
 
 
 def tightened(path, place):
-    """The deck, or where it can yield a copy that iterates to rounding, with copies of the files that it includes."""
+    """The deck; if it can yield, a copy that iterates to rounding, with copies of its INCLUDE files."""
     text = path.read_text(encoding="latin-1")
     if "MATS1" not in text:
         return path
@@ -100,8 +100,8 @@ def tightened(path, place):
 
 
 def verdict(path, place, said, case, found, tolerance):
-    """Of a load case: AGREE, REFUSED by both, COARSE (epcont finds bodies in each other, which nothing here looks for), or DIFFER; and how much
-    they differ by, in words."""
+    """Verdict of a load case: AGREE, REFUSED by both, COARSE (epcont finds penetration, which this program does not check), or DIFFER; and the
+    difference, in words."""
     status = next((row["value"] for row in read(place / f"{path.stem}.summary.csv", case) if row["key"] == "status"), "no answer")
     if found is None or status != "valid":
         own = [line for line in said.splitlines() if case is None or f"SUBCASE {case}: " in line]
@@ -116,7 +116,7 @@ def verdict(path, place, said, case, found, tolerance):
 
 
 def pairs_of_lines(path, place):
-    """Nodes of the pairs of lines that the program has, by load case."""
+    """Nodes of the program's pairs of lines, by load case."""
     deck, found = deck_of(path), {}
     own = {int(card[1]) for card in deck.of("CGAP")}
     for case in deck.by_case():
@@ -125,7 +125,7 @@ def pairs_of_lines(path, place):
 
 
 def run(program, path, tolerance):
-    """Exit status of the program, the one that the independent program expects, what the program said, and (load case, verdict, words) of each."""
+    """Exit status of the program, that expected by the independent program, the program's messages, and (load case, verdict, words) of each."""
     with tempfile.TemporaryDirectory() as place:
         done = subprocess.run([program.resolve(), tightened(path, place), "-o", place, "--tables", "all"], capture_output=True, text=True)
         try:

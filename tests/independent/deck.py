@@ -1,6 +1,6 @@
-"""A reader of plane decks that has nothing in common with epcont's: small, large and free fields, INCLUDE, load cases.
+"""A reader of plane decks, independent of epcont's: small, large and free fields, INCLUDE, load cases.
 
-It trusts the deck: whatever it does not understand raises DeckError, without place or remedy.
+It assumes a valid deck: anything unknown raises DeckError, without position or remedy.
 """
 import math
 import pathlib
@@ -11,7 +11,7 @@ KNOWN = {"GRID", "CTRIA3", "CTRIA6", "CQUAD4", "CQUAD8", "CTRAX3", "CTRAX6", "PS
          "RBE2", "SUPORT", "CORD2R", "CGAP", "PGAP", "CBAR", "PARAM", "SPCADD", "LOAD", "MATS1", "TABLES1", "BLSEG", "BCONP", "SPCD", "TEMP",
          "TEMPD", "GRAV", "RFORCE", "MOMENT", "MPC", "MPCADD", "CELAS1", "CELAS2", "PELAS", "NLPARM"}
 
-#: Columns of the tables, by what their largest is the measure of.
+#: Columns of the tables, by the quantity whose largest value is their scale.
 KINDS = {"contact": {"force": ["force"], "length": ["initial_gap", "gap"], "pressure": ["pressure"], "normal": ["nx", "ny"],
                      "place": ["x", "y"]},
          "nodes": {"length": ["ux", "uy"], "force": ["rx", "ry"], "place": ["x", "y"]},
@@ -27,7 +27,7 @@ class DeckError(Exception):
 
 @dataclass
 class Deck:
-    """`case`: what case control says of the one that it is of, by statement; `cases`: of all, where there are several."""
+    """`case`: statements of case control of one load case; `cases`: of all, if there are several."""
     case: dict = field(default_factory=dict)
     cards: list = field(default_factory=list)
     cases: list = field(default_factory=list)
@@ -36,7 +36,7 @@ class Deck:
         return [card for card in self.cards if card[0] == name]
 
     def by_case(self):
-        """A deck of each load case, with the contacts that it has."""
+        """One deck for each load case, with its contacts."""
         for case in self.cases or [self.case]:
             contact = case.get("BCON", "ALL")
             keep = [card for card in self.cards
@@ -45,7 +45,7 @@ class Deck:
 
     @property
     def number(self):
-        """Of the load case; None where there are not several, and None is written."""
+        """Number of the load case; None if there is only one."""
         return self.case.get("SUBCASE") if self.case.get("several") else None
 
     def loads(self):
@@ -83,7 +83,7 @@ class Deck:
         return {int(card[1]): (real(at(card, 6)), real(at(card, 7))) for card in self.of("MAT1")}
 
     def temperatures(self):
-        """Of the nodes, by a function; None where the deck chooses no set."""
+        """Temperatures of the nodes, as a function; None if the deck chooses no set."""
         if "TEMP" not in self.case:
             return None
         chosen = self.case["TEMP"]
@@ -92,7 +92,7 @@ class Deck:
         return lambda node: known.get(node, others)
 
     def curves(self, moduli):
-        """Points (strain, stress) of the uniaxial curves, by MAT1; a table's yield strain is its yield stress over E."""
+        """Points (strain, stress) of the uniaxial curves, by MAT1; the yield strain of a table is its yield stress over E."""
         tables = {int(card[1]): [real(text) for text in card[9:card.index("ENDT")]] for card in self.of("TABLES1")}
         found = {}
         for card in self.of("MATS1"):
@@ -117,18 +117,18 @@ class Deck:
         return found
 
     def body_loads(self, chosen, x):
-        """(acceleration, centre, revolutions, their growth) of the GRAV and RFORCE of the set; `x`: places by id."""
+        """(acceleration, centre, revolutions, angular acceleration) of the GRAV and RFORCE of the set; `x`: coordinates by id."""
         found = [([real(card[3]) * real(at(card, i)) for i in (4, 5)], (0.0, 0.0), 0.0, 0.0)
                  for card in self.of("GRAV") if int(card[1]) == chosen]
         for card in self.of("RFORCE"):
             if int(card[1]) == chosen:
-                axis = real(at(card, 6)) or real(at(card, 7))   # of rings y, else z
+                axis = real(at(card, 6)) or real(at(card, 7))   # y if axisymmetric, else z
                 found.append(((0.0, 0.0), x(integer(card[2])) if integer(card[2]) else (0.0, 0.0),
                               axis * real(at(card, 4)), axis * real(at(card, 9))))
         return found
 
     def rotating(self):
-        """Master nodes of RBE2 that rotate: a SUPORT, a displacement or a MOMENT of a set that some load case uses names this."""
+        """Master nodes of RBE2 that rotate: named by a SUPORT, a displacement or a MOMENT of a set that some load case uses."""
         cases = [Deck(case, self.cards) for case in self.cases or [self.case]]
         supports, loads = {case.supports() for case in cases}, {chosen for case in cases for chosen in case.loads()}
         named = {int(card[i]) for card in self.of("SUPORT") for i in range(1, len(card) - 1, 2) if "6" in card[i + 1]}
@@ -146,7 +146,7 @@ class Deck:
         return found
 
     def equations(self):
-        """Of each MPC of the case its terms ((node, component), coefficient), the dependent one first."""
+        """Terms ((node, component), coefficient) of each MPC of the case, the dependent one first."""
         sets = [int(card[1]) for name in ("MPC", "MPCADD") for card in self.of(name)]
         chosen = self.case.get("MPC", next(iter(sets), 0))
         used = {chosen} | {number for card in self.of("MPCADD") if int(card[1]) == chosen for number in ids(card[2:])}
@@ -157,7 +157,7 @@ class Deck:
                 yield terms[:1] + [term for term in terms[1:] if term[1]]
 
     def springs(self):
-        """Of each spring (id, stiffness, [its ends (node, component), None at the ground])."""
+        """(id, stiffness, [its ends (node, component), None at the ground]) of each spring."""
         stiffness = {int(card[i]): real(card[i + 1]) for card in self.of("PELAS") for i in (1, 5) if at(card, i)}
         for card in self.of("CELAS1") + self.of("CELAS2"):
             ends = [(integer(at(card, i)), integer(at(card, i + 1)) - 1) for i in (3, 5)]
@@ -165,7 +165,7 @@ class Deck:
             yield int(card[1]), value, [end if end[0] else None for end in ends]
 
     def held(self):
-        """(node, digits, value) of GRID, of the SPC1 and SPC of the case, and of its SPCDs, which stand in place of these."""
+        """(node, digits, value) of GRID, of the SPC1 and SPC of the case, and of its SPCDs, which replace these."""
         found, chosen, moved = [(int(card[1]), at(card, 8), 0.0) for card in self.of("GRID")], self.supports(), {}
         for card in self.of("SPC1") + self.of("SPC"):
             if int(card[1]) == chosen:
@@ -179,7 +179,7 @@ class Deck:
         return found + [(node, digit, value) for (node, digit), value in moved.items()]
 
     def frames(self):
-        """x-axes in the plane, by CORD2R; that of the basic system is 0."""
+        """x-axes in the plane, by CORD2R; the basic system is 0."""
         return {0: (1.0, 0.0), **{int(card[1]): x_axis([real(at(card, i)) for i in range(3, 12)]) for card in self.of("CORD2R")}}
 
 
@@ -236,7 +236,7 @@ def read(path):
 
 
 def take_case_control(deck, lines):
-    """What stands above the first SUBCASE holds for all."""
+    """Statements above the first SUBCASE apply to all."""
     now = deck.case
     for line in lines:
         match = re.match(r"\s*(?:(SPC|LOAD|MPC)|(TEMP|BCON|SUBC)[A-Z]*)(?:\s*\(\s*(?:LOAD|BOTH)\s*\))?[\s=]\s*=?\s*(\d+)\s*$", line)
@@ -263,7 +263,7 @@ def real(text, default=0.0):
 
 
 def x_axis(p):
-    """Of a frame with origin A, z-axis towards B and C in the xz plane, from their nine coordinates."""
+    """x-axis of a frame with origin A, z-axis towards B and C in the xz plane, from their nine coordinates."""
     z = [p[3 + i] - p[i] for i in range(3)]
     length = math.hypot(*z)
     z = [v / length for v in z]

@@ -1,4 +1,4 @@
-"""Kinds of elements from monomials: no shape function is written down here, all come from the places of the reference nodes.
+"""Element types from monomials: shape functions follow from the coordinates of the reference nodes.
 
 A function on an element is a sum of monomials of the reference coordinates, as many as nodes; the one that is 1 at a node and 0
 at the others has the coefficients that solve the system of the monomials at the nodes. Standard library only.
@@ -27,12 +27,12 @@ def solved(matrix, rights):
 
 @dataclass(frozen=True)
 class Kind:
-    """Reference nodes in the order of the card, powers of the monomials, integration points with weights; sides as places in the
-    card (end, end, middle or nothing)."""
+    """Reference nodes in the order of the card, powers of the monomials, integration points with weights; edges as positions in the
+    card (end, end, mid-side node or nothing)."""
     nodes: tuple
     powers: tuple
     points: tuple
-    weight: float | tuple   # of each point, or one of all
+    weight: float | tuple   # weight of each point, or one for all
     sides: tuple
     ring: bool = False
 
@@ -41,7 +41,7 @@ class Kind:
         return self.weight if isinstance(self.weight, tuple) else (self.weight,) * len(self.points)
 
     def monomial(self, place, power, derived=None):
-        """A monomial at a place, or its derivative by one coordinate."""
+        """A monomial at a point, or its derivative by one coordinate."""
         if derived is None:
             return prod(x ** p for x, p in zip(place, power))
         lower = [p - (c == derived) for c, p in enumerate(power)]
@@ -49,12 +49,12 @@ class Kind:
 
     @cached_property
     def coefficients(self):
-        """Of the shape functions [monomial][node]."""
+        """Coefficients of the shape functions [monomial][node]."""
         return solved([[self.monomial(place, power) for power in self.powers] for place in self.nodes],
                       [[float(i == j) for j in range(len(self.nodes))] for i in range(len(self.nodes))])
 
     def shapes(self, derived=None, places=None):
-        """Shape functions, or derivatives, at places, or else at the integration points [place][node]."""
+        """Shape functions, or derivatives, at points, by default the integration points [point][node]."""
         columns = list(zip(*self.coefficients))
         terms = [[self.monomial(place, power, derived) for power in self.powers] for place in places or self.points]
         return [[sum(term * c for term, c in zip(row, column)) for column in columns] for row in terms]

@@ -1,11 +1,11 @@
-"""Contact between boundary lines: what nodes of one face of the other, and what of its displacement counts for them.
+"""Contact between boundary lines: projection of nodes onto the other line, and weights of its displacements.
 
-Of all sides whose normals lead to a point and look against it, with no body between, the nearest counts; in a concave corner a second
-one too. Where normals nearly meet in one point they do. The master line's displacement is fitted on each slave side that faces it all along by the slave's shape functions, least
-squares; a slave node's gap is against the fits of its sides, averaged as their lengths (in rings areas) that belong to the node, moved
-along the line until forces balance. Sides
-that do not face it all along count at their nodes' own places, and there corners of the master have pairs of their own. Where two ends of the
-master lie flush a side is two, and each end has a pair. Every side is looked at; standard library only.
+The nearest of all edges whose normals lead to a point and are opposite to it, with no body between, counts; in a concave corner a second
+one too. If normals nearly meet in one point they do so exactly. The master line's displacement is fitted on each slave edge that it covers by the slave's shape functions, least
+squares; a slave node's gap is relative to the fits of its edges, averaged with their lengths (axisymmetric: areas) that belong to the node, moved
+along the line until forces balance. Edges
+that are not covered use the projections of their nodes, and there corners of the master have their own pairs. Where two ends of the
+master are flush an edge is two, and each end has a pair. Every edge is tested; standard library only.
 """
 from collections import Counter
 from dataclasses import dataclass
@@ -15,24 +15,24 @@ from deck import DeckError, at, ids, real
 from kinds import solved
 from outline import BEYOND, cross, dot, outline, unit
 
-#: Cosines: of normals that look against each other; of one face; of one curve; of sides that are nearly parallel; of pieces without a
+#: Cosines: of opposite normals; of one face; of one curve; of nearly parallel edges; of pieces without a
 #: corner between.
 AGAINST, SAME, ONE_CURVE, PARALLEL, NO_CORNER = -0.05, 0.985, 0.816, 0.94, 0.988
-#: Parts of a side: gaps' jump at a step; how far from a node obstacles are looked for; gaps below which there are none.
+#: Fractions of an edge: jump of the gap at a step; distance from a node at which obstacles count; gaps that count as zero.
 STEP, ASIDE, THIN = 0.01, 1e-3, 1e-3
-#: A curve's distance from its chord, of chord times turn; the part of the way that does not count at its ends.
+#: Distance of a curve from its chord, over chord times angle; fraction of the way that does not count at its ends.
 RISE, AT_END = 0.2, 0.01
-#: Gaps are equal, of the search; weights and areas are none; gaps are none, of the coordinates; the area a ring's corner has at least.
+#: Gaps are equal, relative to the search; weights and areas are zero; gaps are zero, relative to the coordinates; smallest area of a corner on the axis.
 EQUAL, NOTHING, ROUNDING, AT_AXIS = 1e-9, 1e-12, 16 * 2.0 ** -52, 1e-3
-#: How far lines pass a centre, of its distance; the variance of their directions, at least.
+#: Distance of lines from a centre, relative to its distance; smallest variance of their directions.
 ON_LINE, LEAST_TURN = 1e-4, 0.01
-#: Search, of the longest side; further by this factor, where nothing is found.
+#: Search distance, relative to the longest edge; factor of its increase if nothing is found.
 SEARCH, FURTHER = 2.0, 4.0
 
 
 @dataclass
 class Eye:
-    """Who looks: place, normal, way to the middle of its own side, how far its curve may be from that; `node`: its name, if it is one."""
+    """A point that is projected: coordinates, normal, vector to the middle of its own edge, distance of its curve; `node`: its name, if it is one."""
     x: list
     outward: list
     along: list
@@ -43,7 +43,7 @@ class Eye:
 
 @dataclass
 class LinePair:
-    """Gap = initial + normal . (of `node` less the sum of `shares`). `stands_on`: of a pair of the master the nodes of the slave's side."""
+    """Gap = initial + normal . (of `node` less the sum of `shares`). `stands_on`: for a pair of the master the nodes of the slave's edge."""
     node: object
     shares: dict
     normal: list
@@ -54,7 +54,7 @@ class LinePair:
         return {**{name: -share for name, share in self.shares.items()}, self.node: 1.0 - self.shares.get(self.node, 0.0)}
 
     def other(self):
-        """The node that shares the most."""
+        """The node with the largest weight."""
         return max((name for name in self.shares if name != self.node), key=self.shares.get)
 
 
@@ -67,19 +67,19 @@ def eye_of(segment, k):
 
 
 class Line:
-    """Some sides of the outline; `bodies`: all of it."""
+    """Some edges of the outline; `bodies`: the whole outline."""
 
     def __init__(self, segments, bodies):
         self.segments, self.bodies = segments, bodies
         self.own = set(map(id, segments))
 
     def beside(self, segment, end):
-        """The side before or after, or None beyond the line."""
+        """The edge before or after, or None beyond the line."""
         other = segment.beside[end]
         return other if id(other) in self.own else None
 
     def face(self, eye, reach):
-        """What is faced within reach: the best place, or None, and a second one, or None."""
+        """The best projection within reach, or None, and a second one, or None."""
         more = min(reach, 2 * hypot(*eye.along))
         order = sorted((hypot(*(a - b for a, b in zip(eye.x, one.centre))) - one.chord * (1 + 1e-9), k) for k, one in enumerate(self.segments))
         found, nearest = [], reach
@@ -103,7 +103,7 @@ class Line:
             found = [place for place in found if place not in both]
         others = [place for place in found if dot(place.normal, best.normal) <= SAME and abs(place.gap) <= abs(best.gap) + more]
         second = min(others, key=lambda place: abs(place.gap), default=None)
-        if len(both) == 2:   # none is the better one: between them
+        if len(both) == 2:   # neither is the better one: between them
             mean = [both[0].normal[c] + both[1].normal[c] for c in (0, 1)]
             best.normal, best.gap = unit(mean), (both[0].gap + both[1].gap) / hypot(*mean)
         for place in (best, second):
@@ -112,7 +112,7 @@ class Line:
         return best, second
 
     def candidate(self, segment, eye, reach):
-        """The place that an eye faces of a side, if nothing speaks against it."""
+        """The projection of an eye onto an edge, if nothing prevents it."""
         if eye.node in segment.nodes:
             return None
         place = segment.face(eye.x)
@@ -125,7 +125,7 @@ class Line:
         return None if self.blocked(eye, place) else place
 
     def goes_on(self, segment, eye, reach):
-        """Is there overlap along the eye's own side, too?"""
+        """Is there also overlap along the eye's own edge?"""
         x = [eye.x[c] + ASIDE * eye.along[c] for c in (0, 1)]
         if segment.face(x):
             return True
@@ -137,7 +137,7 @@ class Line:
         return False
 
     def blocked(self, eye, place):
-        """Does a body stand between?"""
+        """Is a body between?"""
         own = 2 * hypot(*eye.along)
         if abs(place.gap) <= THIN * min(place.segment.chord, own):
             return False
@@ -167,13 +167,13 @@ def alike(one, other):
 
 
 class Contact:
-    """What the nodes of the slave face, within `reach`, of the master; `near`: nodes of the master that are said to have come near. `motion`:
-    what moves (node, direction), itself or another one, or by how much."""
+    """Projections of the slave's nodes onto the master, within `reach`; `near`: nodes of the master reported as near. `motion`:
+    the DOF that moves (node, direction), or its displacement."""
 
     def __init__(self, slave, master, ring, motion, reach, near=()):
         self.slave, self.master, self.ring, self.motion, self.reach = slave, master, ring, motion, reach
-        self.rows = []       # (node, what it faces)
-        self.of = {}         # the row of a node of a side
+        self.rows = []       # (node, projection)
+        self.of = {}         # the row of a node of an edge
         self.look_from_slave()
         self.shares, self.covered = [[] for _ in self.rows], {}
         self.ends = {}       # the rows of ends of the master at joints
@@ -194,7 +194,7 @@ class Contact:
                     self.of[id(segment), node] = row
                     continue
                 best, second = self.master.face(eye_of(segment, k), self.reach)
-                if best:   # round a corner each side has a row of its own
+                if best:   # around a corner each edge has a row of its own
                     like = [i for i, (name, place) in enumerate(self.rows) if name == node and alike(best, place)]
                     self.of[id(segment), node] = like[0] if like else len(self.rows)
                     self.rows += [] if like else [(node, best)]
@@ -205,7 +205,7 @@ class Contact:
                 self.rows.append((node, place))
 
     def seen_from(self, segment, spans):
-        """The points of the pieces of a slave side, each with what it faces and the way outwards."""
+        """The points of the pieces of a slave edge, each with its projection and the outward direction."""
         pieces = []
         for low, high, piece in segment.pieces(spans, self.ring):
             seen = []
@@ -217,7 +217,7 @@ class Contact:
         return pieces
 
     def average(self, segment):
-        """What the master's nodes share in the gaps of a slave side's nodes."""
+        """Weights of the master's nodes in the gaps of a slave edge's nodes."""
         rows = [self.of.get((id(segment), node)) for node in segment.nodes]
         faced = [self.rows[row][1] for row in rows if row is not None]
         within = self.reach
@@ -227,7 +227,7 @@ class Contact:
         spans = segment.spans([s for s in cuts if s is not None])
         pieces = self.seen_from(segment, spans)
         faces = [{id(place.segment) if place else None for *_, place, _ in seen} for *_, seen in pieces]
-        first = [k == 0 or len(faces[k - 1] | faces[k]) > 1 for k in range(len(spans))]   # else what stands behind would cut
+        first = [k == 0 or len(faces[k - 1] | faces[k]) > 1 for k in range(len(spans))]   # otherwise edges behind it would cut
         if not all(first):
             starts = [low for (low, _), begins in zip(spans, first) if begins]
             ends = [high for (_, high), begins in zip(spans, [*first[1:], True]) if begins]
@@ -246,7 +246,7 @@ class Contact:
             self.average_between(rows, pieces[first:last], first > 0, last < len(pieces), bool(joints))
 
     def average_between(self, rows, pieces, cut_before, cut_behind, cut):
-        """The same of a side, or of what of it is between joints, that faces the other line all along."""
+        """The same for an edge, or its part between joints, that the other line covers."""
         points = [point for *_, seen in pieces for point in seen]
         begin, end = pieces[0][0], pieces[-1][1]
         if cut:
@@ -264,13 +264,13 @@ class Contact:
         return len(self.shares) - 1
 
     def goes_on(self, one, other):
-        """Are two places of the master on one side, on sides that join, or at ends that cannot but move alike?"""
+        """Are two points of the master on one edge, on adjacent edges, or at ends that must move together?"""
         if one.segment is other.segment or any(self.master.beside(one.segment, end) is other.segment for end in (0, 1)):
             return True
         return all(self.motion(end_of(one), c) == self.motion(end_of(other), c) for c in (0, 1))
 
     def look_from_master(self, near):
-        """Corners of the master on sides of the slave that are not covered, its ends at joints, and nodes that came near."""
+        """Corners of the master on edges of the slave that are not covered, its ends at joints, and nodes that came near."""
         self.tips = []
         for segment in self.master.segments:
             last = len(segment.nodes) - 1
@@ -281,13 +281,13 @@ class Contact:
                             self.tips.append((node, place))
         for node, place in self.tips:
             shares = place.weights()
-            if node in self.ends:   # of the master what its row says, instead of the node
+            if node in self.ends:   # the master's displacement from its row, instead of the node
                 own = mean(self.shares[self.ends[node]])
                 shares.update({name: (name == node) - share for name, share in own.items() if own.keys() != {node}})
             self.pairs.append(LinePair(node, shares, place.normal, place.gap, tuple(place.segment.nodes)))
 
     def has(self, node, place):
-        """Does it stand at a node with a pair there, or has it one?"""
+        """Is it at a node with a pair there, or has it a pair?"""
         most = max(range(len(place.values)), key=lambda i: place.values[i])
         if place.values[most] >= 1 - BEYOND and node not in self.ends:
             row = self.of.get((id(place.segment), place.segment.nodes[most]))
@@ -296,7 +296,7 @@ class Contact:
         return any(name == node and alike(place, other) for name, other in self.tips)
 
     def beside_joint(self, place, node):
-        """Is the place an end of the master where the node lies that is not that end?"""
+        """Is the point an end of the master at the node, but not that end?"""
         if max(place.values) < 1.0 or end_of(place) == node:
             return False
         there = [one.x[k] for one in self.master.segments for k in (0, -1) if one.nodes[k] == node]
@@ -304,12 +304,12 @@ class Contact:
 
 
 def end_of(place):
-    """The end of its side that a place is nearer to."""
+    """The end of its edge that is nearer to a point."""
     return place.segment.nodes[0] if place.values[0] >= place.values[-1] else place.segment.nodes[-1]
 
 
 def is_covered(segment, faced, pieces, points):
-    """Does a side face the other line all along, and one face of it, without a step or a corner?"""
+    """Is an edge covered by the other line, by one face of it, without a step or a corner?"""
     if any(place is None or dot(place.normal, outward) >= -PARALLEL for *_, place, outward in points):
         return False
     if any(dot(point[3].normal, place.normal) <= ONE_CURVE for point in points for place in faced):
@@ -327,7 +327,7 @@ def is_covered(segment, faced, pieces, points):
 
 
 def fitted(points, count):
-    """Of each node of a side the weights of the other line's nodes, by the normal equations of least squares."""
+    """For each node of an edge the weights of the other line's nodes, by the normal equations of least squares."""
     seen = [point[3].weights() for point in points]
     columns = sorted({node for weights in seen for node in weights})
     matrix = [[sum(w * n[i] * n[j] for _, n, w, *_ in points) for j in range(count)] for i in range(count)]
@@ -336,7 +336,7 @@ def fitted(points, count):
 
 
 def mean(found):
-    """Of [(area, values by name)]; where there is no area, of equals."""
+    """Mean of [(area, values by name)]; with equal weights if there is no area."""
     if not sum(area for area, _ in found) > 0:
         found = [(1.0, values) for _, values in found]
     whole, total = sum(area for area, _ in found), {}
@@ -347,7 +347,7 @@ def mean(found):
 
 
 def line_of(nodes, found):
-    """The sides along a BLSEG, the body to the left."""
+    """The edges along a BLSEG, the body to the left."""
     walked, i = [], 0
     while i < len(nodes) - 1:
         step = 1 if frozenset(nodes[i:i + 2]) in found else 2
@@ -363,13 +363,13 @@ def line_of(nodes, found):
 
 
 def corners_of(nodes, walked):
-    """Where each side of a line is entered."""
+    """Nodes of a line that are ends of edges."""
     ends = {node for segment in walked for node in (segment.nodes[0], segment.nodes[-1])}
     return [node for node in nodes if node in ends]
 
 
 def joined(contacts):
-    """Sets of contacts whose lines go on in each other, as lists of their numbers. `contacts`: (slave, master), lists of sides."""
+    """Sets of contacts whose lines continue each other, as lists of their numbers. `contacts`: (slave, master), lists of edges."""
     def meet(one, other):
         return bool(ends_of(one) & ends_of(other))
 
@@ -386,8 +386,8 @@ def ends_of(segments):
 
 
 def pairs_of_lines(deck, parameter, sides, x, held, motion, name=lambda g: g, told=None):
-    """Of each contact the list of its LinePairs. `held`: (node, direction), ties followed; `motion`: what moves each; `name`: of the node of an id; `told`: names of
-    nodes, as often as the program has pairs of them: they tell what came near as loads moved it."""
+    """For each contact the list of its LinePairs. `held`: (node, direction), ties followed; `motion`: DOF that moves each; `name`: of the node of an id; `told`: names of
+    nodes, as often as the program has pairs of them: they identify pairs that came near due to loads."""
     found = outline(sides, x, held, real(parameter.get("CORNER", ""), None)) if deck.of("BCONP") else {}
     lines = {int(card[1]): line_of([name(g) for g in ids(card[2:])], found) for card in deck.of("BLSEG")} if found else {}
     cards, contacts = deck.of("BCONP"), []
@@ -418,7 +418,7 @@ def pairs_of_lines(deck, parameter, sides, x, held, motion, name=lambda g: g, to
 
 
 def balance(pairs, x, centres, own):
-    """Forces of round contact meet in one of the centres, or a new one, each with its counterforce on its line; `own`: of a round slave."""
+    """Forces of round contact meet in one of the centres, or a new one, each with its reaction on its line; `own`: for a round slave."""
     turned = [pair for pair in pairs if not pair.stands_on]
     centre, radius = centre_of([(x[pair.node], pair.normal) for pair in turned])
     if radius:
@@ -441,7 +441,7 @@ def balance(pairs, x, centres, own):
 
 
 def centre_of(lines):
-    """Where lines (place, direction) nearly meet, and the least distance of the places from there; 0.0: they do not, or turn by little."""
+    """Point where lines (point, direction) nearly meet, and the smallest distance of the points from there; 0.0 if they do not, or turn by little."""
     across = [(-n[1], n[0]) for _, n in lines]
     matrix = [[sum(t[i] * t[j] for t in across) for j in (0, 1)] for i in (0, 1)]
     if not lines or matrix[0][0] * matrix[1][1] - matrix[0][1] ** 2 < LEAST_TURN * len(lines) ** 2:
@@ -455,7 +455,7 @@ def centre_of(lines):
 
 
 def came_near(contacts, told, size):
-    """Look again for the pairs that are told and were not found; those at the limit of the search, as told, may be or not."""
+    """Search again for reported pairs that were not found; those at the limit of the search are optional."""
     found = Counter(pair.node for contact in contacts for pair in contact.pairs)
     lacking, strange = told - found, found - told
     for k, contact in enumerate(contacts):

@@ -1,4 +1,4 @@
-"""Arrays of a plane model from a deck: what is said there, nothing solved yet."""
+"""Arrays of a plane model from a deck: its data, before the solution."""
 import numpy as np
 import scipy.sparse as sp
 
@@ -13,7 +13,7 @@ from yielding import Law
 
 
 class Model:
-    """`told`: nodes of pairs of lines that the other program has: pairs that came near as loads moved them are found from these."""
+    """`told`: nodes of the other program's pairs of lines: they identify pairs that came near due to loads."""
 
     def __init__(self, deck, told=None):
         self.deck, self.told = deck, told
@@ -48,8 +48,8 @@ class Model:
         self.expansion = {int(card[1]): expansions[int(card[2])] for card in self.deck.of("PSHELL") + self.deck.of("PSOLID")}
 
     def elements(self):
-        """Elements card by card; `parts` has the integration points of each kind: (which, freedoms, strain matrices), `boundary`
-        the sides of one element by their ends: (element, side)."""
+        """Elements card by card; `parts` has the integration points of each type: (which, DOFs, strain matrices), `boundary`
+        the edges of one element by their ends: (element, edge)."""
         self.element, self.property, self.kind, self.members = [], [], [], []
         self.parts, volumes, owners, points = [], [], [], 0
         for name, kind in KINDS.items():
@@ -82,7 +82,7 @@ class Model:
         self.groups = [(law, np.flatnonzero(of_point == q)) for q, (_, law) in self.section.items()]
 
     def heat(self):
-        """Strains of all points that temperatures make where nothing resists; CQUAD4 has their mean where its change of volume is one."""
+        """Thermal strains of all points if unrestrained; CQUAD4 has their mean, like its volume strain."""
         self.free = np.zeros((len(self.volume), 4))
         temperature, point = self.deck.temperatures(), 0
         for members, kind, p in zip(self.members, self.kind, self.property):
@@ -97,7 +97,7 @@ class Model:
             self.free[here, :3] = strain[:, None]
 
     def of_points(self, name, strain, *shape):
-        """What the law of each point's section says of its strain."""
+        """Result of the material law of each point's section at its strain."""
         values = np.zeros((len(strain),) + shape)
         for law, members in self.groups:
             if len(members):
@@ -114,30 +114,30 @@ class Model:
         return stress, total, secant, plastic
 
     def strains(self, u):
-        """Strains xx yy zz xy of all points that stresses come of."""
+        """Strains xx yy zz xy of all points that cause stresses."""
         strain = -self.free
         for which, freedom, b in self.parts:
             strain[which] += np.einsum("eij,ej->ei", b, u[freedom])
         return strain
 
     def unbalanced(self, u, stress, force):
-        """Forces that are missing at all nodes: of stresses, springs, loads and contact forces."""
+        """Residual forces at all nodes: of stresses, springs, loads and contact forces."""
         return self.nodal(stress) + self.stretch.T @ (self.pull @ u) - self.force - self.gap_matrix.T @ force
 
     def mean(self, values):
-        """Of each element, over the volumes of its points."""
+        """Mean of each element, over the volumes of its points."""
         whole = np.bincount(self.owner, self.volume, len(self.element))
         return np.bincount(self.owner, self.volume * values, len(self.element)) / whole
 
     def nodal(self, stress, size=lambda force: force):
-        """Nodal forces that hold stresses xx yy zz xy; or of all that is summed the size."""
+        """Nodal forces of stresses xx yy zz xy; or the sum of magnitudes of their terms."""
         force = np.zeros(2 * len(self.node))
         for which, freedom, b in self.parts:
             np.add.at(force, freedom, size(np.einsum("e,eij,ei->ej", self.volume[which], b, stress[which])))
         return force
 
     def stiffness(self, d):
-        """Of material matrices [n, 4, 4], and of the springs."""
+        """Stiffness of material matrices [n, 4, 4], and of the springs."""
         n = 2 * len(self.node)
         total = self.stretch.T @ self.pull
         for which, freedom, b in self.parts:
@@ -147,7 +147,7 @@ class Model:
         return total
 
     def freedoms(self):
-        """u = tie @ v + held: v the DOFs left. Those of `lead` are of all nodes, then the rotations of the master nodes of RBE2."""
+        """u = tie @ v + held: v the independent DOFs. `lead` has those of all nodes, then the rotations of the master nodes of RBE2."""
         n, self.rotating = 2 * len(self.node), self.deck.rotating()
         rigid = rigid_ties(self.deck, self.rotating)
         terms = resolved(rigid, sums(self.deck, lambda node: self.x[self.row[node]], self.rotating))
@@ -181,18 +181,18 @@ class Model:
         self.stretch, self.pull = self.stretch.tocsr(), self.pull.tocsr()
 
     def masters(self, v):
-        """Displacements of all DOFs that depend on nothing."""
+        """Displacements of all independent DOFs."""
         values = self.given.copy()
         values[self.own] = v
         return values
 
     def motion(self, row, c):
-        """What moves a node along a direction: a freedom, or how far it is held."""
+        """The DOF that moves a node along a direction, or its fixed displacement."""
         lead = self.leader.get((row, c), (row, c))
         return self.held[2 * lead[0] + lead[1]] if self.is_held[2 * lead[0] + lead[1]] else lead
 
     def pairs(self):
-        """Of each pair: id, the two nodes that tables name, normal, gap, and its row of the gap matrix."""
+        """For each pair: id, the two nodes named in tables, normal, gap, and its row of the gap matrix."""
         frames = self.deck.frames()
         given = {int(card[1]): real(at(card, 2)) for card in self.deck.of("PGAP")}
         found = []

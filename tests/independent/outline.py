@@ -1,7 +1,7 @@
-"""The outline of all bodies: the sides of one element alone, each with those before and after it, their curves and normals, and
-what is a corner. A side is a polynomial p(s), 0 <= s <= 1, walked with the body to the left, with a polynomial normal n(s); places
-that a point x faces are real roots of (x - p) x n. Above a straight side lies a smooth curve through its ends, with the normals there:
-where these are those of a circle, its arc. Standard library only.
+"""The outline of all bodies: the edges of one element only, each with its neighbours, their curves and normals, and
+corners. An edge is a polynomial p(s), 0 <= s <= 1, listed with the body to the left, with a polynomial normal n(s); projections
+of a point x are real roots of (x - p) x n. Above a straight edge lies a smooth curve through its ends, with the normals there:
+if these are those of a circle, its arc. Standard library only.
 """
 from dataclasses import dataclass
 from math import atan2, copysign, degrees, hypot
@@ -9,18 +9,18 @@ from math import atan2, copysign, degrees, hypot
 from deck import DeckError
 from kinds import GAUSS, solved
 
-#: Degrees: turns below the first are smooth, above the second corners; PARAM CORNER is held to as nearly as the third.
+#: Degrees: angles below the first are smooth, above the second corners; PARAM CORNER has the third as tolerance.
 SMOOTH, CORNER, AS_LARGE = 4.7, 35.3, 1e-6
-#: Neighbouring turns of one curve are not smaller than this part of each other.
+#: Smallest ratio of neighbouring angles of one curve.
 ALIKE = 0.39
-#: A point may stand beyond the end of a side by this part of it, and shorter pieces are none; nearer to a node it is at the node.
+#: A point may be beyond the end of an edge by this fraction of it, shorter pieces are ignored; nearer to a node it is at the node.
 BEYOND = 1e-5
-#: Roots are looked for between these places.
+#: Roots are searched between these coordinates.
 FROM, TO = -0.1, 1.1
 
 
 def value(p, s):
-    """Of a polynomial, its coefficients from the constant on."""
+    """A polynomial, with its coefficients from the constant on."""
     total = 0.0
     for c in reversed(p):
         total = total * s + c
@@ -45,7 +45,7 @@ def minus(p, q):
 
 
 def roots(p):
-    """Between FROM and TO: between neighbouring extremes there is one root or none."""
+    """Roots between FROM and TO: between neighbouring extremes there is at most one."""
     if len(p) == 1:
         return []
     places = [FROM, *roots(derived(p)), TO]
@@ -84,7 +84,7 @@ def cross(a, b):
 
 
 def mirrored(a, b):
-    """On the other side of a unit vector b."""
+    """Mirror image with respect to a unit vector b."""
     return [2 * dot(a, b) * b[c] - a[c] for c in (0, 1)]
 
 
@@ -95,7 +95,7 @@ def angle(a, b):
 
 @dataclass
 class Place:
-    """What a point faces of a side; `at_corner`: it is a corner of the outline."""
+    """Projection of a point onto an edge; `at_corner`: it is a corner of the outline."""
     segment: object
     values: list
     normal: list
@@ -107,7 +107,7 @@ class Place:
 
 
 class Segment:
-    """A side of the outline; of its two ends 0 is the start."""
+    """An edge of the outline; of its two ends 0 is the start."""
 
     def __init__(self, nodes, x):
         self.nodes, self.x, n = nodes, x, len(nodes)
@@ -121,10 +121,10 @@ class Segment:
         self.way = unit(self.local[-1])
         self.across = [self.way[1], -self.way[0]]
         self.centre = [(x[0][c] + x[-1][c]) / 2 for c in (0, 1)]
-        self.beside = [None, None]        # the sides before and after
-        self.turn = [0.0, 0.0]            # of the outline at the ends, in degrees, positive where convex
+        self.beside = [None, None]        # the edges before and after
+        self.turn = [0.0, 0.0]            # angle of the outline at the ends, in degrees, positive if convex
         self.corner, self.tip = [True, True], [False, False]
-        self.mirrored = [False, False]    # the end lies on a line of symmetry,
+        self.mirrored = [False, False]    # the end is on a symmetry line,
         self.upright = [None, None]       # with this normal within that line
         self.arc = self.arcs()            # normals of the circle through its nodes, there
         self.normal = [None, None]
@@ -133,7 +133,7 @@ class Segment:
         return [value(t, s) for t in self.tangent]
 
     def own(self, s):
-        """Unit normal of the side's own curve."""
+        """Unit normal of the edge's own curve."""
         along = self.towards(s)
         return unit([along[1], -along[0]])
 
@@ -150,7 +150,7 @@ class Segment:
         return self.normals[k]
 
     def finish(self):
-        """The polynomials of the normal, and of its part along a straight side."""
+        """The polynomials of the normal, and of its component along a straight edge."""
         off = [[n[c] - arc[c] for c in (0, 1)] for n, arc in zip(self.normal, self.arc[::len(self.arc) - 1])]
         between = [unit([arc[c] + (off[0][c] + off[1][c]) / 2 for c in (0, 1)]) for arc in self.arc[1:-1]]
         self.normals = [self.normal[0], *between, self.normal[1]]
@@ -160,7 +160,7 @@ class Segment:
         self.lean = [-lean[0], lean[0] + lean[1]] if len(self.nodes) == 2 else [0.0]
 
     def rise(self, s):
-        """How far along the normal the curve lies above a straight side: a circle that leans so has the radius chord / (2 lean)."""
+        """Height of the curve along the normal above a straight edge: a circle with this angle has the radius chord / (2 lean)."""
         lean = value(self.lean, s)
         if abs(lean) < 1e-7:
             return self.chord * s * (1 - s) * lean
@@ -169,14 +169,14 @@ class Segment:
         return deep / (radius + copysign(max(0.0, radius ** 2 - deep) ** 0.5, radius))
 
     def root(self, x):
-        """The place whose normal leads to x, on the side or a little beyond; of several the one nearest to where x stands on the chord."""
+        """The point whose normal leads to x, on the edge or slightly beyond; of several the nearest to the projection of x on the chord."""
         off = [minus([x[c] - self.x[0][c]], self.path[c]) for c in (0, 1)]
         found = roots(minus(times(off[0], self.seen[1]), times(off[1], self.seen[0])))
         there = dot([x[c] - self.x[0][c] for c in (0, 1)], self.way) / self.chord
         return min(found, key=lambda s: abs(s - there), default=None)
 
     def face(self, x):
-        """The place that x faces, or None."""
+        """The projection of x, or None."""
         s = self.root(x)
         if s is None or not -BEYOND <= s <= 1 + BEYOND:
             return None
@@ -191,7 +191,7 @@ class Segment:
         return Place(self, self.values(s), normal, dot(normal, off) - self.rise(s), False)
 
     def cut_by(self, x, reach):
-        """The place, from 0 to 1, that x within reach faces, or None."""
+        """The projection of x within reach, from 0 to 1, or None."""
         if any(abs(x[c] - self.centre[c]) > reach + self.chord for c in (0, 1)):
             return None
         s = self.root(x)
@@ -212,7 +212,7 @@ class Segment:
         return [(low, high) for low, high in zip(cuts, cuts[1:]) if high - low > BEYOND]
 
     def pieces(self, spans, ring):
-        """Of each piece (place, shape values, weight) of three Gauss points."""
+        """(coordinate, shape function values, weight) of three Gauss points in each piece."""
         for low, high in spans:
             piece = []
             for t, part in zip(*GAUSS):
@@ -224,8 +224,8 @@ class Segment:
 
 
 def outline(sides, x, held, most):
-    """All sides by their ends, as Segments. `sides`: of boundary(); `held`: the (node, direction) that are held, ties followed; `most`: the
-    turn in degrees beyond which there is a corner, None: told by how the outline turns."""
+    """All edges by their ends, as Segments. `sides`: of boundary(); `held`: the fixed (node, direction), ties followed; `most`: the
+    angle in degrees above which there is a corner, None: decided by the angles of the outline."""
     found, starting = {}, {}
     for ends, side in sides.items():
         nodes = [side.nodes[0], *side.nodes[2:], side.nodes[1]]
@@ -256,7 +256,7 @@ def outline(sides, x, held, most):
 
 
 def mirror(one, end, held):
-    """Where the body is cut by a line of symmetry, which is a corner without it, its outline goes on mirrored."""
+    """If the body is cut by a symmetry line, at which it would have a corner, its outline continues mirrored."""
     only = [[c for c in (0, 1) if (one.nodes[k], c) in held] for k in (-end, end - 1)]
     if len(only[0]) != 1 or only[1] == only[0]:
         return
@@ -270,7 +270,7 @@ def mirror(one, end, held):
 
 
 def turns_beside(one, end):
-    """(side, end, turn) of the two nodes beside the one at an end; beyond a line of symmetry the same again."""
+    """(edge, end, angle) of the two nodes beside the one at an end; beyond a symmetry line their mirror images."""
     near = one, 1 - end, one.turn[1 - end]
     other = one.beside[end]
     return near, near if one.mirrored[end] else (other, end, other.turn[end])
@@ -296,7 +296,7 @@ def find_corners(segments, most):
 
 
 def find_normals(segments):
-    """Normals at the ends; those of corners last, for of a circle's chord the one mirrors the other."""
+    """Normals at the ends; those of corners last, because the end normal of a circle's chord is the mirror image of the other."""
     for one in segments:
         after = one.beside[1]
         if not one.corner[1] and not one.mirrored[1]:

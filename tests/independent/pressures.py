@@ -1,15 +1,15 @@
-"""Pressures of pairs from their forces: force over area, and along touching six-node sides the slope of the force summed up to
-each corner over the area summed up there. Standard library only.
+"""Pressures of pairs from their forces: force over area, and along six-node edges in contact the derivative of the cumulative force
+at each corner by the cumulative area. Standard library only.
 
-The sum is known at the corners of a run of sides that touch all along; a polynomial in Newton's form goes through those around
-a node. Where the run ends on a line of symmetry it goes on mirrored; at the axis of rings it need not, for there a pressure
-that is even in the radius is smooth in the area. A run that closes goes on with itself. Where contact ends, the outermost corner
-and middle keep force over area; what that corner bears belongs to the run alone, unless the next middle touches too.
+The sum is known at the corners of a run of edges in full contact; a polynomial in Newton's form passes through those around
+a node. If the run ends on a symmetry line it continues mirrored; at the axis this is not needed, because a pressure
+that is even in the radius is smooth in the area. A closed run continues with itself. At an end of contact, the outermost corner
+and mid-side node keep force over area; the force of that corner belongs only to the run, unless the next mid-side node is in contact too.
 
-Pairs of the master nearer to another than CLOSE of the way from node to node stand at one place with it, and have the pressure of both.
+Pairs of the master closer to another than CLOSE times the node distance are at one point with it, and have the pressure of both.
 
-A corner on the axis of rings has no area. It counts as touching where the middle beside it touches, and has that middle's pressure where
-its run has no three corners; it is told only where it touches itself.
+A corner on the axis has no area. It is in contact if the mid-side node beside it is, and has that node's pressure if
+its run has less than three corners; it is reported only if it is in contact itself.
 """
 from math import hypot, sqrt
 
@@ -22,7 +22,7 @@ CLOSE = 0.22
 
 
 def share(side, x, n):
-    """What a uniform pressure on a side gives to each of its nodes along n, over that pressure."""
+    """Nodal forces of a uniform pressure on an edge along n, over that pressure."""
     found = [0.0] * len(side.nodes)
     for values, place, tangent, _ in side_points([x[node] for node in side.nodes]):
         size = side.depth(place[0]) * abs(tangent[0] * n[1] - tangent[1] * n[0])
@@ -31,7 +31,7 @@ def share(side, x, n):
 
 
 def areas(sides, x, pairs):
-    """Of each pair (node, normal) its area by sides, where the chord is within 45 degrees of the tangent."""
+    """For each pair (node, normal) its area by edges, if the chord is within 45 degrees of the tangent."""
     around = {}
     for ends, side in sides.items():
         for node in side.nodes:
@@ -48,7 +48,7 @@ def areas(sides, x, pairs):
 
 
 def slope(places, values, at):
-    """Derivative at a place of the polynomial through (places, values), by divided differences."""
+    """Derivative at a point of the polynomial through (coordinates, values), by divided differences."""
     table = list(values)
     for order in range(1, len(table)):
         for k in range(len(table) - 1, order - 1, -1):
@@ -61,8 +61,8 @@ def slope(places, values, at):
 
 
 def runs(sides, at, own):
-    """Chains of six-node sides all of whose nodes touch: [(corner, middle, corner, ...)] of pair numbers. `at`: those that touch
-    in one contact, by their nodes."""
+    """Chains of six-node edges with all nodes in contact: [(corner, middle, corner, ...)] of pair numbers. `at`: those in contact,
+    for one contact, by their nodes."""
     whole = [tuple(at[side.nodes[i]] for i in (0, 2, 1)) for ends, side in sides.items()
              if len(side.nodes) == 3 and all(node in at and ends in own[at[node]] for node in side.nodes)]
     whole.sort(key=lambda side: side[1])
@@ -85,7 +85,7 @@ class Run:
     """Sums of area and force up to the corners of a chain, mirrored beyond its ends; the chain's own begin at `first`."""
 
     def __init__(self, chain, own, force, mirrored, axis, shared):
-        """`shared`: sides that have a touching middle, by pair number of the corner."""
+        """`shared`: edges with a mid-side node in contact, by pair number of the corner."""
         self.chain = chain
         closed = chain[0] == chain[-1]
         self.even = [mirrored[end] or closed for end in (chain[0], chain[-1])]
@@ -119,7 +119,7 @@ class Run:
         return slope(self.area[first:first + many], self.force[first:first + many], at)
 
     def pressures(self, x, ring):
-        """(pair, pressure) of all nodes but those of ends where contact ends. x of each pair."""
+        """(pair, pressure) of all nodes except those at ends of contact. x of each pair."""
         if len(self.area) < LEAST:
             for end in (0, -1):
                 if ring and x[self.chain[end]][0] == 0.0 and len(self.area) >= LEAST_AT_AXIS:
@@ -138,7 +138,7 @@ class Run:
 
 
 def on_symmetry(node, n, others, x, held, leader, near):
-    """Is a node held along its side, and the other body too, where it ends at the same line or all over; one of the two by itself?"""
+    """Is a node fixed along its edge, and the other body too, if it ends at the same line or everywhere; one of the two by itself?"""
     along = 0 if abs(n[1]) > UPRIGHT else 1 if abs(n[0]) > UPRIGHT else None
 
     def top(freedom):
@@ -158,13 +158,13 @@ def on_symmetry(node, n, others, x, held, leader, near):
 
 
 def stands(x, weights, node):
-    """Where the node of a pair stands on the other line. `weights`: of all nodes of the pair."""
+    """Coordinates of the projection of a pair's node on the other line. `weights`: of all nodes of the pair."""
     return [(1.0 - weights[node]) * x[node][c] - sum(w * x[other][c] for other, w in weights.items() if other != node) for c in (0, 1)]
 
 
 def chains(sides, x, stands_on, feet):
-    """Of each slave's side that a node of the master stands on: its ends, and (node of the side, or None, and pair number of the master, or
-    None) in their order. `stands_on`: nodes of the side by pair number; `feet`: where that is."""
+    """For each slave edge with a node of the master on it: its ends, and (node of the edge, or None, and pair number of the master, or
+    None) in their order. `stands_on`: nodes of the edge by pair number; `feet`: its coordinates."""
     found = {}
     for k, nodes in stands_on.items():
         found.setdefault(frozenset((nodes[0], nodes[-1])), []).append(k)
@@ -175,11 +175,11 @@ def chains(sides, x, stands_on, feet):
 
 
 def divide(sides, x, pairs, own, group, stands_on, feet):
-    """Where nodes of the master stand on a side they share its area with the slave's: each piece belongs by halves to its ends, each of which sees
-    it along its own normal. Of those sides what is beside each pair; and the pairs that stand at one place, by twos."""
+    """Nodes of the master on an edge share its area with the slave's: half of each piece belongs to each of its ends, which projects
+    it along its own normal. For those edges the neighbours of each pair; and the pairs at one point, in twos."""
 
     def at(node, ends):
-        """The node's pair against what the side faces: of several the one whose normal is most across it."""
+        """The node's pair with the opposite edge; of several the one whose normal is most nearly perpendicular to it."""
         (xa, ya), (xb, yb) = (x[end] for end in sides[ends].nodes[:2])
         own = [k for k in group if k not in stands_on and pairs[k][0] == node]
         return min(own, key=lambda k: abs((xb - xa) * pairs[k][1][0] + (yb - ya) * pairs[k][1][1]), default=None)
@@ -207,7 +207,7 @@ def divide(sides, x, pairs, own, group, stands_on, feet):
 
 
 def level(close, own, forces, found):
-    """Pairs at one place that bear something get the pressure of all of them."""
+    """Pairs at one point with a force get the pressure of all of them."""
     place = {}
     for pair in close:
         both = place.setdefault(pair[0], {pair[0]}) | place.setdefault(pair[1], {pair[1]})
@@ -219,9 +219,9 @@ def level(close, own, forces, found):
 
 
 def pressures(sides, x, held, leader, pairs, groups, forces, touching, stands_on=None):
-    """Pressure of each pair, None where it has no area. `pairs`: (node on a side, normal, weights of all nodes of the pair); `held`: (node,
-    direction); `leader`: of each tied (node, direction); `groups`: the pair numbers of each contact; `stands_on`: of pairs of the master the
-    nodes of the slave's side."""
+    """Pressure of each pair, None without area. `pairs`: (node on an edge, normal, weights of all nodes of the pair); `held`: (node,
+    direction); `leader`: of each dependent (node, direction); `groups`: the pair numbers of each contact; `stands_on`: for pairs of the master the
+    nodes of the slave's edge."""
     stands_on = stands_on or {}
     feet = {k: stands(x, pairs[k][2], pairs[k][0]) for k in stands_on}
     said, others, pairs = touching, [list(weights) for *_, weights in pairs], [(node, n) for node, n, _ in pairs]

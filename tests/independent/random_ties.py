@@ -1,4 +1,4 @@
-"""RBE2, MPC and springs of a random model, and moments. Rigid-body modes of its bodies remain: what SUPORT names stays free."""
+"""RBE2, MPC and springs of a random model, and moments. Rigid-body modes of its bodies remain: SUPORT DOFs stay free."""
 
 
 def ties(rng, scene):
@@ -22,7 +22,7 @@ def point(scene, x, y):
 
 
 def platen(rng, scene):
-    """RBE2 of an edge: as one along x or y, or with a master node that rotates: by a moment, an angle, or about a SUPORT."""
+    """RBE2 of an edge: rigid along x or y, or with a master node that rotates: by a moment, an angle, or about a SUPORT."""
     tilts = turns(scene) and rng.random() < 0.5   # the master node has the SUPORT
     if tilts:
         scene.taken -= {(node, digit) for node, digit in scene.support}
@@ -52,7 +52,7 @@ def platen(rng, scene):
 
 
 def turns(scene):
-    """Is there a body that nothing keeps from rotating? It is the first; on its straight edge MPC and springs do not."""
+    """Is there a body that nothing keeps from rotating? It is the first; MPC and springs on its straight edge do not."""
     return hasattr(scene, "straight")
 
 
@@ -79,7 +79,7 @@ def equations(rng, scene):
 
 
 def bolt(rng, scene):
-    """Two bodies are pulled together: what goes in is the displacement of a point under a force."""
+    """Two bodies are pulled together by a force on an additional point."""
     if turns(scene):
         return
     upper, lower = scene.bodies[-1], scene.bodies[-2]

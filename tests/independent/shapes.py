@@ -1,9 +1,9 @@
-"""Strains and volumes of many elements at once, from the shape functions of kinds.py. Nodes may turn either way round."""
+"""Strains and volumes of many elements at once, from the shape functions of kinds.py. Nodes may be in either direction."""
 import numpy as np
 
 
 def folded(kind, x):
-    """Whether an element turns over at some corner: x [element, node, 2]."""
+    """Does an element fold over at a corner? x [element, node, 2]."""
     slope = np.stack([kind.shapes(c, kind.nodes) for c in (0, 1)], axis=1)[kind.corners()]
     sense = np.sign(np.linalg.det(np.einsum("pcn,enj->epcj", slope, x)))
     return np.any(sense != sense[:, :1], axis=1)
@@ -12,7 +12,7 @@ def folded(kind, x):
 def strain_matrices(kind, x, thickness, mean_dilatation):
     """Strains xx yy zz xy of nodal displacements [element, point, 4, 2 nodes] and volumes [element, point].
 
-    x [element, node, 2]; rings take the circumference for their thickness. With `mean_dilatation` the change of volume at all
+    x [element, node, 2]; axisymmetric elements have the circumference as thickness. With `mean_dilatation` the volume strain at all
     points is that of the whole element."""
     value = np.array(kind.shapes())
     slope = np.stack([kind.shapes(0), kind.shapes(1)], axis=1)            # [point, coordinate, node]

@@ -1,17 +1,17 @@
 #!/usr/bin/env python3
-"""Solve an elastic contact deck by another method than epcont's and write tables of the same columns.
+"""Solve an elastic contact deck with another method than epcont's and write tables with the same columns.
 
     . tools/venv && python tests/independent/solve.py DECK... [-o DIRECTORY]
 
-One stiffness matrix of all bodies with the free motions left in it; a saddle-point matrix of displacements and contact
-forces, factored afresh (SuperLU) for every guess of the set of touching pairs. The guess: all pairs exchanged at once
-(primal-dual active set); if that goes round in a circle, one at a time, the first wrong one (Murty), with weak springs at the
-SUPORT freedoms until the set is found. The answer is solved without springs and refined.
+One stiffness matrix of all bodies including the rigid-body modes; a saddle-point matrix of displacements and contact
+forces, factored again (SuperLU) for every active set. The set: all pairs exchanged at once
+(primal-dual active set); if that cycles, one at a time, the first wrong one (Murty), with weak springs at the
+SUPORT DOFs until the set is found. The answer is solved without springs and refined.
 
-Yielding (yielding.py): secant steps, each with its contact, until they settle; then Newton with tangents by
-differences, halved where the residual grows. Both go on to rounding, whatever METHOD and TOL the deck has.
+Yielding (yielding.py): secant steps, each with its contact, until they converge; then Newton with tangents by
+differences, halved if the residual grows. Both iterate to rounding, whatever METHOD and TOL the deck has.
 
-Exit status: 0 solved, 1 no equilibrium, 2 deck not understood.
+Exit status: 0 if solved, 1 if there is no equilibrium, 2 if the deck is not supported.
 """
 import argparse
 import csv
@@ -28,11 +28,11 @@ from model import Model
 from pressures import pressures
 
 
-#: Secant steps end at this change of the displacements; growth by this factor is flight. Near a limit load they creep: after so many Newton's
-#: steps find the answer, or that there is none.
+#: Secant steps end at this change of the displacements; growth by this factor is divergence. Near a limit load they are slow: then this number of Newton's
+#: steps finds the answer, or none.
 SETTLED, SECANT_STEPS, FAR = 1e-4, 500, 1e3
 NEWTON_STEPS = 60
-#: Answers with springs that are tried.
+#: Number of answers with springs that are tried.
 APPROACHES = 10
 
 
@@ -46,7 +46,7 @@ class Problem:
         self.n = (model.gap_matrix @ model.tie).tocsr()
         self.g = model.initial + model.gap_matrix @ model.held
         self.exchanges = 0
-        self.touching = np.ones(len(self.g), bool)   # where the search begins
+        self.touching = np.ones(len(self.g), bool)   # start of the search
         nothing = np.zeros((len(model.volume), 4))
         self.linearise(model.of_points("secant_matrix", nothing, 4, 4), nothing)
         self.stiff = abs(self.k.diagonal()).max()
@@ -60,12 +60,12 @@ class Problem:
         self.f = model.tie.T @ (model.force - model.nodal(unmoved) - self.full @ model.held) + model.twist[model.own]
 
     def springs(self, factor):
-        """Weak springs at the SUPORT freedoms."""
+        """Weak springs at the SUPORT DOFs."""
         weak = np.isin(self.model.own, [i for *_, i in self.model.support])
         return sp.diags(factor * self.stiff * weak)
 
     def solve(self, touching, spring=0.0):
-        """Displacements, forces of the touching pairs, gaps."""
+        """Displacements, forces of the pairs in contact, gaps."""
         active = np.flatnonzero(touching)
         n = self.n[active]
         k = self.k + self.springs(spring) if spring else self.k
@@ -115,7 +115,7 @@ class Problem:
         return None
 
     def check_free(self):
-        """DeckError if a motion stays free even with the SUPORT freedoms held."""
+        """DeckError if a rigid-body mode remains even with fixed SUPORT DOFs."""
         k = self.k + self.springs(1.0)
         try:
             pivots = abs(spl.splu(k.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0).U.diagonal())
@@ -135,7 +135,7 @@ class Problem:
         return self.model.tie @ found[0] + self.model.held
 
     def off_curve(self, u, force):
-        """Largest unbalanced force at a free freedom, of the stresses on the curve."""
+        """Largest residual force at a free DOF, with the stresses on the curve."""
         model = self.model
         stress = model.respond(model.strains(u))[0]
         rest = model.tie.T @ model.unbalanced(u, stress, force) - model.twist[model.own]
@@ -171,7 +171,7 @@ class Problem:
         raise NoEquilibrium(f"Newton does not end: residual {residual:.1e}")
 
     def linear_answer(self):
-        """Found without springs, or with springs that pull to where the answer before has come, until they no longer change the set."""
+        """Find the set without springs, or with springs that pull to the previous answer, until they no longer change the set."""
         found, self.rest = self.find(0.0, False, 200), np.zeros(len(self.f))
         for _ in range(APPROACHES):
             found = found or self.find(1e-7, False, 200) or self.find(1e-7, True, 20 * len(self.g) + 200)
@@ -185,7 +185,7 @@ class Problem:
         raise NoEquilibrium("a body moves away, or springs change the set of pairs")
 
     def without_springs(self, touching):
-        """The answer from a set that is nearly right; None where that is not found."""
+        """The answer from a set that is nearly correct; None if there is none."""
         for _ in range(50):
             exact = self.solve(touching)
             if exact is None:
@@ -198,7 +198,7 @@ class Problem:
             touching[np.argmax(wrong)] ^= True
         else:
             return None
-        # A singular matrix may factor, with noise for its last pivot: displacements beyond all that forces and gaps explain.
+        # A singular matrix may factor, with noise as last pivot: displacements far above all that forces and gaps explain.
         softest = abs(self.k.diagonal())[abs(self.k.diagonal()) > 0].min(initial=self.stiff)
         if abs(v).max(initial=0) > 1e8 * (abs(self.f).max(initial=0) / softest + abs(self.g).max(initial=0)):
             return None
@@ -262,7 +262,7 @@ def text(value):
 
 
 def solve(path, told=None):
-    """(number of the load case, its tables, its problem), or in their place None and why not, of each case of a deck. `told`: nodes of the
+    """(number of the load case, its tables, its problem), or None and a reason instead, for each case of a deck. `told`: nodes of the
     pairs of lines of each, if another program has found them."""
     for deck in read(path).by_case():
         try:
@@ -273,7 +273,7 @@ def solve(path, told=None):
 
 
 def say(name, found, problem):
-    """A line of what came of a load case; its exit status."""
+    """Print a line about a load case; return its exit status."""
     if found is None:
         print(f"{name}: {'deck' if isinstance(problem, DeckError) else 'no equilibrium'}: {problem}")
         return 2 if isinstance(problem, DeckError) else 1
@@ -286,7 +286,7 @@ def say(name, found, problem):
 
 
 def write(place, stem, cases):
-    """The tables of all load cases that are answered, with a column that tells them apart where there are several."""
+    """The tables of all load cases with an answer, with a column for the case if there are several."""
     place.mkdir(parents=True, exist_ok=True)
     for name in cases[0][1]:
         with open(place / f"{stem}.{name}.csv", "w", newline="", encoding="ascii") as file:

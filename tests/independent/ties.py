@@ -1,4 +1,4 @@
-"""What ties degrees of freedom to each other: RBE2 and MPC. Standard library only.
+"""Ties between degrees of freedom: RBE2 and MPC. Standard library only.
 
 A DOF is (node, component): 0 and 1 along x and y, 2 the rotation of the master node of an RBE2.
 """
@@ -12,7 +12,7 @@ def rigid_ties(deck, rotating):
 
 
 def end_of_chains(rigid):
-    """The master DOF that depends on no other one of these."""
+    """The master DOFs, which do not depend on others of these."""
     found = {}
     for dof, master in rigid.items():
         while master in rigid:
@@ -39,7 +39,7 @@ def sums(deck, x, rotating):
 
 
 def resolved(rigid, sums):
-    """Terms of each dependent DOF that depend on nothing."""
+    """Terms of each dependent DOF in independent ones."""
     given = {**{dof: {master: 1.0} for dof, master in rigid.items()}, **sums}
     done = {}
 

@@ -1,4 +1,4 @@
-# Runs PROGRAM on DECK with all tables, then VERIFY on what it wrote.
+# Run PROGRAM on DECK with all tables, then VERIFY on its output.
 file(MAKE_DIRECTORY "${OUTPUT}")
 execute_process(COMMAND "${PROGRAM}" "${DECK}" -o "${OUTPUT}" --tables all --quiet RESULT_VARIABLE status)
 if(NOT status EQUAL 0)

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Write models through pyNastran, in each of the forms it has, and read them back by the independent reader.
+"""Write models through pyNastran in each of its formats, and read them back by the independent reader.
 
     . tools/venv && python tests/independent/write_cases.py [DECK...]
 
 Each deck (by default hertz44, the contact patch test and the shrink fit) is read by pyNastran and written in small field
 (size 8), large field (size 16), large field of double precision (`D` exponents), and sorted by property
-(interspersed); and once in free field from the same cards. `cases/` keeps what is small. The answers must be those of the
-original deck: exactly where all digits are kept, and to the digits of the field at size 8.
+(interspersed); and once in free field from the same cards. `cases/` keeps the small files. The answers must be those of the
+original deck: exactly if all digits are kept, and to the digits of the field at size 8.
 """
 import argparse
 import pathlib
@@ -21,7 +21,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 INPUT = HERE.parent.parent / "input"
 DEFAULT = ["hertz/hertz44_elastic.dat", "patch/contact_patch.dat", "shrink_fit/shrink_fit.dat"]
 LARGEST_KEPT = 60000
-# PLOADX1 is an axisymmetric card there, on whose elements pyNastran insists only when it cross-references.
+# PLOADX1 is an axisymmetric card there; pyNastran requires axisymmetric elements only when it cross-references.
 FORMS = {
     "size8": {"size": 8},
     "size16": {"size": 16},
@@ -37,7 +37,7 @@ def read(path):
 
 
 def free_field(path):
-    """The cards of a deck in free field, small or, where a field is long, large (`NAME*`)."""
+    """The cards of a deck in free field, small or, if a field is long, large (`NAME*`)."""
     deck = reader.read(path)
     lines = ["$ the cards of " + path.name + " in free field"]
     lines += [f"{key} = {value}" for key, value in deck.case.items()] + ["BEGIN BULK"]

@@ -3,10 +3,10 @@
 
     . tools/venv && python tests/independent/write_gmsh.py
 
-A mesh file as Gmsh writes it (GRID, CBAR, CTRIA3, ENDDATA; no BEGIN BULK) is included, as the last card but ENDDATA, in a
+A mesh file of Gmsh (GRID, CBAR, CTRIA3, ENDDATA; no BEGIN BULK) is included, as the last card before ENDDATA, in a
 deck with everything else. Pressure 10 at every pair, whatever the mesh and the digits of its coordinates.
 
-In large field Gmsh 4.13 writes coordinates by %.9G: a whole number has no decimal point (`3`, `0`). epcont takes that in
+In large field Gmsh 4.13 writes coordinates by %.9G: an integer has no decimal point (`3`, `0`). epcont accepts that in
 the coordinates of a large-field GRID, and nowhere else.
 """
 import pathlib

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""Write random models that yield: stacks of up to four blocks, tongues in sockets held by contact alone, tubes and hollow balls
-in one another, and blocks or rings of any element that press one another, node on node or line on line.
+"""Write random models that yield: stacks of up to four blocks, tongues in sockets restrained by contact only, tubes and hollow balls
+in one another, and blocks or axisymmetric bodies of any element in contact, node on node or line on line.
 
     . tools/venv && python tests/independent/write_random.py DIRECTORY [-n 40] [--seed 1]
 
 `compare.py PROGRAM --random 300 --seed 1` writes them, runs both programs and compares.
 
-Each block has a material of its own: elastic, bilinear, flat, or a curve of five points; plane strain or plane stress; meshes with random
-coordinates, gaps, loads, moments, prescribed displacements, temperatures, gravity and spins; RBE2, MPC and springs (random_ties.py); one to
-five load cases. Not kept: the seed makes them again.
+Each block has its own material: elastic, bilinear, perfectly plastic, or a curve of five points; plane strain or plane stress; meshes with random
+coordinates, gaps, loads, moments, prescribed displacements, temperatures, gravity and rotation; RBE2, MPC and springs (random_ties.py); one to
+five load cases. They are not kept: the seed makes them again.
 """
 import argparse
 import math
@@ -17,13 +17,13 @@ import random
 
 from random_ties import ties
 
-HEAT = 10.0   # temperatures, about zero: strains up to that of yielding
+HEAT = 10.0   # temperatures, about zero: thermal strains up to the yield strain
 
 
 class Scene:
     def __init__(self, rng, strain, rings=False):
         self.rings, self.side = rings, {}
-        self.chance = random.Random(repr(rng.getstate()[1][:4]))   # of temperatures alone
+        self.chance = random.Random(repr(rng.getstate()[1][:4]))   # factor of temperatures alone
         self.heated = self.chance.random() < 0.5
         self.rng, self.lines, self.nodes, self.elements, self.pairs, self.materials = rng, [], 0, 0, 0, 0
         self.spot, self.bodies = {}, []   # coordinates of the nodes, and the nodes of each body
@@ -76,11 +76,11 @@ class Scene:
         return number
 
     def expansion(self):
-        """A and TREF, where the scene has temperatures."""
+        """A and TREF, if the model has temperatures."""
         return (self.chance.uniform(0.0, 2e-5), self.chance.uniform(-HEAT, HEAT)) if self.heated else ()
 
     def warm(self):
-        """Temperatures of all nodes, of some by TEMPD."""
+        """Temperatures of all nodes, some by TEMPD."""
         for node in range(1, self.nodes + 1):
             if self.chance.random() < 0.8:
                 self.add("TEMP", 7, node, self.chance.uniform(-HEAT, HEAT))
@@ -102,8 +102,8 @@ class Scene:
         return at
 
     def mesh(self, xs, ys, section, corners, middles, place):
-        """Elements of 3 or 4 corners, with middles or without, turning either way, the inner nodes out of line. Nodes by
-        (column, row), where middles lie at halves; `place` moves the whole."""
+        """Elements of 3 or 4 corners, with or without mid-side nodes, in either direction, the inner nodes out of line. Nodes by
+        (column, row), with mid-side nodes at halves; `place` moves the whole."""
         at, spot, rng = {}, {}, self.rng
         self.bodies.append([])
 
@@ -157,8 +157,8 @@ class Scene:
                 self.add("SPC", number, node, digit, float(f"{value:.3e}"))   # pyNastran writes SPC in small fields only
 
     def cases(self, chance):
-        """Several load cases in most models, in any order of their numbers: sets of loads times factors, one with displacements
-        of what is held; other supports, which hold the SUPORT DOFs too, with contact or without. What case control says."""
+        """Several load cases in most models, in any order of their numbers: sets of loads times factors, one with prescribed
+        displacements; other supports, which also fix the SUPORT DOFs, with contact or without. Returns the case control."""
         self.supports(1, self.held)
         if self.support:
             self.add_long("SUPORT", *[field for pair in self.support for field in pair])
@@ -195,7 +195,7 @@ def places(rng, low, high, parts, uneven=0.4):
 
 
 def stack(rng):
-    """Blocks on each other; the lowest stands on held nodes."""
+    """Stacked blocks; the lowest stands on fixed nodes."""
     scene = Scene(rng, rng.random() < 0.6)
     columns = rng.randint(3, 7)
     xs = places(rng, 0.0, 3.0, columns)
@@ -220,7 +220,7 @@ def stack(rng):
 
 
 def tongue(rng):
-    """A slender block in a slot with clearance, its turning and sinking held by the pairs alone."""
+    """A slender block in a slot with clearance, its rotation and vertical displacement restrained by the pairs only."""
     scene = Scene(rng, rng.random() < 0.6)
     clearance = rng.choice([0.0, 0.0005, 0.002])
     columns = rng.randint(5, 9)
@@ -243,7 +243,7 @@ def tongue(rng):
 
 
 def body_loads(rng, scene):
-    """Gravity or a spin or both, so that each is a part of the loads; of rings along y, and about it."""
+    """Gravity or rotation or both, so that each is a part of the loads; if axisymmetric along y, and about it."""
     kinds = rng.choice([(), (), ("GRAV",), ("RFORCE",), ("GRAV", "RFORCE"), ("RFORCE", "RFORCE")])
     if kinds and rng.random() < 0.3:
         scene.add("PARAM", "WTMASS", rng.uniform(0.5, 2.0))

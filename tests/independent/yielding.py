@@ -1,7 +1,7 @@
-"""Total theory of plasticity by the uniaxial curve as it stands: bisection for the equivalent strain, all points at once.
+"""Total theory of plasticity by the given uniaxial curve: bisection for the equivalent strain, all points at once.
 
 The secant body of a strain has E' = sigma/eps of the curve and the Poisson's ratio mu = 0.5 - (0.5 - nu) E'/E; its
-equivalent strain, taken with that mu (and, in plane stress, with the strain across that mu gives), must be eps itself.
+equivalent strain with that mu (and, in plane stress, with the transverse strain due to mu) must be eps itself.
 """
 import numpy as np
 
@@ -31,7 +31,7 @@ class Law:
         return np.sqrt(((x - y) ** 2 + (y - z) ** 2 + (z - x) ** 2) / 2 + 0.75 * g * g) / (1 + mu)
 
     def respond(self, strain):
-        """(stress xx yy zz xy, equivalent strain, secant modulus, beyond yield?) of each point."""
+        """(stress xx yy zz xy, equivalent strain, secant modulus, yielded) of each point."""
         secant = np.full(len(strain), self.young)
         mu = np.full(len(strain), self.nu)
         total = self.equivalent_strain(strain, mu)
@@ -68,7 +68,7 @@ class Law:
         return (low + high) / 2
 
     def tangent(self, strain):
-        """d stress/d strain by central differences, a step far from the kinks' size: Newton corrects what it misses."""
+        """d stress/d strain by central differences, with steps much smaller than the distance of kinks: Newton corrects the error."""
         step = 1e-6 * np.maximum(abs(strain).max(axis=1), 1e-12 if self.curve is None else 1e-3 * self.curve[0][1])
         columns = []
         for c in range(4):

@@ -1,4 +1,4 @@
-!> Routines of LAPACK that tests hold the program's results against: a plain band's factor, eigenvalues.
+!> Routines of LAPACK for comparison: a plain band's factor, eigenvalues.
 module lapack_checks
   use epcont_base_kinds, only: wp
   implicit none
@@ -38,7 +38,7 @@ module lapack_checks
 
 contains
 
-  !> Solve by a plain band's Cholesky factor; the smallest pivot**2 over its diagonal entry, and where that is.
+  !> Solve by a plain band's Cholesky factor; the smallest pivot**2 over its diagonal entry, and its position.
   subroutine solve_band(full, w, x, smallest, at)
     real(wp), intent(in) :: full(:, :)       !! symmetric, definite [n, n]
     integer, intent(in) :: w                 !! half-bandwidth

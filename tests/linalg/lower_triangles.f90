@@ -1,4 +1,4 @@
-!> Symmetric matrices of which the lower triangle is known.
+!> Symmetric matrices from their lower triangle.
 module lower_triangles
   use epcont_base_kinds, only: wp
   implicit none
@@ -9,7 +9,7 @@ contains
 
   !> Both triangles.
   pure function whole(lower)
-    real(wp), intent(in) :: lower(:, :)   !! what is above the diagonal does not matter
+    real(wp), intent(in) :: lower(:, :)   !! entries above the diagonal are ignored
     real(wp) :: whole(size(lower, 1), size(lower, 2))
     integer :: k
 

@@ -1,4 +1,4 @@
-!> Solves in two halves, against whole ones.
+!> Forward and backward substitution, compared with whole solves.
 module solve_halves
   use epcont_base_kinds, only: wp
   use epcont_linalg_assembled, only: assembled_matrix, probes
@@ -8,8 +8,8 @@ module solve_halves
 
 contains
 
-  !> Two right-hand sides, the second zero but in the last rows, added between the halves; the rows from each third of the order on
-  !! wanted: largest difference from the whole solve of their sum, as a part of its largest value.
+  !> Two right-hand sides, the second zero except in the last rows, added after forward substitution; needed rows from each third:
+  !! largest difference from the whole solve of their sum, relative to its largest value.
   function error_of_halves(matrix) result(error)
     class(assembled_matrix), intent(in) :: matrix   !! factored
     real(wp) :: error
@@ -32,7 +32,7 @@ contains
     end do
   end function error_of_halves
 
-  !> The estimate of the condition, as of a body without a border.
+  !> The condition estimate, for a body without a border.
   real(wp) function condition_of(matrix) result(condition)
     class(assembled_matrix), intent(in) :: matrix   !! factored
     real(wp) :: inverse_norm, x(matrix%order, 2)

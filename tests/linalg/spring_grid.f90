@@ -1,4 +1,4 @@
-!> A plane grid of springs, as elements of four points: a stiffness matrix whose order of elimination can be chosen; and columns
+!> A plane grid of springs, as elements of four points: a stiffness matrix with a choice of elimination orders; and columns
 !> of unequal heights.
 module spring_grid
   use epcont_base_incidence, only: incidence
@@ -42,7 +42,7 @@ contains
     end do
   end subroutine add_columns
 
-  !> Springs in the plane between the points of a grid, along its sides and across, held at the first row; `weight`
+  !> Springs in the plane between the points of a grid, along its edges and diagonals, fixed at the first row; `weight`
   !! varies their stiffness. Equations run along the rows, so that the last row comes last.
   subroutine grid(columns, rows, weight, numbers, stiffness)
     integer, intent(in) :: columns, rows

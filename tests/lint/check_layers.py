@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Check what no compiler checks: layers, names, sizes and habits of the sources (src/README.md), version and date.
+"""Check rules that no compiler checks: layers, names, sizes and habits of the sources (src/README.md), version and date.
 
 Prints `file:line: fault` for each fault; exit status 1 if there is any.
 """
@@ -15,13 +15,13 @@ LAYERS = ["base", "system", "deck", "element", "geometry", "model", "contact_geo
 # A certificate computed by the code it certifies is worth nothing.
 SHUNNED = {"certificate": {"linalg", "assembly", "flexibility", "contact", "linear", "plasticity"}}
 VERSION = "src/base/version.f90"
-PAGE = [VERSION, "src/app/help.f90", "src/app/options.f90"]   # what the manual page is made of
+PAGE = [VERSION, "src/app/help.f90", "src/app/options.f90"]   # sources of the manual page
 FILE_LINES, PROCEDURE_LINES, ARGUMENTS = 400, 120, 7
 #: Columns of a line: of the sources, and of tests, whose assertions are long.
 COLUMNS, TEST_COLUMNS = 110, 132
 #: Lines of the procedures of the sources, with their internal procedures: the median, and what 90 % do not exceed.
 MEDIAN, MOST = 15, 40
-LAPACK = "src/linalg/lapack.f90"   # whose arguments are not ours
+LAPACK = "src/linalg/lapack.f90"   # arguments fixed by the callers
 
 USE = re.compile(r"\s*use\s+epcont_(\w+)\b(\s*,\s*only\s*:)?", re.IGNORECASE)
 OLD = re.compile(r"\s*(?:common\b|equivalence\b|entry\s+\w+\s*(?:\(|$)|save\b)|.*(?:\bgo\s*to\s+\d|,\s*save\b)", re.IGNORECASE)
@@ -56,7 +56,7 @@ def check_size(lines, most=FILE_LINES, columns=TEST_COLUMNS):
 
 
 def check_lengths(lines):
-    """Procedures, with their internal procedures, have few lines."""
+    """Check that procedures, with their internal procedures, are short."""
     for name, first, last in procedures(lines):
         if last - first > PROCEDURE_LINES:
             yield first + 1, f"{name} has {last - first} lines: at most {PROCEDURE_LINES} would be right"
@@ -69,7 +69,7 @@ def check_arguments(lines):
 
 
 def head_of(lines, first):
-    """What stands between the brackets behind a procedure's name."""
+    """Text between the brackets after a procedure's name."""
     head = ""
     for line in lines[first:]:
         code = code_of(line)
@@ -80,7 +80,7 @@ def head_of(lines, first):
 
 
 def check_shape(sources):
-    """The lengths of all procedures, with their internal procedures: a few may be long, most are short."""
+    """Check the lengths of all procedures, with their internal procedures: a few may be long, most are short."""
     lengths = sorted(last - first for lines in sources for _, first, last in procedures(lines))
     middle, most = lengths[len(lengths) // 2], lengths[int(0.9 * len(lengths))]
     if middle > MEDIAN or most > MOST:
@@ -99,7 +99,7 @@ def check_habits(lines):
 
 
 def check_module(path, source, lines):
-    """Name, and uses of other layers."""
+    """Check the name, and the uses of other layers."""
     parts = path.relative_to(source).with_suffix("").parts
     name, layer = "_".join(("epcont",) + parts) if parts != ("epcont",) else "epcont", parts[0]
     if layer not in LAYERS:
@@ -119,12 +119,12 @@ def check_module(path, source, lines):
 
 
 def layer_of(name):
-    """Of the names of layers that a module's name begins with, the longest."""
+    """Longest layer name that a module's name begins with."""
     return max((layer for layer in LAYERS if (name + "_").startswith(layer + "_")), key=len, default=None)
 
 
 def check_names(paths):
-    """No two modules have one name but for the folder: in a message, a search, an editor's tab they could not be told apart."""
+    """Check that no two modules have the same name in different folders: messages, searches and editor tabs would not distinguish them."""
     first = {}
     for path in paths:
         if first.setdefault(path.stem, path) != path:
@@ -132,7 +132,7 @@ def check_names(paths):
 
 
 def check_public(sources):
-    """No two folders have a public procedure of one name, and one type at most has `scene` in its name."""
+    """Check that no two folders have a public procedure of the same name, and that at most one type has `scene` in its name."""
     first, scenes = {}, []
     for path, lines in sources:
         text = re.sub(r"&\s*", " ", "\n".join(map(code_of, lines)))
@@ -146,7 +146,7 @@ def check_public(sources):
 
 
 def check_asserts(lines):
-    """Each test asserts, itself or through a procedure of its file, or one named assert_... or check_..."""
+    """Check that each test asserts, itself or through a procedure of its file, or one named assert_... or check_..."""
     bodies = {name: "\n".join(lines[first:last]).lower() for name, first, last in procedures(lines)}
     asserting = set()
     while True:
@@ -168,7 +168,7 @@ def check_version(root):
 
 
 def check_date(root):
-    """The date of the manual page: a day, and not before the page was last changed, as far as git knows."""
+    """Check that the date of the manual page is not before its last change, as far as git knows."""
     told = re.search(r"program_date = '([^']*)'", (root / VERSION).read_text())
     try:
         date = datetime.date.fromisoformat(told[1])
@@ -181,7 +181,7 @@ def check_date(root):
 
 
 def last_change(root):
-    """Day of the last commit that changed what the page is made of; None where there is no (whole) history."""
+    """Day of the last commit that changed the sources of the manual page; None without (complete) history."""
     try:
         shallow, day = (subprocess.run(["git", "-C", root, *words], capture_output=True, text=True, check=True).stdout.strip()
                         for words in (["rev-parse", "--is-shallow-repository"], ["log", "-1", "--format=%as", "--", *PAGE]))

@@ -1,5 +1,5 @@
 # cmake -DPYTHON= -DCOMPARE= -DPROGRAM= -DDECK= -DREFERENCE= -DOUTPUT= -P check.cmake: run the deck, compare its listing.
-# The program's exit status is in the listing.
+# The listing contains the program's exit status.
 get_filename_component(directory "${DECK}" DIRECTORY)
 get_filename_component(deck "${DECK}" NAME)
 get_filename_component(listing "${REFERENCE}" NAME)

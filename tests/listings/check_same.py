@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""check_same.py PROGRAM DECK OUTPUT [PARAM ONE OTHER]...: a deck must have the same answer by two values of each PARAM: SOLVER BAND and
-FRONTAL, FLEXIB AUTO and INVERT, RULE CONRY and JOINED; or by two kernels of OpenBLAS, as OPENBLAS_CORETYPE names them.
+"""check_same.py PROGRAM DECK OUTPUT [PARAM ONE OTHER]...: a deck must have the same answer with two values of each PARAM: SOLVER BAND and
+FRONTAL, FLEXIB AUTO and INVERT, RULE CONRY and JOINED; or with two kernels of OpenBLAS, named as in OPENBLAS_CORETYPE.
 
-Exit status, words and whole numbers are to be the same; reals to 1e-9 of the largest of their kind in their table, for two
-factors of one matrix leave different rounding. What measures rounding, and states that are no answers, are not compared.
+Exit status, words and integers must be equal; reals agree to 1e-9 of the largest value of the quantity in their table, because two
+factors of one matrix have different rounding. Rounding measures, and states without an answer, are not compared.
 """
 import csv
 import os
@@ -13,15 +13,15 @@ import subprocess
 import sys
 
 TOLERANCE = 1e-9
-#: An estimate, which depends on the order of the equations: seldom off by more than a third, and then low.
+#: An estimate that depends on the order of the equations: seldom wrong by more than a third, and then too low.
 ESTIMATES = {"condition": 0.1, "rounding_error_force": 0.1}
-#: By RULE JOINED estimates come of few solves, of all unit loads (else of some, which make up for others but for 1E-2), and what tells
-#: of the matrix, or of a body alone, is of another one.
+#: With RULE JOINED estimates use few solves, of all adjoint loads (otherwise of some, which represent others to 1E-2), and values
+#: of the matrix, or of a single body, belong to another matrix.
 MESH_ERROR, FEW_SOLVES, OF_THE_MATRIX = re.compile("mesh_error_.*"), 1e-3, {"condition", "rounding_error_force", "contact_amplification", "factorizations",
                                         "weak_pairs"}
-#: Columns of one kind: a stress that should be zero is compared with the others, not with itself.
+#: Columns of one quantity: a stress that should be zero is compared with the others, not with itself.
 KINDS = [{"ux", "uy"}, {"rx", "ry"}, {"sx", "sy", "sz", "txy", "equivalent_stress"}, {"force_x", "force_y"}, {"mesh_error_x", "mesh_error_y"}]
-#: Tables and rows of the summary that tell of rounding, or of the way.
+#: Tables and rows of the summary about rounding, or about the path.
 WAY = {"equilibrium_residual", "smallest_force", "smallest_gap", "largest_force_gap_product", "stress_off_curve", "energy_balance",
        "iteration_error_displacement", "iteration_error_force", "pivots"}
 
@@ -32,7 +32,7 @@ def run(program, deck, parameter, word, output):
     for old in output.glob("*"):
         old.unlink()
     copy = output / deck.name
-    text = re.sub(r"(?im)^PARAM,ORIGINAL,YES$", "PARAM,METHOD,SECANT", deck.read_text())   # which chooses the rest by itself
+    text = re.sub(r"(?im)^PARAM,ORIGINAL,YES$", "PARAM,METHOD,SECANT", deck.read_text())   # which chooses the rest itself
     kernel = parameter == "OPENBLAS_CORETYPE"
     copy.write_text(text if kernel else re.sub(r"(?im)^(BEGIN BULK.*)$", rf"\1\nPARAM,{parameter},{word}", text, count=1))
     status = subprocess.run([program, copy, "-o", output, "--tables", "all", "--quiet"], stderr=subprocess.DEVNULL,
@@ -44,12 +44,12 @@ def run(program, deck, parameter, word, output):
 
 
 def real(word):
-    """A real number, or None: whole numbers are compared as words."""
+    """A real number, or None: integers are compared as words."""
     return float(word) if re.fullmatch(r"[-+]?\d+\.\d*E[-+]\d+", word) else None
 
 
 def scale(name, column, row, rows):
-    """The largest magnitude that a number is compared with; a row of the summary has one of its own, approaches that of all."""
+    """Scale of a number: the largest magnitude of its column; a row of the summary has its own, approaches a common one."""
     if name == "summary":   # one that is far below the others has their rounding
         alike = [other for other in rows[1:] if other[0].startswith("approach_")] if row[0].startswith("approach_") else [row]
         return max(abs(real(other[column]) or 0.0) for other in alike)
@@ -63,7 +63,7 @@ def faults(name, one, other, words):
         yield f"{name}: rows differ"
         return
     scales, joined = {}, words[1] == "JOINED"
-    key_column = one[0].index("key") if name == "summary" else 0   # load cases stand before it
+    key_column = one[0].index("key") if name == "summary" else 0   # load cases precede it
     for mine, its in zip(one[1:], other[1:]):
         for column, (a, b) in enumerate(zip(mine, its)):
             figure = mine[key_column] if name == "summary" else one[0][column]
@@ -82,7 +82,7 @@ def faults(name, one, other, words):
 
 
 def compared(program, deck, output, parameter, *words):
-    """What differs by two values of one PARAM."""
+    """Differences between two values of one PARAM."""
     (one, tables), (other, others) = (run(program, deck, parameter, word, output / f"{parameter}_{word}") for word in words)
     if one != other:
         yield f"exit status {one} by {words[0]}, {other} by {words[1]}"

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""The commands that the documents show are run, as they stand there: run_commands.py plain|drawing [PART OF A COMMAND]
+"""Run the commands of the documents unchanged: run_commands.py plain|drawing [PART OF A COMMAND]
 
-Taken are lines of indented blocks that begin with a command, what is between backquotes in the text and is a whole command, and listings
-said to be `From X.lst`. The lines of a block, and the commands of a paragraph, run in their order in one place: a copy of the project
-whose build folder has the executable under test in every preset. Held against the document are the exit status (0, or what it
-says), the lines shown below a command, and of the remark beside it the number that it prints and the files that it writes.
+It takes lines of indented blocks that begin with a command, whole commands between backquotes in the text, and listings
+with the remark `From X.lst`. The lines of a block, and the commands of a paragraph, run in sequence in one place: a copy of the project
+whose build folder has the executable under test in every preset. Compared with the document are the exit status (0, or as
+stated), the lines shown below a command, and from its remark the number that it prints and the files that it writes.
 
-`plain` runs what epcont, a shell and Python alone can do, `drawing` what needs the Python of tools/venv as well, and what it is made from.
+`plain` runs commands that need only epcont, a shell and Python, `drawing` those that need the Python of tools/venv, and their preparations.
 EPCONT_SOURCE_DIR is the project, EPCONT_PROGRAM the executable.
 """
 import dataclasses
@@ -23,7 +23,7 @@ import time
 TOP = pathlib.Path(os.environ["EPCONT_SOURCE_DIR"])
 PROGRAM = pathlib.Path(os.environ["EPCONT_PROGRAM"]).resolve()
 
-# What no test may take or wait for: pattern of the command, what runs instead, why.
+# Commands that tests cannot run or wait for: pattern of the command, replacement, reason.
 INSTEAD = [
     (r"cmake --preset release && cmake --build --preset release( --target epcont)?",
      r"cmake --list-presets && cmake --build --preset release", "minutes; the build under test was made so"),
@@ -47,14 +47,14 @@ INSTEAD = [
     (r"(python tests/independent/compare.py \S+) input/.*", r"\1 input/hertz/hertz44.dat tests/independent/cases/*_size8.dat", "minutes"),
     (r"(python tests/independent/compare.py \S+) --random 300(.*)", r"\1 --random 6\2", "minutes"),
 ]
-# Words of the text that stand for something of the reader's.
+# Words of the text that stand for the reader's own files.
 STAND_FOR = {
     "<deck>": "hertz44", "DECK...": "hertz44.dat", "DECK": "hertz44.dat", "SCENE.toml": "scene.toml", "SCENE": "hertz",
     "DIR": "out", "NAME.png": "name.png", "NAME": "GRID", "FILE": "file.dat", "OLD": "old", "NEW": "new",
     "DECK.in": "spring.in", "TABLE.csv": "values.csv", "F": "1", "n": "4", "M": "1",
 }
 COMMAND = re.compile(r"(?:tools|tests|build)/[\w/]+(?= |$)|(?:epcont|cmake|ctest|python|sed|awk|sudo apt) |\. tools/venv")
-# A command ends where two blanks follow outside quotes; what is behind them is a remark.
+# A command ends at two blanks outside quotes; a remark follows.
 LINE = re.compile(r"((?:'[^']*'|\"[^\"]*\"|[^\s'\"]| (?! ))+)(?:\s+(.*))?")
 FOR_DRAWING = re.compile(r"\b(?:tools/(?:plot|deck|convergence|tradeoffs?|venv)\b(?!/)|python tests/independent/)")
 FILE = re.compile(r"[\w*./]+\.(?:lst|csv|dat|bdf|png)\b")
@@ -69,7 +69,7 @@ class Command:
 
 
 def paragraphs(text):
-    """(line number, lines) of what stands between blank lines; a fenced part is one, whatever is in it."""
+    """(line number, lines) of each part between blank lines; a fenced part is one, whatever its content."""
     part, fenced = [], False
     for number, line in enumerate([*text.splitlines(), ""], 1):
         if line.startswith("```"):
@@ -82,7 +82,7 @@ def paragraphs(text):
 
 
 def of_block(name, number, lines):
-    """Commands of an indented block; lines between them are what the command above prints."""
+    """Commands of an indented block; lines between them are the output of the command above."""
     commands = []
     for n, line in enumerate(lines, number):
         text, remark = LINE.fullmatch(line[4:].rstrip()).groups() if LINE.fullmatch(line[4:].rstrip()) else (line[4:], "")
@@ -94,14 +94,14 @@ def of_block(name, number, lines):
 
 
 def of_listing(name, number, lines, before):
-    """What a fenced part shows of a listing that the paragraph before names."""
+    """Lines of a fenced part from the listing that the paragraph before names."""
     named = re.search(r"^From `(\w+)\.lst`", before)
     shown = [line for line in lines[1:-1] if line.strip() != "..."]
     return [Command(f"{name}:{number}", f"epcont input/*/{named[1]}.dat && cat {named[1]}.lst", shown=shown)] if named else []
 
 
 def of_text(name, number, lines):
-    """Commands between backquotes: whole ones as they are; of those with choices the options, which --help must have."""
+    """Commands between backquotes: complete ones unchanged; for those with choices the options, which --help must have."""
     commands = []
     for span in re.findall(r"`([^`]+)`", "\n".join(lines)):
         text = " ".join(span.split())
@@ -135,7 +135,7 @@ def blocks(name, text):
 
 
 def as_run(command):
-    """(what is run, why not the command itself)."""
+    """(command to run, reason for a replacement)."""
     for pattern, other, why in INSTEAD:
         match = re.fullmatch(pattern, command.text)
         if match:
@@ -144,7 +144,7 @@ def as_run(command):
 
 
 def chosen(block, group):
-    """What of a block a group runs: `plain` commands that need no venv, nor a file from one that does; `drawing` the others, and before
+    """Commands of a block that a group runs: `plain` those that need no venv, nor a file from one that does; `drawing` the others, and before
     them those that write a file for them."""
     plain, made = [], []
     for command in block:
@@ -163,7 +163,7 @@ def chosen(block, group):
 
 
 def stand_in(folder):
-    """A build of the executable under test: cmake finds nothing to do in it, ctest a test of each label."""
+    """A build of the executable under test: cmake finds nothing to do in it, ctest finds a test for each label."""
     folder.mkdir(parents=True)
     (folder / "epcont").symlink_to(PROGRAM)
     (folder / "CMakeCache.txt").write_text(f"CMAKE_PROJECT_NAME:STATIC=epcont\nCMAKE_GENERATOR:INTERNAL=Unix Makefiles\n"
@@ -175,7 +175,7 @@ def stand_in(folder):
 
 
 def of_the_reader(place):
-    """The files that a reader is supposed to have."""
+    """The reader's own files."""
     (place / "decks").mkdir()
     for name in ("hertz44", "hertz44_elastic"):
         shutil.copy(place / f"input/hertz/{name}.dat", place / "decks")
@@ -204,7 +204,7 @@ def workplace(folder):
 
 
 def run(text, place):
-    if text.startswith("python "):   # the line that enters it stands above, for all blocks of a page
+    if text.startswith("python "):   # the line that enters it is above, for all blocks of a page
         text = ". tools/venv && " + text
     environment = {**os.environ, "PATH": f"{place / 'build/release'}:{os.environ['PATH']}", "PYTHONDONTWRITEBYTECODE": "1"}
     return subprocess.run(["bash", "-c", text], cwd=place, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
@@ -212,13 +212,13 @@ def run(text, place):
 
 
 def status_of_fault(text, place):
-    """The exit status that the table of all decks gives the deck of a command that ends with `echo $?`."""
+    """The exit status of a deck according to the table of all decks, for a command that ends with `echo $?`."""
     row = re.search(rf"\({re.search(r'input/(.*?).dat', text)[1]}\.dat\) .*exit status (\d)", (place / "input/verification.md").read_text())
     return row[1]
 
 
 def faults(command, text, done, place):
-    """What is not as the document has it."""
+    """Differences from the document."""
     wanted = int((re.search(r"exit status (\d+)", command.remark) or [0, 0])[1])
     if done.returncode != wanted:
         yield f"exit status {done.returncode}, not {wanted}"
@@ -242,7 +242,7 @@ def faults(command, text, done, place):
 
 
 def spoilt(place):
-    """Decks kept in input that a command has changed; they are put back."""
+    """Kept decks of input that a command has changed; they are restored."""
     for kept in sorted((place / "input").rglob("*.dat")):
         if not filecmp.cmp(kept, TOP / kept.relative_to(place)):
             shutil.copy2(TOP / kept.relative_to(place), kept)
@@ -250,7 +250,7 @@ def spoilt(place):
 
 
 def try_block(block, place, told):
-    """Runs the commands of a block, then takes away what they have written; the number of faults."""
+    """Run the commands of a block, then remove their files; return the number of faults."""
     before, wrong = set(place.rglob("*")), 0
     for command in block:
         text, why = as_run(command)
@@ -272,13 +272,13 @@ def try_block(block, place, told):
 
 
 def documents():
-    """All pages of the repository; nothing that was built or fetched."""
+    """All pages of the repository, except built or fetched ones."""
     parts = [part for part in sorted(TOP.iterdir()) if part.is_dir() and part.name not in ("build", ".git")]
     return sorted(TOP.glob("*.md")) + [path for part in parts for path in sorted(part.rglob("*.md"))]
 
 
 def shown_commands():
-    """The blocks of each page but the changes, which tell of what was."""
+    """The blocks of each page except those about changes, which describe the past."""
     names = [path.relative_to(TOP).as_posix() for path in documents() if path.name != "CHANGELOG.md"]
     return [list(blocks(name, (TOP / name).read_text(encoding="utf-8"))) for name in names]
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The manuals hold what they promise: every card and PARAM of the catalogue, every deck and its picture, every link.
+"""Check the manuals: every card and PARAM of the catalogue, every deck and its picture, every link.
 
 EPCONT_SOURCE_DIR is the project, EPCONT_PROGRAM the executable.
 """
@@ -48,7 +48,7 @@ def links(path):
 
 
 def anchors(path):
-    """What GitHub makes of the headings of a page."""
+    """Anchors that GitHub makes from the headings of a page."""
     titles = re.findall(r"^#+ (.*)$", FENCED.sub("", path.read_text(encoding="utf-8")), re.MULTILINE)
     return {re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-") for title in titles}
 
@@ -108,7 +108,7 @@ class Manual(unittest.TestCase):
 
 
 class Examples(unittest.TestCase):
-    """The lines of the manual are cards: what they refer to may be missing, but every field is as it must be."""
+    """The lines of the manual are cards: cards they refer to may be missing, but every field must be valid."""
 
     @staticmethod
     def faults(text):
@@ -133,7 +133,7 @@ class Examples(unittest.TestCase):
 
 
 class Commands(unittest.TestCase):
-    """What run_commands.py takes from a page, and that it sees what is not so."""
+    """Commands that run_commands.py finds in a page, and differences that it must find."""
 
     PAGE = """Text, `tools/decks hertz` and `tools/decks`, `tools/plot [--only KIND]`, `tools/plot.py`.
 
@@ -204,7 +204,7 @@ class Links(unittest.TestCase):
             self.assertNotRegex(page.read_text(encoding="utf-8"), r"(?m)@[A-Z]+@|^(<<<<<<<|>>>>>>>)", page)
 
     def test_every_folder_of_tests_is_named(self):
-        """Layers of src have one row for all."""
+        """Layers of src have one common row."""
         page = (TOP / "tests" / "README.md").read_text(encoding="utf-8")
         layers = {path.name for path in (TOP / "src").iterdir()}
         named = {path.name for path in (TOP / "tests").iterdir() if re.search(rf"^\| `{path.name}[`/]", page, re.MULTILINE)}
@@ -212,7 +212,7 @@ class Links(unittest.TestCase):
 
     def test_sources_that_are_named_exist(self):
         for page in documents():
-            if page.name == "CHANGELOG.md":   # tells of old ones
+            if page.name == "CHANGELOG.md":   # describes old ones
                 continue
             for name in re.findall(r"`((?:\w+/)+\w+\.(?:f90|inc|pf|py))[`,]", page.read_text(encoding="utf-8")):
                 self.assertTrue(any((TOP / folder / name).exists() for folder in ("", "src", "tests", "tools")), f"{page.relative_to(TOP)}: {name}")

@@ -1,4 +1,4 @@
-!> A model of sections that yield, without a mesh, and strains to try them with.
+!> A model of sections that yield, without a mesh, and strains to test them.
 module yielding_model
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: plane_strain, plane_stress
@@ -10,7 +10,7 @@ module yielding_model
   private
   public :: new_yielding_model, state_at, strain_path
 
-  !> Sections: five points in plane strain and in plane stress, flat in both, nearly incompressible, elastic.
+  !> Sections: five points in plane strain and in plane stress, perfectly plastic in both, nearly incompressible, elastic.
   integer, parameter, public :: sections = 6
 
 contains
@@ -35,7 +35,7 @@ contains
     model%controls%paper_ratio = paper_ratio
   end function new_yielding_model
 
-  !> What the law of a section finds at a strain, whatever was committed.
+  !> Result of the material law of a section at a strain, without committed states.
   pure function state_at(materials, section, strain) result(state)
     type(model_materials), intent(in) :: materials
     integer, intent(in) :: section

@@ -1,9 +1,9 @@
-"""The Debian package: built, unpacked into an empty root, and run there with nothing but what it says it depends on.
+"""Build the Debian package, unpack it into an empty root, and run it there with only its stated dependencies.
 
 The root has the package, the files of its dependencies (copied from this machine's packages, which must be installed) and no
-folder of this project; the environment is empty. Not kept apart: the kernel and its devices, the user, the network; and the
+folder of this project; the environment is empty. Not separate: the kernel and its devices, the user, the network; and the
 dependencies are those of this machine, not ones that apt has just fetched.
-Exit status 77: a tool that it takes is not here.
+Exit status 77: a required tool is missing here.
 """
 import os
 import pathlib
@@ -44,7 +44,7 @@ def results(folder):
 
 
 class Closure:
-    """The installed packages that a list of dependencies comes to, with theirs."""
+    """Installed packages that satisfy a list of dependencies, with their own dependencies."""
 
     def __init__(self, depends):
         self.depends, self.providers = {}, {}
@@ -75,7 +75,7 @@ class Closure:
                 self.add(self.depends[name])
 
     def stand_in(self, group):
-        """What is not installed here gives nothing to the root but what it depends on in its turn, as apt knows it."""
+        """A package that is not installed here adds only its own dependencies to the root, as apt knows them."""
         shown = run("apt-cache", "show", "--no-all-versions", self.names(group)[0]).stdout
         depends = re.search(r"^Depends: (.*)", shown, re.MULTILINE)
         if not depends:
@@ -84,7 +84,7 @@ class Closure:
         self.add(depends[1])
 
     def copy_to(self, root):
-        """Their libraries, and the links that alternatives have made to these."""
+        """Their libraries, and their links by alternatives."""
         for folder in ("lib", "lib64"):
             (root / "usr" / folder).mkdir(parents=True, exist_ok=True)
             if pathlib.Path("/" + folder).is_symlink() and not (root / folder).is_symlink():
@@ -111,7 +111,7 @@ class Closure:
 
 class Installed(unittest.TestCase):
     def test_install(self):
-        """`cmake --install` puts the same files below any folder, and the program runs from there."""
+        """`cmake --install` copies the same files to any folder, and the program runs from there."""
         with tempfile.TemporaryDirectory() as name:
             place = pathlib.Path(name)
             done = run(CMAKE, "--install", BUILD, "--prefix", place)
@@ -122,7 +122,7 @@ class Installed(unittest.TestCase):
             self.assertEqual((0, ""), (done.returncode, done.stderr))
 
     def test_library(self):
-        """The example, outside of the project: built on installed files alone, and its forces."""
+        """The example, outside of the project: built with installed files only, and its forces."""
         with tempfile.TemporaryDirectory() as name:
             place = pathlib.Path(name)
             self.assertEqual(0, run(CMAKE, "--install", BUILD, "--prefix", place / "epcont").returncode)
@@ -138,11 +138,11 @@ class Installed(unittest.TestCase):
             self.assertEqual(5, len(forces))
             for force, mirrored in zip(forces, reversed(forces)):
                 self.assertAlmostEqual(mirrored, force, delta=1e-3)
-            # A strip of E' = E/(1 - nu^2) in each block, 4 long and 1 high, gives 4 times 0.001/(1/E1' + 1/E2') where nothing bulges.
+            # A strip of E' = E/(1 - nu^2) in each block, 4 long and 1 high, gives 4 times 0.001/(1/E1' + 1/E2') without transverse strain.
             self.assertAlmostEqual(4e-3/(0.91/2.1e5 + 0.8911/7e4), sum(forces), delta=0.25*sum(forces))
 
     def test_sources_in_another_project(self):
-        """add_subdirectory gives the target of find_package, and no tests, benchmarks or packages. (Configured only, for `make`, which lists its targets: to build takes minutes.)"""
+        """add_subdirectory gives the target of find_package, and no tests, benchmarks or packages. (Only configured, for `make`, which lists its targets: building takes minutes.)"""
         with tempfile.TemporaryDirectory() as name:
             place = pathlib.Path(name)
             (place / "CMakeLists.txt").write_text("cmake_minimum_required(VERSION 3.21)\nproject(other LANGUAGES Fortran)\n"
@@ -156,7 +156,7 @@ class Installed(unittest.TestCase):
             self.assertNotRegex(told, "bench_|test_")
 
     def linked_by_hand(self, place):
-        """What the example says that is linked as the page tells it."""
+        """Libraries of the example, linked as the page describes."""
         page = (place / "epcont" / EXAMPLE / "README.md").read_text()
         compiler, = re.findall("CMAKE_Fortran_COMPILER:[A-Z]+=(.*)", (BUILD / "CMakeCache.txt").read_text())
         words = re.search("^    gfortran (.*)", page, re.MULTILINE)[1].replace("~/epcont", str(place / "epcont")).split()
@@ -188,7 +188,7 @@ class Package(unittest.TestCase):
         self.assertEqual(("epcont", version), (self.field("Package"), self.field("Version")))
 
     def test_contents(self):
-        """These files and no others, of root, which all may read."""
+        """Exactly these files, owned by root, readable for all."""
         self.assertEqual({f"usr/{name}" for name in PACKED}, self.unpacked)
         for line in run("dpkg-deb", "-c", self.package).stdout.splitlines():
             mode, owner = line.split()[:2]
@@ -200,7 +200,7 @@ class Package(unittest.TestCase):
         self.assertEqual(is_static, "The OpenBLAS Project" in notices)
 
     def test_depends(self):
-        """Every library that the program is linked with is in a package that is named."""
+        """Every library of the program is in a package that is named."""
         depends = Closure.names(self.field("Depends"))
         self.assertIn("libc6", depends)
         program = self.root / "usr/bin/epcont"
@@ -211,7 +211,7 @@ class Package(unittest.TestCase):
         self.assertEqual("", self.field("Recommends"))
 
     def test_run(self):
-        """In a root of its own; without its dependencies it does not run there, so that it is they which make it."""
+        """In a separate root; without its dependencies it does not run there, so they are needed."""
         deck, out = "/usr/" + DECK, self.root / "out"
         out.mkdir()
         enter = [shutil.which("chroot"), self.root]   # whole, as the empty environment below has no PATH
@@ -229,7 +229,7 @@ class Package(unittest.TestCase):
         self.same_as_here(deck, out)
 
     def same_as_here(self, deck, out):
-        """The same bytes as in this root. Without environment, too: a variable may choose OpenBLAS' kernels, and these the last digits."""
+        """The same bytes as in this root. Also without environment: a variable may choose OpenBLAS' kernels, and these the last digits."""
         here = self.place / "here"
         done = run(PROGRAM, self.root / deck.lstrip("/"), "-o", here, "--tables", "all", cwd=self.place, env={})
         self.assertEqual(0, done.returncode, done.stderr)
@@ -243,4 +243,4 @@ if __name__ == "__main__":
         print("skipped: no " + ", ".join(missing))
         sys.exit(77)
     print(__doc__)
-    unittest.main(verbosity=2)   # tells why a test is skipped
+    unittest.main(verbosity=2)   # shows why a test is skipped

@@ -1,4 +1,4 @@
-"""Decks through pyNastran: read, written again in each form, run; and how far the tables of two runs are apart."""
+"""Decks through pyNastran: read, written in each form, run; and the differences between the tables of two runs."""
 import csv
 import os
 import pathlib
@@ -14,7 +14,7 @@ from deck import KINDS, ids, real  # noqa: E402
 from deck import read as read_cards  # noqa: E402
 
 PROGRAM = os.environ["EPCONT_PROGRAM"]
-#: What pyNastran writes: small fields, large fields, large fields with D exponents.
+#: Forms of pyNastran: small fields, large fields, large fields with D exponents.
 FORMS = {"small": {"size": 8}, "large": {"size": 16}, "double": {"size": 16, "is_double": True}}
 
 
@@ -34,12 +34,12 @@ def lines_of(path):
 
 
 def kinds_of(path):
-    """Kinds of cards in a deck: their names, with the fields of the first line that are not blank; of PARAM the name of the parameter."""
+    """Cards in a deck: their names, with the nonblank fields of the first line; for PARAM the name of the parameter."""
     return {(card[0], card[1] if card[0] == "PARAM" else tuple(map(bool, card[:9]))) for card in read_cards(path).cards}
 
 
 def restore_lines(model, lines):
-    """pyNastran 1.4.1 sorts the nodes of a BLSEG and drops the one that closes it; the ids of those that this has changed."""
+    """pyNastran 1.4.1 sorts the nodes of a BLSEG and drops the one that closes it; the ids of the cards that this has changed."""
     changed = [number for number, nodes in lines.items() if model.blseg[number].node_ids != nodes]
     for number in changed:
         model.blseg[number].nodes, model.blseg[number].nodes_ref = lines[number], None
@@ -47,8 +47,8 @@ def restore_lines(model, lines):
 
 
 def rewritten(path, form=None):
-    """The cards of a deck by a writer of our own, with commas; reals as they are, or cut to what a form leaves of them. The lines above
-    them stay as they are."""
+    """Write the cards of a deck with commas, without pyNastran; reals are unchanged, or rounded to the digits of a form. The lines above
+    them are unchanged."""
     lines = path.read_text().partition("BEGIN BULK")[0].splitlines() + ["BEGIN BULK"]
     for card in read_cards(path).cards:
         fields = [cut(field, form) for field in card[1:]]
@@ -59,7 +59,7 @@ def rewritten(path, form=None):
 
 
 def cut(field, form):
-    """What a form of pyNastran leaves of a field: eight columns; ten digits, where there is a D exponent."""
+    """A field rounded as in a form of pyNastran: eight columns; ten digits, with a D exponent."""
     if form is None or len(field) <= 8:
         return field
     return written(real(field), 8) if form == "small" else written(float(f"{real(field):.9e}"), 16)
@@ -85,19 +85,19 @@ class Tables:
         return list(csv.DictReader(path.read_text(encoding="ascii").splitlines())) if path.is_file() else []
 
     def read(self, path):
-        """Rows by load case, where there is more than one, and by the name of the thing."""
+        """Rows by load case, if there are several, and by name."""
         rows = self.rows(path)
         keys = list(rows[0])[:2 if "subcase" in rows[0] else 1] if rows else []
         return {tuple(row[key] for key in keys): row for row in rows}
 
     @property
     def status(self):
-        """That of all load cases, where it is one."""
+        """The status of all load cases, if it is equal."""
         statuses = set(self.statuses.values()) or {"rejected"}
         return statuses.pop() if len(statuses) == 1 else "mixed"
 
     def apart(self, other, discrete=True, tables=tuple(KINDS)):
-        """The largest difference from another run's tables, relative to the largest of its kind; where."""
+        """The largest difference from another run's tables, relative to the largest value of the quantity; its position."""
         worst, pieces = (0.0, ""), {}
         if self.statuses != other.statuses:
             return float("inf"), f"status {self.statuses}, {other.statuses}"

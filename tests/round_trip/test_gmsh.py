@@ -1,4 +1,4 @@
-"""Meshes as Gmsh itself writes them (BdfFieldFormat 0, 1, 2: free, small, large; lines as CBAR), included in a deck."""
+"""Meshes written by Gmsh itself (BdfFieldFormat 0, 1, 2: free, small, large; lines as CBAR), included in a deck."""
 import pathlib
 import tempfile
 import unittest
@@ -12,8 +12,8 @@ from from_gmsh.scene import read_scene
 
 FORMATS = ["free", "small", "large"]
 SCENES = {"two_cylinders": {}, "pin": {}, "blocks": {"blocks.toml": ("top.pressure = 250.0 ", "top.force = [0.0, -3750.0] ")}}
-#: Of the largest of its kind, what Gmsh leaves of coordinates moves the answers: nine digits; or eight characters, decimal
-#: point, sign and exponent among them, of gaps of a ten-thousandth of the radius. Where all is flat, next to nothing.
+#: Relative to the largest value of the quantity, the effect of Gmsh's coordinates on the results: nine digits; or eight characters including decimal
+#: point, sign and exponent, for gaps of a ten-thousandth of the radius. For flat bodies there is hardly an effect.
 APART = {"large": {"two_cylinders": 1e-6, "pin": 5e-5, "blocks": 1e-7},
          "small": {"two_cylinders": 0.02, "pin": 0.2, "blocks": 1e-6}}
 APART["free"] = APART["small"]

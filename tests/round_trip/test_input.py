@@ -1,6 +1,6 @@
 """Every deck below input: read by pyNastran, written by it, solved again, to the same values.
 
-A deck with a kind of card that no smaller deck has is written in each form of pyNastran, any other deck in one of them.
+A deck with a card that no smaller deck has is written in each form of pyNastran, any other deck in one of them.
 """
 import pathlib
 import tempfile
@@ -10,9 +10,9 @@ from forms import FORMS, TOP, kinds_of, lines_of, read_bdf, restore_lines, rewri
 
 DECKS = sorted(TOP.glob("input/**/*.dat"), key=lambda path: (path.stat().st_size, path))
 INCLUDED = sorted(TOP.glob("input/**/*.inc")) + sorted(TOP.glob("input/**/*.bdf"))
-SAME = 1e-10   # of the largest of its kind
-LARGE_FIELD = 1e-8   # sixteen columns leave eleven digits or more; what is left is how a scene magnifies them
-LOST = 3.0     # times what our own rounding to as many digits does: the same digits need not be lost
+SAME = 1e-10   # relative to the largest value of the quantity
+LARGE_FIELD = 1e-8   # sixteen columns keep eleven digits or more; models magnify the rest
+LOST = 3.0     # times the effect of our own rounding to the same number of digits: other digits may be lost
 
 
 class Input(unittest.TestCase):
@@ -38,7 +38,7 @@ class Input(unittest.TestCase):
                     self.judge(path.stem, forms[path.stem], found)
 
     def through(self, path, forms, place):
-        """The deck by pyNastran in these forms, each by our own writer too; and the deck's own cards, cut to what a form leaves."""
+        """The deck by pyNastran in these forms, each by our own writer too; and the deck's own cards, rounded to a form."""
         model = read_bdf(path)
         self.assertFalse(model.reject_lines + model.reject_cards)
         changed = restore_lines(model, lines_of(path))
@@ -56,7 +56,7 @@ class Input(unittest.TestCase):
         return made
 
     def judge(self, stem, forms, found):
-        """Read the same by epcont as from our own writer; off the deck's values by no more than the digits that are lost."""
+        """epcont must read it as the deck of our own writer; its differences from the deck are at most those of the lost digits."""
         original = found[stem]
         for form in forms:
             there = found[f"{stem}_{form}"]

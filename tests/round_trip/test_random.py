@@ -1,4 +1,4 @@
-"""200 random models: by hand (our own writer) and by pyNastran, in each of its forms, to the same values."""
+"""200 random models: written by our own writer and by pyNastran, in each of its forms, must give the same values."""
 import pathlib
 import random
 import re
@@ -15,7 +15,7 @@ SAME = 1e-10
 
 
 def rounded(text, digits):
-    """The same scene with reals of so few digits that no form cuts them."""
+    """The same model with reals of so few digits that no form rounds them."""
     return re.sub(r"(?<=,)-?\d+\.\d*(E[+-]?\d+)?", lambda real: written(float(f"{float(real[0]):.{digits - 1}e}"), 16), text)
 
 
@@ -34,7 +34,7 @@ class Random(unittest.TestCase):
         self.assertGreater(answers, 0.7 * MODELS)
 
     def write(self, k, place):
-        """Model k as it is, and as pyNastran writes it."""
+        """Model k unchanged, and as pyNastran writes it."""
         form = list(FORMS)[k % 3]
         rng = random.Random(f"{SEED} {k}")
         scene = (pressed if k % 2 else [stack, nested, tongue][k // 2 % 3])(rng)

@@ -1,4 +1,4 @@
-"""A Slurm of one node in a folder of its own: no service of the machine, no root, no cgroups, no database."""
+"""Start a Slurm of one node in a separate folder: no service of the machine, no root, no cgroups, no database."""
 import os
 import pathlib
 import shutil
@@ -40,12 +40,12 @@ PartitionName=test Nodes={host} Default=YES MaxTime=INFINITE State=UP
 
 
 def install():
-    """Debian's packages, where they are missing and root may install them."""
+    """Install Debian's packages, if they are missing and root is allowed to."""
     if shutil.which("slurmctld") and shutil.which("slurmd") and shutil.which("sbatch"):
         return
     if os.geteuid() != 0 or not shutil.which("apt-get"):
         sys.exit("missing packages; please run: sudo apt-get update && sudo apt-get install -y " + " ".join(PACKAGES))
-    # Services of the machine are not to be started: policy-rc.d says so to the packages, where there is no other.
+    # Packages must not start services of the machine: policy-rc.d tells them so, if there is no other.
     policy = pathlib.Path("/usr/sbin/policy-rc.d")
     ours = not policy.exists()
     if ours:
@@ -73,7 +73,7 @@ def free_ports(count):
 
 
 class Cluster:
-    """Runs between `with`; SLURM_CONF tells its commands where it is."""
+    """Runs inside `with`; SLURM_CONF tells its commands where it is."""
 
     def __init__(self, folder):
         self.folder, self.processes = pathlib.Path(folder), []

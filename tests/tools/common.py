@@ -1,4 +1,4 @@
-"""What tests of tools share: their modules, tools without a suffix as such, and a folder for each test."""
+"""Shared by tests of tools: their modules, tools without a suffix as modules, and a folder for each test."""
 import importlib.machinery
 import importlib.util
 import pathlib

@@ -43,7 +43,7 @@ class Reals(unittest.TestCase):
         self.assertRaises(ValueError, cards.written, -1e-100, 5)
 
     def test_as_near_as_the_field_allows(self):
-        """Half a unit of what the columns hold beside point, sign and exponent."""
+        """Half a unit of the digits that the columns hold beside decimal point, sign and exponent."""
         pick = random.Random(1)
         for _ in range(3000):
             value = pick.choice([-1, 1]) * pick.uniform(1, 10) * 10.0 ** pick.randint(-20, 20)

@@ -119,7 +119,7 @@ PAIRS = ["5,1.0,2.0,1.0E-19,touching", "6,0.5,1.0,0.0,touching"]
 
 class Folders(Case):
     def deck(self, folder, name="a", pairs=PAIRS, case="", **changes):
-        """The tables of a deck, with other values of some keys; None: without the key."""
+        """The tables of a deck, with other values of some keys; None removes a key."""
         head, before = ("subcase,", case + ",") if case else ("", "")
         summary = {key: value for key, value in {**SUMMARY, **changes}.items() if value is not None}
         for table, columns, rows in (("summary", "key,value,unit", [f"{key},{value}," for key, value in summary.items()]),
@@ -193,7 +193,7 @@ class Folders(Case):
         self.judged(1, "3 decks: 2 the same, 1 differs; worst: deck c, only in the second folder")
 
     def test_load_cases(self):
-        """Each is compared with its own: its scale too."""
+        """Each is compared with its own case, and scale."""
         for folder in ("old", "new"):
             self.deck(folder, case="3", max_pressure="2000.0")
             self.deck(folder, case="7", max_pressure="2.0" if folder == "old" else "2.0002")
@@ -214,7 +214,7 @@ class Folders(Case):
 
 @unittest.skipUnless("EPCONT_PROGRAM" in os.environ, "no program")
 class Runs(Case):
-    """The same program twice, on other threads and kernels, and on a load that is larger by 1E-4."""
+    """The same program twice, with other threads and kernels, and with a load that is larger by 1E-4."""
     DECKS = ("hertz/hertz44.dat", "hertz/hertz44_elastic.dat", "flat_match/flat_pairs.dat", "off_centre/off_centre.dat")
 
     def batch(self, folder, decks, **environment):

@@ -1,4 +1,4 @@
-"""Tests of tools/deceive: its scenes and twins are what they are called, and each kind of false answer is found.
+"""Tests of tools/deceive: its models and twins are correct, and each type of false answer is found.
 
 Usage: EPCONT_PROGRAM=... test_deceive.py
 """
@@ -20,9 +20,9 @@ from deceiving.shapes import cells, disc
 
 deceive = common.load("deceive")
 PROGRAM = os.environ["EPCONT_PROGRAM"]
-SOUND = ("stack", 2)   # nothing is wrong with this scene
+SOUND = ("stack", 2)   # there is no fault in this model
 
-# Runs the program, then falsifies a column of a table of one deck.
+# Runs the program, then changes a column of a table of one deck.
 FALSIFIER = """#!{python}
 import csv, pathlib, subprocess, sys
 run = subprocess.run(["{program}"] + sys.argv[1:])
@@ -66,7 +66,7 @@ class Case(common.Case):
 
 class Scenes(Case):
     def test_the_finer_scene_is_the_same_scene(self):
-        """Same bodies, moduli, kinds, loads, and lines from the same places to the same places; nine times the elements."""
+        """The same bodies, moduli, element types, loads, and lines between the same points; nine times the elements."""
         for name in FAMILIES:
             for number in range(2):
                 one, three = drawn(name, number), drawn(name, number, 3)
@@ -75,10 +75,10 @@ class Scenes(Case):
                                      [(b.kind, b.young, len(b.elements)) for b in three.bodies])
                     self.assertEqual(one.contacts, three.contacts)
                     self.assertEqual([force for _, force in one.forces], [force for _, force in three.forces])
-                    for body, finer in zip(one.bodies, three.bodies):   # chords of arcs cut off less when finer
+                    for body, finer in zip(one.bodies, three.bodies):   # chords of arcs cut off less if finer
                         self.assertAlmostEqual(area(one, body) / area(three, finer), 1.0, delta=0.08)
                     for k, line in one.lines.items():
-                        if name != "line_twice":   # parts of lines are so many sides there
+                        if name != "line_twice":   # parts of lines are numbers of edges there
                             for end in (0, -1):
                                 for x, y in zip(one.nodes[line[end]], three.nodes[three.lines[k][end]]):
                                     self.assertAlmostEqual(x, y, places=9)
@@ -99,7 +99,7 @@ class Scenes(Case):
         self.assertNotEqual(texts[0], deck(drawn("steps", 4), Twin("base"))[0])
 
     def test_kinds_are_meshed_right(self):
-        """Uniform pressure between blocks: forces as E u/h says, for each kind of element; CTRAX between rings."""
+        """Uniform pressure between blocks: forces from E u/h, for each element type; CTRAX between axisymmetric blocks."""
         for kind in PLANE:
             scene = block(kind=kind)
             for body in scene.bodies:
@@ -179,7 +179,7 @@ class Judging(Case):
         self.assertIn(round(place[1], 12), (0.0, -0.25))
 
     def test_chords_of_a_smooth_outline_are_allowed(self):
-        """A disc's chords in another's, by as much as the arc rises over them."""
+        """A disc's chords in another's, by the height of the arc over them."""
         for overlap, found in ((0.0, False), (0.3, True)):
             scene = Scene(1, 1.0)
             for y in (1.0, -1.0 + overlap):

@@ -1,6 +1,6 @@
-"""What tools say of wrong options, of files that are missing, empty, binary or of another kind, and of places that cannot be written.
+"""Messages of tools for wrong options, for missing, empty, binary or other files, and for folders that cannot be written.
 
-Exit status not 0, no traceback, and words that name what is wrong.
+The exit status is not 0, there is no traceback, and the message names the fault.
 """
 import os
 import pathlib
@@ -53,7 +53,7 @@ class Calls(Case):
             self.assertIn("usage: ", run.stdout)
 
     def test_output_that_nobody_reads(self):
-        """A closed pipe ends a tool without a word."""
+        """A closed pipe ends a tool silently."""
         for tool in ("accept", "batch", "compare", "deceive", "decks", "fuzz", "mutate", "sweep", "verify", "convergence.py", "paraviews.py", "plots.py", "tradeoffs.py"):
             for arguments in ("--help",), ("hertz44.dat", "out"):
                 if arguments[0] == "--help" or tool == "verify":

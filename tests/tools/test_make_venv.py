@@ -6,7 +6,7 @@ import unittest
 import common
 from common import ROOT
 
-# A python3 of version $MINOR; the file `bare` says that it has no venv; what it makes is a Python whose pip does as the file `pip` says.
+# A python3 of version $MINOR; the file `bare` removes its venv; it makes a Python whose pip behaves as the file `pip` states.
 PYTHON = """#!/bin/sh
 echo "python3 $*" >> {place}/calls
 case "$*" in
@@ -46,7 +46,7 @@ class Case(common.Case):
         for name, text in (("python3", PYTHON), ("apt-get", APT), ("id", ID)):
             self.script(self.place / "bin" / name, text)
         self.script(self.place / "made", MADE)
-        # Nothing of this machine's Pythons.
+        # None of this machine's Pythons is used.
         for name in ("sh", "cat", "cmp", "cp", "rm", "basename", "mkdir", "touch", "sed", "seq", "tail", "dirname", "sleep", "flock", "timeout"):
             if shutil.which(name):
                 (self.place / "bin" / name).symlink_to(shutil.which(name))
@@ -79,7 +79,7 @@ class Making(Case):
         self.assertEqual(f"{self.top}/build/venv/bin/python\n", run.stdout)
         pip, = self.calls("pip install")
         self.assertIn("--no-deps --requirement tools/requirements.txt", pip)
-        self.assertRegex(pip, r"--timeout \d+ --retries \d ")   # it gives up where nothing answers
+        self.assertRegex(pip, r"--timeout \d+ --retries \d ")   # it gives up if nothing answers
         self.assertEqual((run.stdout, ""), (self.run_it(0).stdout, self.run_it(0).stderr))
         self.assertEqual([], self.calls("pip"))
 
@@ -174,7 +174,7 @@ class Skipping(Case):
         self.assertIn("SCRIPT", self.run_it(3, tool="tests/in_venv").stderr)
 
     def test_a_test_runs(self):
-        self.run_it(9, "tools", "any.py", "more", tool="tests/in_venv")   # the stand-in knows no such script
+        self.run_it(9, "tools", "any.py", "more", tool="tests/in_venv")   # the stand-in has no such script
         self.assertEqual(["venv -B any.py more"], self.calls("any.py"))
 
 
@@ -185,4 +185,4 @@ class Lists(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(verbosity=2)   # tells why a test is skipped
+    unittest.main(verbosity=2)   # shows why a test is skipped

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Scenes of many pairs and bodies (tools/decks blocks, strip, stack, dovetail), small ones: valid, and what statics says of them; as inputs of
+"""Small models of many pairs and bodies (tools/decks blocks, strip, stack, dovetail): valid, and consistent with statics; as inputs of
 CalculiX they have the same parts."""
 import os
 import pathlib
@@ -23,7 +23,7 @@ class Many(unittest.TestCase):
         self.place = pathlib.Path(place.name)
 
     def solve(self, deck):
-        """Summary and pressed zones of a valid answer."""
+        """Summary and zones in contact of a valid answer."""
         (self.place / "a.dat").write_text(deck.text(), encoding="ascii")
         run = subprocess.run([PROGRAM, "a.dat"], cwd=self.place, capture_output=True, text=True, check=False)
         self.assertEqual(0, run.returncode, run.stdout + run.stderr)
@@ -48,13 +48,13 @@ class Many(unittest.TestCase):
         self.assertAlmostEqual(1e4, float(summary["total_contact_force"]), delta=1e-4)
 
     def test_stack(self):
-        """Each contact bears all of the load."""
+        """Each contact carries all of the load."""
         summary, pairs = self.solve(many.stack(4, 6, 5))
         self.assertEqual(3 * 7, len(pairs))
         self.assertAlmostEqual(3 * 100.0, float(summary["total_contact_force"]), delta=1e-3)
 
     def test_dovetail(self):
-        """Flanks at 60 degrees: each bears what pulls, along its normal."""
+        """Flanks at 60 degrees: each carries the pulling force, along its normal."""
         summary, _ = self.solve(many.dovetail(fine=0.4, growth=0.4))
         self.assertAlmostEqual(2000.0, float(summary["total_contact_force"]), delta=5.0)
 
@@ -74,7 +74,7 @@ class Many(unittest.TestCase):
         self.assertEqual(str(told), lines[lines.index("*NSET, NSET=TOLD") + 1])
 
     def test_sides_of_elements(self):
-        """Corners are listed counter-clockwise, and the side of a line is one of its element."""
+        """Corners are listed counter-clockwise, and the edge of a line belongs to its element."""
         cards = calculix_deck.Cards(many.blocks(20, 200).text())
         point, element = calculix_deck.corners(cards)
         side = calculix_deck.sides(element)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""tools/mutate: what it changes in a snippet, what it leaves alone, which mutants a seed gives, and how a mutant is judged."""
+"""tools/mutate: its changes of a snippet, text that it does not change, the mutants of a seed, and the judgement of a mutant."""
 import contextlib
 import io
 import pathlib
@@ -58,7 +58,7 @@ class Generator(unittest.TestCase):
                          ["1.0", "2000.0", "0.0005", "0.001", "300.0"])
 
     def test_seed(self):
-        """A seed's mutants stay the same where other lines change; one of each place, of each class in turn."""
+        """A seed's mutants stay the same if other lines change; one of each place, of each class in turn."""
         mutants = mutants_of("a.f90", SNIPPET)
         one = [m.key for m in choose(mutants, 1, 8)]
         longer = mutants_of("a.f90", "! a line more\n" + SNIPPET)
@@ -71,12 +71,12 @@ class Generator(unittest.TestCase):
         self.assertTrue(kinds & {"min"} and kinds & {"1.0e-9", "0.5", "1.5d0"}, kinds)
 
     def test_twins(self):
-        """Lines that are alike are mutants of their own."""
+        """Equal lines are separate mutants."""
         mutants = mutants_of("a.f90", "x = 1\ny = 2\n  x = 1\n")
         self.assertEqual([m.key for m in mutants if m.new == "2"], ["a.f90|x = 1|4|2", "a.f90|x = 1|4|2|1"])
 
     def test_sources(self):
-        """All layers that decide an answer."""
+        """All layers that affect results."""
         mutate = load("mutate")
         self.assertEqual({path.split("/")[1] for path in mutate.sources()},
                          {"contact", "contact_geometry", "geometry", "certificate", "plasticity", "flexibility", "accuracy", "messages", "result", "verdict.f90"})
@@ -127,7 +127,7 @@ class Judging(unittest.TestCase):
             self.assertEqual(trial.order({"contact"}, {}), ["b", "c", "a"])
 
     def test_results_go_on(self):
-        """A line of the table for each mutant, with what was written beside it by hand."""
+        """A line of the table for each mutant, keeping notes written by hand."""
         mutate = load("mutate")
         mutant = Mutant("src/contact/a.f90", 1, 4, "1", "2", "y = 1 + x")
         with tempfile.TemporaryDirectory() as folder:
@@ -143,7 +143,7 @@ class Judging(unittest.TestCase):
             self.assertEqual(mutate.Results(path).kills("src/model/b.f90"), {})
 
     def test_list(self):
-        """--list names mutants, and changes nothing."""
+        """--list lists mutants, and changes nothing."""
         mutate, said = load("mutate"), io.StringIO()
         with contextlib.redirect_stdout(said):
             sys.argv = ["mutate", "--list", "--mutants", "5", "--only", "certificate/", "--only", "parameter"]

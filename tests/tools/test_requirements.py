@@ -8,7 +8,7 @@ from common import ROOT
 
 PRINTED = "packages are missing; please run: sudo apt-get update && sudo apt-get install -y --no-install-recommends"
 
-# What the file `slow` names takes three seconds. CMake finds a LAPACK where there is the file `liblapack.so`, and says what CMake says.
+# Steps named in the file `slow` take three seconds. CMake finds a LAPACK if there is the file `liblapack.so`, and prints CMake's messages.
 CMAKE = """#!/bin/sh
 echo "cmake $*" >> "{place}/calls"
 case "$*" in
@@ -24,7 +24,7 @@ case "$*" in
     printf '#!/bin/sh\\necho "epcont $*"\\nexit 4\\n' > "build/$3/epcont" && chmod +x "build/$3/epcont" ;;
 esac
 """
-# What is installed is there afterwards; lists of packages have to be fetched first.
+# Installed packages exist afterwards; lists of packages have to be fetched first.
 APT = """#!/bin/sh
 echo "apt-get $*" >> "{place}/calls"
 case "$*" in
@@ -122,7 +122,7 @@ class Case(common.Case):
 
 
 class Complete(Case):
-    """Where all is there nothing is asked for, whoever asks, and nothing but the answer is said."""
+    """If everything is there nothing is installed, for any user, and only the answer is printed."""
 
     def check(self):
         run = self.run_it(4, "tools/run", "a deck.dat", "--quiet")

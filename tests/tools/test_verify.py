@@ -18,12 +18,12 @@ verify = common.load("verify")
 HERTZ, LINES, RING = (ROOT / "input" / name for name in ("hertz/hertz44.dat", "flat_match/flat_lines.dat", "from_gmsh/press_fit.dat"))
 TABLES = ("summary", "nodes", "elements", "contact", "zones", "bodies", "history")
 WORDS = {"touching": "open", "open": "touching", "plastic": "elastic", "elastic": "plastic"}
-#: What is told apart from rounding, of the largest value of a column.
+#: Smallest value, relative to the largest of a column, that is not rounding.
 SEEN = 1e-9
 
 
 def changed(value):
-    """A value with a relative change of 1e-6, or another word; none of nothing and zero."""
+    """A value with a relative change of 1e-6, or another word; None for an empty cell and zero."""
     try:
         number = float(value)
     except ValueError:
@@ -45,7 +45,7 @@ class Case(common.Case):
         subprocess.run([PROGRAM, deck, "-o", self.place, "--tables", "all", "--quiet"], check=True, stderr=subprocess.DEVNULL)
 
     def told(self, deck, *options):
-        """Exit status and what is printed."""
+        """Exit status and output."""
         output = io.StringIO()
         with contextlib.redirect_stdout(output), contextlib.redirect_stderr(output):
             status = verify.main([str(deck), str(self.place), *options])
@@ -58,7 +58,7 @@ class Case(common.Case):
         return list(csv.reader(self.path(deck, table).read_text().splitlines()))
 
     def spoilt(self, deck, table, rows):
-        """What comes of the run with these rows of a table; the table is put back."""
+        """Result of a run with these rows of a table; the table is restored."""
         path = self.path(deck, table)
         whole = path.read_text()
         path.write_text("".join(",".join(row) + "\n" for row in rows))
@@ -70,7 +70,7 @@ class Case(common.Case):
 
 class Edits(Case):
     def edits(self, deck, table, rng, several):
-        """(row, column) of some cells of each column: the largest, and others that are more than rounding."""
+        """(row, column) of some cells of each column: the largest, and others above rounding."""
         rows = self.rows(deck, table)
         for column in range(len(rows[0])):
             cells = [k for k in range(1, len(rows)) if changed(rows[k][column])]
@@ -105,7 +105,7 @@ class Edits(Case):
         self.check(HERTZ, 2)
 
     def test_load_cases(self):
-        """Each is held against its own rows, with its sets, supports and contacts."""
+        """Each is compared with its own rows, with its sets, supports and contacts."""
         cards = HERTZ.read_text().split("BEGIN BULK")[1]
         held = "".join(line.replace("SPC1    1", "SPC1    2") + "\n" for line in cards.splitlines() if line.startswith("SPC1"))
         deck = self.place / "cases.dat"
@@ -127,11 +127,11 @@ class Edits(Case):
         self.check(LINES, 1)
 
     def test_ties(self):
-        """MPC and MPCADD with springs (CELAS1); an RBE2 that rotates under a MOMENT, held there or not, with a spring (CELAS2)."""
+        """MPC and MPCADD with springs (CELAS1); an RBE2 that rotates under a MOMENT, fixed there or not, with a spring (CELAS2)."""
         for name, case, held in (("bolt", "MPC = 3\nSPC = 1\nLOAD = 1\n", "SPC1,1,1,5,10,15,26,32\n"), ("tilting_platen", "LOAD = 2\n", ""), ("tilting_platen", "LOAD = 2\n", "SPC1,1,6,33\n")):
             with self.subTest(name + held):
                 cards = (ROOT / f"input/{name}/{name}.dat").read_text().split("BEGIN BULK\n")[1]
-                cards = re.sub("(?m)^(MAT1 .*)0.0$", r"\g<1>0.3", re.sub("(?m)^(FORCE   2 .* 10000. +)0.0", r"\g<1>0.2", cards))   # no column is noise
+                cards = re.sub("(?m)^(MAT1 .*)0.0$", r"\g<1>0.3", re.sub("(?m)^(FORCE   2 .* 10000. +)0.0", r"\g<1>0.2", cards))   # no column is only noise
                 deck = self.place / f"{name}.dat"
                 deck.write_text(f"{case}BEGIN BULK\n{held}" + (cards.replace("SUPORT  33      6\n", "") if held else cards))
                 self.check(deck, 1)
@@ -141,7 +141,7 @@ class Edits(Case):
 
 class Joined(Case):
     def test_gaps_and_bodies_but_for_rounding(self):
-        """Joined bodies leave gaps of pairs in contact that are 5e-13 of the displacements, and forces on bodies that cancel but for rounding."""
+        """Joined bodies give gaps of pairs in contact of 5e-13 of the displacements, and forces on bodies that cancel within rounding."""
         for name in ("lost_on_a_travel.dat", "slide_rot0p001.bdf"):
             deck = self.place / name
             deck.write_text((ROOT / "tests/found" / name).read_text().replace("BEGIN BULK\n", "BEGIN BULK\nPARAM,RULE,JOINED\n", 1))
@@ -155,7 +155,7 @@ class Joined(Case):
 
 
 class Wholesale(Case):
-    """What a single cell is not."""
+    """Faults of more than a single cell."""
 
     def setUp(self):
         super().setUp()
@@ -194,7 +194,7 @@ class Wholesale(Case):
                    r"(?m)^status +valid +not certified  WRONG$")
 
     def test_what_later_versions_add(self):
-        """Columns and keys that are not known here are named, and are no faults."""
+        """Unknown columns and keys are named, and are no faults."""
         def widened(rows):
             return [[*rows[0], "largest_stress"]] + [[*row, "1.5"] for row in rows[1:]]
         rows = self.rows(HERTZ, "elements")

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""read_vtu.py plain|meshio|pyvista: what a reader finds in each .vtu file that a line of standard input names, as a line of JSON:
-{points, cells, point_data, cell_data, field_data}. A cell is [VTK's number of its kind, points]. `plain` needs nothing but Python, and is strict.
+"""read_vtu.py plain|meshio|pyvista: content of each .vtu file that a line of standard input names, as a line of JSON:
+{points, cells, point_data, cell_data, field_data}. A cell is [VTK's number of its type, points]. `plain` needs only Python, and is strict.
 """
 import base64
 import json

@@ -1,4 +1,4 @@
-"""tools/paraview: pictures in which nothing lies on anything else, and the words about what it cannot draw. Status 77: no ParaView."""
+"""tools/paraview: pictures without overlapping items, and messages about decks that it cannot draw. Status 77: no ParaView."""
 import pathlib
 import shutil
 import subprocess
@@ -32,7 +32,7 @@ class Pictures(unittest.TestCase):
         return imread(self.place / name)[:, :, :3]
 
     def test_whole(self):
-        """Rows between body and scales of colours, and between body and heading, are white."""
+        """Rows between body and colour scales, and between body and heading, are white."""
         picture = self.drawn("blocks.paraview.png", DECK, "--scale", "20")
         self.assertEqual((440, 550, 3), picture.shape)
         inked = (picture.min(axis=2) < WHITE).any(axis=1)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""test_vtk.py PROGRAM [meshio|pyvista]: the files that --vtk writes hold what the tables hold, value by value.
+"""test_vtk.py PROGRAM [meshio|pyvista]: the files of --vtk have the values of the tables.
 
 They are read by the strict reader of read_vtu.py, or by that package (tests/in_venv vtk).
 """
@@ -21,7 +21,7 @@ from deck import ids, read  # noqa: E402
 PROGRAM, READER = None, "plain"
 INPUT = ROOT / "input"
 VERTEX, LINE = 1, 3
-#: VTK's kind, and the places of corners and of the nodes between them on the card.
+#: VTK's type, and the positions of corners and of mid-side nodes on the card.
 KINDS = {"CTRIA3": (5, [0, 1, 2], []), "CTRAX3": (5, [0, 1, 2], []), "CQUAD4": (9, [0, 1, 2, 3], []),
          "CTRIA6": (22, [0, 1, 2], [3, 4, 5]), "CTRAX6": (22, [0, 2, 4], [1, 3, 5])}
 #: A square in a corner, pressed into it from both free sides.
@@ -56,7 +56,7 @@ ENDDATA
 
 
 def sides(corners, middles):
-    """Sides of an element, whatever its turning sense: their ends and what is between."""
+    """Edges of an element, for either direction: their ends and the mid-side nodes."""
     return {(frozenset(ends), middle) for *ends, middle in zip(corners, corners[1:] + corners[:1], middles or [0] * len(corners))}
 
 
@@ -79,11 +79,11 @@ class Case(unittest.TestCase):
 
 
 class Values(Case):
-    """One deck of each kind of element, of rings, of contact by CGAP and by lines, with RBE2, and without contact."""
+    """One deck of each element type, axisymmetric, with contact by CGAP and by lines, with RBE2, and without contact."""
 
     @classmethod
     def setUpClass(cls):
-        """One process reads all files: to load a package takes longer than to read them."""
+        """One process reads all files: loading a package takes longer than reading them."""
         cls.errors = tempfile.TemporaryFile("w+")
         cls.addClassCleanup(cls.errors.close)
         cls.reader = subprocess.Popen([sys.executable, "-W", "error", HERE / "read_vtu.py", READER], stdin=subprocess.PIPE,
@@ -91,7 +91,7 @@ class Values(Case):
         cls.addClassCleanup(cls.reader.communicate)
 
     def grids(self, *names):
-        """What the reader finds; it must have nothing to complain of."""
+        """Content found by the reader, which must not complain."""
         found = []
         for name in names:
             self.reader.stdin.write(f"{self.directory / name}\n")
@@ -121,7 +121,7 @@ class Values(Case):
         return [float(self.nodes[node][column]) for column in columns]
 
     def check_cells(self, grid, rows):
-        """Elements in the order of their table, their nodes as the cards say, counter-clockwise."""
+        """Elements in the order of their table, their nodes in the order of the cards, counter-clockwise."""
         cards = {int(card[1]): card for name in KINDS for card in self.deck.of(name)}
         material = {int(card[1]): int(card[2]) for name in ("PSHELL", "PSOLID") for card in self.deck.of(name)}
         data = grid["cell_data"]
@@ -144,7 +144,7 @@ class Values(Case):
         self.assertEqual([int(row["state"] == "plastic") for row in rows], data["yielded"])
 
     def check_points(self, grid):
-        """Nodes of elements in the order of their table; every contact force has its counterforce."""
+        """Nodes of elements in the order of their table; every contact force has a reaction."""
         data = grid["point_data"]
         used = {data["node_id"][point] for _, points in grid["cells"] for point in points}
         self.assertEqual([node for node in self.nodes if node in used], data["node_id"])
@@ -174,7 +174,7 @@ class Values(Case):
             self.assertGreater(sum(math.hypot(*force[node]) for node in masters), 0.1 * scale)
 
     def check_pairs(self, grid, zones):
-        """Pairs in the order of their table, at B, or at A where B has no elements."""
+        """Pairs in the order of their table, at B, or at A if B has no elements."""
         data, elements = grid["point_data"], {int(n) for name in KINDS for card in self.deck.of(name) for n in card[3:9] if n}
         self.assertEqual(len(self.pairs), len(grid["points"]))
         for name, column in (("pair_id", "pair"), ("node_a", "ga"), ("node_b", "gb")):
@@ -198,7 +198,7 @@ class Values(Case):
         self.assertLessEqual(set(data["zone"]), set(range(len(zones) + 1)))
 
     def check_lines(self, grid, whole):
-        """Lines follow sides of elements, each once, or lead to a node of another body that stands on one; every pair is on a line,
+        """Lines follow edges of elements, each once, or lead to a node of another body on one; every pair is on a line,
         or a vertex."""
         along, body = set(), {}
         for _, points in whole["cells"]:
@@ -247,7 +247,7 @@ class Values(Case):
         self.check(INPUT / "one_element/one_element.dat")
 
     def test_a_limit_load(self):
-        """What was carried at last is shown, and said to be no answer."""
+        """The last valid load step is shown, and marked as no answer."""
         self.check(INPUT / "faults/punch_beyond.dat", status=1)
 
     def test_nodes_that_nothing_uses(self):
@@ -267,7 +267,7 @@ class Values(Case):
         self.assertEqual(1, sum(kind == VERTEX for kind, _ in contact["cells"]))
 
     def test_a_line_round_a_corner(self):
-        """The node at the corner has a pair on either face: each line has the pairs of its own."""
+        """The node at the corner has a pair on either face: each line has its own pairs."""
         deck = self.directory / "corner.dat"
         deck.write_text(CORNER)
         _, contact = self.check(deck)
