@@ -170,7 +170,7 @@ def differences(old, new, relative):
 
 
 def worst_of(deck, old, new, relative):
-    """Largest difference of a deck, values before estimates; None if there is none."""
+    """Largest difference of a deck, values before estimates; None if all are equal."""
     if not (old and new):
         return (2, float("inf")), f"deck {deck}, only in the {'first' if old else 'second'} folder"
     exact = "summary" in old and "summary" in new

@@ -104,7 +104,7 @@ def main():
     parser.add_argument("program")
     parser.add_argument("sets", nargs="*", metavar="SET", default=["tuned", "second", "fresh", "third", "unseen"],
                         help="tuned, second, fresh, third, unseen; all if none is named")
-    parser.add_argument("--every", type=int, default=1, help="of each set only every N-th scene")
+    parser.add_argument("--every", type=int, default=1, help="only every N-th model of each set")
     parser.add_argument("-v", action="store_true", dest="aloud")
     options = parser.parse_args()
     faults = []

@@ -151,7 +151,7 @@ def main():
     parser.add_argument("program")
     parser.add_argument("first", type=int)
     parser.add_argument("count", type=int)
-    parser.add_argument("--meshes", type=int, default=2, help="of each kind of element, that a scene is solved on (%(default)s)")
+    parser.add_argument("--meshes", type=int, default=2, help="meshes of each element type for each model (%(default)s)")
     parser.add_argument("--known", type=pathlib.Path)
     parser.add_argument("--figures", type=pathlib.Path)
     options = parser.parse_args()

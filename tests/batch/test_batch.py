@@ -408,7 +408,7 @@ class Resumed(Case):
         os.utime(self.fake)
         self.assertEqual(["c_rejected.dat", "d_segfault.dat"], self.again(1))
         with open(self.fake, "a") as file:
-            file.write("# built anew\n")
+            file.write("# built again\n")
         self.assertEqual(5, len(self.again(1)))
 
     def test_without_resume_all_run(self):

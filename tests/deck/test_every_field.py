@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Check that every field of every card, every PARAM and every statement of case control changes the tables, is noted, or is an error.
+"""Check that every field of every card, every PARAM and every statement of case control changes the tables, gives a note, or is an error.
 
 The catalogue (`epcont --cards`) is compared with the changes below, so that a new field needs one here. All decks run in one process."""
 import os

@@ -144,7 +144,7 @@ class Counts(Extremes):
     def setUp(self):
         """With a BLAS that allows threads, if OpenMP is built in: otherwise always one."""
         if self.most(stack(), OMP_NUM_THREADS="2") == 1:
-            self.skipTest("one thread: built without OpenMP, or a BLAS that does not bear more")
+            self.skipTest("one thread: built without OpenMP, or a BLAS that does not allow more")
 
     def test_as_many_as_are_granted(self):
         for count in (1, 2, 3):

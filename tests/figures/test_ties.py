@@ -2,7 +2,7 @@
 """Platens that rotate (RBE2), equations (MPC) and springs (CELAS) compared with closed forms of beams, and the messages for invalid ones."""
 import unittest
 
-import scenes  # noqa: F401  (the path to scene)
+import scenes  # noqa: F401  (adds the folder of scene.py to the path)
 
 import scene
 

@@ -7,7 +7,7 @@ import pathlib
 import re
 import unittest
 
-import scenes  # noqa: F401  (the path to scene)
+import scenes  # noqa: F401  (adds the folder of scene.py to the path)
 
 import scene
 

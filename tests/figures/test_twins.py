@@ -22,7 +22,7 @@ from tables import rows, summary  # noqa: E402
 SCENES = (("nose_in_groove", 0, "two pairs at the tip: which is the neighbour of the next, and which belong to the zone"),
           ("nose_in_groove", 2, "rounding in the coordinates of straight flanks was waves as high as the tip"),
           ("shrink_fit", 0, "a zone that goes all around, cut where the deck begins it"),
-          ("concave_corner", 2, "of the nodes beside a corner the first, which may be held, told how a body gives way"))
+          ("concave_corner", 2, "the first of the nodes beside a corner, which may be fixed, gave the compliance of a body"))
 NEAR = 1e-5   # relative rounding of a value
 
 

@@ -326,7 +326,7 @@ Physical Curve("under") = {5};  Physical Curve("top") = {7};  Physical Curve("wa
                 self.assertEqual(self.said(target=target), (3, f"tools/deck: {said}\n"))
         run = subprocess.run([sys.executable, "-m", "from_gmsh", "other.toml"], cwd=self.place, capture_output=True, text=True,
                              env={**os.environ, "PYTHONPATH": str(TOOLS)})
-        self.assertEqual(run.stderr, "other.toml: scene: there is no such file\n  give one of the TOML files beside it: scene.toml\nother.toml: 1 error, no deck written\n")
+        self.assertEqual(run.stderr, "other.toml: model file: there is no such file\n  give one of the TOML files beside it: scene.toml\nother.toml: 1 error, no deck written\n")
 
     def test_one_for_another(self):
         """A drawing or a model file instead of a deck, and vice versa."""

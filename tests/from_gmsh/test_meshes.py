@@ -25,7 +25,7 @@ for order in (1, 2):
         gmsh.write(f"{version}_{binary}_{order}.msh")
     gmsh.finalize()
 """
-ORDERS = "lines and surfaces of one order in two.msh, as Gmsh makes them by Mesh.ElementOrder"
+ORDERS = "give lines and surfaces the same order in two.msh (Mesh.ElementOrder)"
 LINES = {"[[contact]] slave": ("under", "(0, 2), (1, 2)"), "[[contact]] master": ("face", "(2, 2), (1, 2)"),
          "[support.floor]": ("floor", "(0, 0), (1, 0)"), "[support.wall]": ("wall", "(0, 2), (0, 1)"),
          "[load.top] pressure": ("top", "(2, 4), (1, 4)")}
@@ -86,7 +86,7 @@ class Meshes(unittest.TestCase):
         else:
             (self.place / name).write_bytes(mesh)
         run = deck("scene.toml", cwd=self.place)
-        lines = [line for line in (run.stdout + run.stderr).splitlines() if "is used by nothing" not in line]
+        lines = [line for line in (run.stdout + run.stderr).splitlines() if "is not used" not in line]
         files = [self.place / f"scene{suffix}" for suffix in (".dat", ".mesh.bdf")]
         return run.returncode, lines, [file.read_text() if file.exists() else None for file in files]
 
@@ -112,39 +112,39 @@ class Meshes(unittest.TestCase):
         text = (self.meshes / "2.2_0_2.msh").read_text()
         text = changed(text, lambda f: [f[0], "1", *f[2:7]] if f[1] == "8" else f)
         self.refused([part for where, (name, place) in LINES.items()
-                      for part in (f"{where}: '{name}' has a side of two nodes along six-node triangles, at {place}", ORDERS)], text)
+                      for part in (f"{where}: '{name}' has an edge of two nodes on six-node triangles, at {place}", ORDERS)], text)
 
     def test_lines_with_middle_nodes_of_their_own(self):
         text = (self.meshes / "2.2_0_2.msh").read_text()
         text = changed(text, lambda f: [f[0], "2", *f[2:8]] if f[1] == "9" else f)
         self.refused([part for where, (name, place) in LINES.items()
-                      for part in (f"{where}: '{name}' has a side of three nodes along elements without that middle node, at {place}", ORDERS)], text)
+                      for part in (f"{where}: '{name}' has an edge of three nodes on elements without mid-side nodes, at {place}", ORDERS)], text)
 
     def test_a_line_across_elements(self):
         text = changed((self.meshes / "2.2_0_1.msh").read_text(), lambda f: [*f[:5], "1", "3"] if f[3:5] == ["3", "1"] else f)
-        self.refused(["[support.floor]: 'floor' has a side of no element, at (0, 0), (2, 2)", "a line along the sides of the elements"], text)
+        self.refused(["[support.floor]: 'floor' has an edge that no element has, at (0, 0), (2, 2)", "draw the line along element edges"], text)
 
     def test_orders_glued(self):
         toml = TOML.replace('contact = [{ slave = "under", master = "face" }]', "").replace("wall.x = 0", "floor.x = 0").replace('[free]\ncorner = "y"', "")
-        self.refused(["[body]: elements with and without middle nodes have a common side in two.msh, at (2, 2), (0, 2) (above, below)",
-                      "one order for bodies that are joined (Mesh.ElementOrder)"], GLUED, toml=toml)
+        self.refused(["[body]: elements with and without mid-side nodes have a common edge in two.msh, at (2, 2), (0, 2) (above, below)",
+                      "use one element order for joined bodies (Mesh.ElementOrder)"], GLUED, toml=toml)
 
     def test_one_number_for_all_curves(self):
         """As other programs write MSH 2: the groups differ, the curve does not."""
         text = changed((self.meshes / "2.2_0_1.msh").read_text(), lambda f: [*f[:4], "1", *f[5:]] if f[1] == "1" else f)
         groups = "floor, face, under, top, wall, roof"
-        right = "a number of its own for each curve and surface, the second tag of its elements in MSH 2, such as Gmsh itself writes; or MSH 4.1"
+        right = "give each curve and surface its own number, the second tag of its elements in MSH 2, as Gmsh itself writes it; or use MSH 4.1"
         self.refused([f"mesh: curve 1 of two.msh is in the groups {groups}, but not all of its elements are in all of them", right], text)
 
     def test_a_drawing_that_ends_gmsh(self):
         for end in ("Exit;\n", "If (1 > 0)\n  Exit;\nEndIf\n"):
-            self.refused(["mesh: two.geo ends Gmsh before there is a mesh (exit status 0)", "a drawing that meshes in Gmsh itself, without Exit;"],
+            self.refused(["mesh: two.geo ends Gmsh before the mesh is complete (exit status 0)", "correct the drawing until Gmsh itself meshes it, without Exit;"],
                          GEO + end, name="two.geo")
 
     def test_pressures_on_one_side(self):
         status, lines, files = self.made(TWICE, name="two.geo", toml=TOML.replace("top.pressure = 10.0", "top.pressure = 10.0\nroof.pressure = 5.0"))
         self.assertEqual(status, 0, lines)
-        self.assertIn("scene.toml: note: [load.roof] pressure: presses sides that [load.top] presses, too: the pressures are added", lines)
+        self.assertIn("scene.toml: note: [load.roof] pressure: acts on edges of [load.top] as well: the pressures are added", lines)
         self.assertEqual(sum(line.startswith("PLOADX1") for line in files[0].splitlines()), 6)
 
     def test_a_scene_of_windows(self):

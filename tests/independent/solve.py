@@ -185,7 +185,7 @@ class Problem:
         raise NoEquilibrium("a body moves away, or springs change the set of pairs")
 
     def without_springs(self, touching):
-        """The answer from a set that is nearly correct; None if there is none."""
+        """The answer from a set that is nearly correct; None if this set gives none."""
         for _ in range(50):
             exact = self.solve(touching)
             if exact is None:

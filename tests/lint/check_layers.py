@@ -59,7 +59,7 @@ def check_lengths(lines):
     """Check that procedures, with their internal procedures, are short."""
     for name, first, last in procedures(lines):
         if last - first > PROCEDURE_LINES:
-            yield first + 1, f"{name} has {last - first} lines: at most {PROCEDURE_LINES} would be right"
+            yield first + 1, f"{name} has {last - first} lines: shorten it to {PROCEDURE_LINES}"
 
 
 def check_arguments(lines):
@@ -84,7 +84,7 @@ def check_shape(sources):
     lengths = sorted(last - first for lines in sources for _, first, last in procedures(lines))
     middle, most = lengths[len(lengths) // 2], lengths[int(0.9 * len(lengths))]
     if middle > MEDIAN or most > MOST:
-        yield f"half of the procedures have up to {middle} lines, 90 % up to {most}: {MEDIAN} and {MOST} would be right"
+        yield f"half of the procedures have up to {middle} lines, 90 % up to {most}: shorten them to {MEDIAN} and {MOST}"
 
 
 def check_habits(lines):
@@ -142,7 +142,7 @@ def check_public(sources):
                 yield path, n + 1, f"a public procedure {name} is in {first[name].parent.name} too"
         scenes += [(path, n, line) for n, line in enumerate(lines, 1) if re.match(r"\s*type\s*(,.*)?::\s*\w*scene", line)]
     for path, n, line in scenes[1:]:
-        yield path, n, f"another type of a scene: {line.split('::')[1].strip()}"
+        yield path, n, f"another type named after `scene`, rename it: {line.split('::')[1].strip()}"
 
 
 def check_asserts(lines):
@@ -177,7 +177,7 @@ def check_date(root):
         return
     changed = last_change(root)
     if changed and date < changed:
-        yield 1, f"program_date {date}: the manual page was changed on {changed}, which would be right"
+        yield 1, f"program_date {date}: set it to {changed}, the last change of the manual page"
 
 
 def last_change(root):

@@ -2,10 +2,14 @@
 """Check the words of documents, comments and messages: standard terms, and sentences that are read once.
 
 Prints `file:line: fault` for each fault; exit status 1 if there is any. Code, file names and text between backquotes are not checked.
+Comments and messages are those of Fortran (.f90, .pf), Python, shell and CMake in src, tests and tools. A message is a string that has a blank.
 """
+import ast
+import io
 import pathlib
 import re
 import sys
+import tokenize
 
 #: Retired words and what to write instead.
 RETIRED = {
@@ -23,8 +27,13 @@ INSTEAD = list(RETIRED.values())
 MOST_WORDS = 40
 #: Documents that are generated, or quote old texts.
 GENERATED = {"tools/benchmark/results.md", "tools/tradeoff.md"}
-#: Formulas, lists of names and quotations for which the rule makes no sense: (file, part of the line).
-EXCEPTIONS = set()
+#: (file or folder, part of the line): names and quotations to which the list does not apply.
+EXCEPTIONS = {
+    ("tests/lint/check_words.py", ""),   # the list itself
+    ("tools/scenes/", ""),               # heads of the decks in input, whose bytes are kept
+    ("tools/decks", "tools/decks SCENE"), ("tools/tradeoffs.py", "scene element size")}   # identifiers
+FILE_NAME = re.compile(r"\b\w+(?:\.\w+)*\.(?:py|toml|dat|geo|bdf)\b")
+STRING = re.compile(r"'[^']*'|\"[^\"]*\"")
 SENTENCE_END = re.compile(r"(?<=[.!?:;])\s+(?=[A-Z`*(\[0-9])")
 
 
@@ -49,8 +58,8 @@ def paragraphs(text):
 
 
 def plain(text):
-    """Without what stands between backquotes, and addresses of links."""
-    return re.sub(r"\]\([^)]*\)", "]", re.sub(r"`[^`]*`", "X", text))
+    """Remove text between backquotes, addresses of links, and file names."""
+    return FILE_NAME.sub("X", re.sub(r"\]\([^)]*\)", "]", re.sub(r"`[^`]*`", "X", text)))
 
 
 def retired(text):
@@ -58,30 +67,56 @@ def retired(text):
         yield f"`{found[0]}`: write {INSTEAD[int(found.lastgroup[1:])]}"
 
 
+def is_excused(name, part):
+    return any((name == place or place.endswith("/") and name.startswith(place)) and excused in part for place, excused in EXCEPTIONS)
+
+
 def check_document(name, text):
     for number, part in paragraphs(text):
         for fault in retired(part):
-            if not any(name == file and excused in part for file, excused in EXCEPTIONS):
+            if not is_excused(name, part):
                 yield number, fault
         for sentence in SENTENCE_END.split(plain(part)):
             if len(sentence.split()) > MOST_WORDS:
                 yield number, f"a sentence of {len(sentence.split())} words: `{sentence[:60]}...`"
 
 
-def check_comments(text):
-    """Comments of Fortran sources, without code between backquotes."""
+def fortran_texts(text):
+    """(line number, text) of each comment and string."""
     for number, line in enumerate(text.splitlines(), 1):
-        for fault in retired(re.sub(r"'[^']*'|\"[^\"]*\"", "", line).partition("!")[2]):
-            yield number, fault
-
-
-def check_messages(text):
-    """Strings of Fortran sources that have a blank: sentences."""
-    for number, line in enumerate(text.splitlines(), 1):
+        yield number, STRING.sub("", line).partition("!")[2]
         if not line.lstrip().startswith("!"):
-            for string in re.findall(r"'([^']*)'", line):
-                if " " in string.strip():
-                    yield from ((number, fault) for fault in retired(string))
+            yield from ((number, found[0][1:-1]) for found in STRING.finditer(line) if " " in found[0].strip("' \""))
+
+
+def script_texts(text):
+    """(line number, text) of each comment and string of shell or CMake."""
+    for number, line in enumerate(text.splitlines(), 1):
+        yield number, (re.search(r"(?:^|\s)#\s(.*)", line) or [""] * 2)[1]
+        if not line.lstrip().startswith("#"):
+            yield from ((number, found[0][1:-1]) for found in STRING.finditer(line) if " " in found[0].strip("' \""))
+
+
+def python_texts(text):
+    """(line number, text) of each comment, docstring and string."""
+    for token in tokenize.generate_tokens(io.StringIO(text).readline):
+        if token.type == tokenize.COMMENT:
+            yield token.start[0], token.string
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.Constant) and isinstance(node.value, str) and " " in node.value.strip():
+            yield from enumerate(node.value.split("\n"), node.lineno)
+
+
+def texts(path):
+    """(line number, text) of each comment and message of a file; none if it is neither source nor script."""
+    reader = READERS.get(path.suffix if path.name != "CMakeLists.txt" else ".cmake")
+    if reader or not path.suffix:
+        text = path.read_text(encoding="utf-8")
+        reader = reader or (python_texts if "python" in text.partition("\n")[0] else script_texts)
+        yield from reader(text)
+
+
+READERS = {".f90": fortran_texts, ".pf": fortran_texts, ".py": python_texts, ".sh": script_texts, ".cmake": script_texts}
 
 
 def main(top):
@@ -90,9 +125,9 @@ def main(top):
         name = page.relative_to(top).as_posix()
         if name not in GENERATED and not name.startswith(("build/", ".")):
             faults += [(name, *fault) for fault in check_document(name, page.read_text(encoding="utf-8"))]
-    for source in sorted((top / "src").rglob("*.f90")):
-        text = source.read_text(encoding="utf-8")
-        faults += [(source.relative_to(top).as_posix(), *fault) for check in (check_comments, check_messages) for fault in check(text)]
+    for source in sorted(path for folder in ("src", "tests", "tools") for path in (top / folder).rglob("*") if path.is_file()):
+        name = source.relative_to(top).as_posix()
+        faults += [(name, number, fault) for number, part in texts(source) for fault in retired(part) if not is_excused(name, part)]
     for name, number, fault in faults:
         print(f"{name}:{number}: {fault}")
     return 1 if faults else 0

@@ -46,7 +46,7 @@ def pressures(mesh, touch, force):
 
 
 class Program:
-    """A program and a setting; `command` in a directory, `answer` as (p_max, approach), or None if there is none."""
+    """A program and a setting; `command` in a directory, `answer` as (p_max, approach), or None."""
 
     def __init__(self, name, setting, command, answer):
         self.name, self.setting, self.command, self.read = name, setting, command, answer

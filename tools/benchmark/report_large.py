@@ -33,7 +33,7 @@ def scenes(rows, version):
                       verdict(row["part"], wanted["part"], least=True) if several else "",
                       verdict(row["part"], wanted["part"]) if cases else ""])
     other = f"version {version}" if version else "none"
-    return ["### Scenes", "Whole runs: seconds of processor and of wall, peak memory in MB; medians, and ratios of the medians of each turn, "
+    return ["### Models", "Whole runs: seconds of processor and of wall, peak memory in MB; medians, and ratios of the medians of each turn, "
             f"over another epcont beside it ({other}). What was wanted and is not met stands in brackets; runs of a minute or more are made once. Status 124: not ended in 20 minutes (with `--quick` in one).",
             table(["scene", "nodes", "pairs", "bodies", "runs", "CPU, s", "wall, s", "MB", "beside, CPU s", "MB", "ratio of CPU", "of memory",
                    "times as fast on two threads, by the clock", "CPU of all load cases over one"], lines)]

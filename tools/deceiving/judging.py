@@ -39,7 +39,7 @@ class Answer:
     resultant_error: list = field(default_factory=list)
     displacement: list = field(default_factory=list)
     reaction: list = field(default_factory=list)
-    approach: dict = field(default_factory=dict)        # point in scene.free -> value, estimate
+    approach: dict = field(default_factory=dict)        # point in `scene.free` -> value, estimate
     p_max: tuple = (None, None)
     half_width: tuple = (None, None)
     pairs: int = 0
@@ -114,7 +114,7 @@ def read_zones(answer, values, path):
 
 
 def solve(program, folder, jobs, seconds):
-    """Results by name, for (name, scene, twin) run as one process, or one by one if that fails; the decks stay in the folder."""
+    """Results by name, for `(name, scene, twin)` run as one process, or one by one if that fails; the decks stay in the folder."""
     numbers = {}
     for name, scene, twin in jobs:
         text, numbers[name] = deck(scene, twin)
@@ -149,7 +149,7 @@ def off(one, other):
 
 
 def same(one, other):
-    """Fault of a rotated, mirrored, moved or renumbered twin; None if there is none."""
+    """Fault of a rotated, mirrored, moved or renumbered twin; None if it agrees."""
     if one.word != other.word:
         return f"{one.word}, twin {other.word}"
     if not one.valid:
@@ -189,7 +189,7 @@ def estimates(one, other):
 
 
 def unlike(one, other):
-    """Worst value that differs by more than allowed, as text; None if there is none."""
+    """Worst value that differs by more than allowed, as text; None if all agree."""
     name, part, beyond = max(differences(one, other), key=lambda each: each[2], default=("", 0.0, 0.0))
     return f"{name} off by {100 * part:.1f} %" if beyond > 1.0 else None
 

@@ -2,7 +2,7 @@
 
     tools/deck SCENE.toml [-o NAME.dat]
 
-NAME.dat (by default SCENE.dat beside the scene) has materials, supports, loads and contacts, and includes NAME.mesh.bdf with
+NAME.dat (by default SCENE.dat beside SCENE.toml) has materials, supports, loads and contacts, and includes NAME.mesh.bdf with
 nodes and elements. If epcont has been built, it checks the deck afterwards. input/README.md ("From Gmsh") describes the
 model file; input/from_gmsh has examples.
 

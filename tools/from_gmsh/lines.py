@@ -33,7 +33,7 @@ def chains(sides):
 
 
 def shares(sides, place, rings):
-    """Nodal forces of a force that is uniform over the edges; if axisymmetric, over their area. None if there is none."""
+    """Nodal forces of a force that is uniform over the edges; if axisymmetric, over their area. None if the area is zero."""
     found = {}
     for side in sides:
         x = [place[node] for node in side]

@@ -151,7 +151,7 @@ def text_of(path):
 
 
 def bare_point(text):
-    """Line and number of the first that begins or ends with its decimal point, as decks allow and TOML does not; None if there is none."""
+    """Line and number of the first that begins or ends with its decimal point, as decks allow and TOML does not; None if all are valid."""
     found = re.search(r"^[^#\"'\n]*?[=,\[][ \t]*([-+]?(?:\d+\.(?!\d)|\.\d+)(?:[eE][-+]?\d+)?)", text, re.MULTILINE)
     return found and (text.count("\n", 0, found.start(1)) + 1, found[1])
 
@@ -161,9 +161,9 @@ def load(path, faults):
     try:
         return tomllib.loads(text_of(path))
     except FileNotFoundError:
-        faults.add("scene", "there is no such file", f"give one of the TOML files beside it: {listed(sorted(p.name for p in path.parent.glob('*.toml')))}")
+        faults.add("model file", "there is no such file", f"give one of the TOML files beside it: {listed(sorted(p.name for p in path.parent.glob('*.toml')))}")
     except (OSError, UnicodeDecodeError) as error:
-        faults.add("scene", f"cannot be read: {error}", "save it as text in UTF-8")
+        faults.add("model file", f"cannot be read: {error}", "save it as text in UTF-8")
     except (ValueError, RecursionError) as error:   # TOMLDecodeError, or an excessive number or nesting
         bare = bare_point(text_of(path))
         if bare:

@@ -105,7 +105,7 @@ class Run:
 
 
 def fault_of_deck(run, name, tolerance):
-    """Fault in the output and files of one deck; None if there is none."""
+    """Fault in the output and files of one deck; None if they are correct."""
     word, told = run.word(name), run.told(name)
     files = {path.name[len(name):]: path.read_bytes() for path in run.out.glob(f"{name}.*")}
     for suffix, text in files.items():

@@ -1,4 +1,4 @@
-/* LAPACK's band, by reverse Cuthill-McKee: rooted at the contact equations so that they come last, or at a far end. */
+/* LAPACK's band, with reverse Cuthill-McKee: the root is at the contact equations, so that they come last, or at a far end. */
 #include "bare.h"
 #include <stdlib.h>
 #include <string.h>
@@ -23,7 +23,7 @@ static graph graph_of(const scene *s) {
     return g;
 }
 
-/* Breadth first from the first `filled` of `order`; at each equation its new neighbours by their number of neighbours. */
+/* Breadth-first search from the first `filled` of `order`; the new neighbours of each equation are sorted by their number of neighbours. */
 static void sweep(const graph *g, int n, int filled, int *order) {
     char *seen = room(n, 1);
     for (int i = 0; i < filled; i++) seen[order[i]] = 1;
@@ -45,7 +45,7 @@ static void sweep(const graph *g, int n, int filled, int *order) {
     free(seen);
 }
 
-/* Place of each equation; the half-bandwidth. */
+/* Compute the position of each equation; return the half-bandwidth. */
 static int number(const scene *s, int last, int *place) {
     graph g = graph_of(s);
     int *order = room(s->n, sizeof(int)), width = 0;
@@ -53,7 +53,7 @@ static int number(const scene *s, int last, int *place) {
         order[0] = order[k ? s->n - 1 : 0];
         sweep(&g, s->n, 1, order);
     }
-    if (last) {    /* the roots stand as in the sweep from the far end, along the contact */
+    if (last) {    /* the roots keep their order of the sweep from the far end, along the contact */
         int roots = 0;
         for (int i = 0; i < s->n; i++)
             if (s->place[order[i]] >= 0) order[roots++] = order[i];
@@ -81,7 +81,7 @@ static void from_block(const scene *s, int width, const double *band, const int 
     free(block), free(at);
 }
 
-/* F from X = L^-1 N', each column from its first entry on. */
+/* F from X = L^-1 N'; each column begins at its first entry. */
 static void from_columns(const scene *s, int width, const double *band, const int *place, double *flexibility) {
     const double one = 1.0, none = 0.0;
     const int height = width + 1, single = 1;

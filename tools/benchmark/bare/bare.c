@@ -1,4 +1,4 @@
-/* The solve part by libraries alone: bench_bare SYSTEM [--solves] [METHOD...]
+/* The solver with libraries only: bench_bare SYSTEM [--solves] [METHOD...]
 
    SYSTEM is what bench_ours writes: K in coordinates, the rows N of the pairs, gaps, motions, loads, the pairs that touch and the
    displacements. Each method orders and factors K, makes F = N K^-1 N', solves for the forces of the touching pairs (given, not
@@ -33,7 +33,7 @@ static const method METHODS[] = {
     {"CHOLMOD supernodal, METIS, forward", by_cholmod, CHOLMOD_METIS, CHOLMOD_SUPERNODAL, 0},
     {"CHOLMOD supernodal, METIS, last", by_cholmod, CHOLMOD_METIS, CHOLMOD_SUPERNODAL, 1},
     {"CHOLMOD supernodal, NESDIS, forward", by_cholmod, CHOLMOD_NESDIS, CHOLMOD_SUPERNODAL, 0},
-    {"MUMPS, AMD, last", by_mumps, 0, 0, 1},    /* its Schur complement has this ordering alone */
+    {"MUMPS, AMD, last", by_mumps, 0, 0, 1},    /* its Schur complement has only this ordering */
     {"MUMPS, AMF, entries", by_mumps, 2, 0, 0},
     {"MUMPS, SCOTCH, entries", by_mumps, 3, 0, 0},
     {"MUMPS, PORD, entries", by_mumps, 4, 0, 0},
@@ -63,7 +63,7 @@ static void *take(FILE *file, size_t count, size_t size) {
     return p;
 }
 
-/* Add up entries of the same place: then they stand by columns, and in these by rows. */
+/* Add up entries of the same position; sort them by columns, and within these by rows. */
 static void compress(scene *s) {
     int *begin = room(s->n + 2, sizeof(int)), *row = room(s->entries, sizeof(int)), filled = 0;
     double *value = room(s->entries, sizeof(double));

@@ -1,4 +1,4 @@
-/* CHOLMOD, simplicial or supernodal, by several orderings. */
+/* CHOLMOD, simplicial or supernodal, with several orderings. */
 #include "bare.h"
 #include <stdlib.h>
 #include <string.h>
@@ -17,7 +17,7 @@ static cholmod_sparse *compressed(const scene *s, cholmod_common *c) {
     return k;
 }
 
-/* Order and analyse; with the contact equations last where asked for. */
+/* Order and analyse; with the contact equations last on request. */
 static cholmod_factor *analyse(const scene *s, int ordering, int kind, int last, cholmod_sparse *k, cholmod_common *c) {
     c->supernodal = kind;
     c->final_ll = 1;
@@ -40,7 +40,7 @@ static cholmod_factor *analyse(const scene *s, int ordering, int kind, int last,
     return factor;
 }
 
-/* Block of the factor that the contact equations alone have, and where each stands in it. Nothing else follows them in the
+/* Block of the factor for the contact equations only, and the position of each in it. Nothing else follows them in the
    elimination tree, whatever it was postordered to. */
 static void take_block(const scene *s, const cholmod_factor *l, double *block, int *at) {
     const int *order = l->Perm;
@@ -91,7 +91,7 @@ static void cholmod_flexibility(const scene *s, int last, cholmod_factor *l, dou
     cholmod_free_dense(&x, c), cholmod_free_dense(&y, c), free(place);
 }
 
-/* The right-hand side of the displacements that are given. */
+/* Right-hand side of the given displacements. */
 static void multiply(const scene *s, cholmod_sparse *k, cholmod_dense *x, cholmod_common *c) {
     double one[2] = {1.0, 0.0}, none[2] = {0.0, 0.0};
     cholmod_dense *u = cholmod_allocate_dense(s->n, 1, s->n, CHOLMOD_REAL, c);
@@ -100,7 +100,7 @@ static void multiply(const scene *s, cholmod_sparse *k, cholmod_dense *x, cholmo
     cholmod_free_dense(&u, c);
 }
 
-/* Factor, F, contact, displacements: their times and the error. */
+/* Times of factor, F, contact and displacements, and the error. */
 static double cholmod_again(const scene *s, int last, cholmod_sparse *k, cholmod_factor *l, double *flexibility,
                             double *spent, cholmod_common *c) {
     double *force = room(s->pairs, sizeof(double)), begun = now(), error;

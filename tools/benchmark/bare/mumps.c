@@ -10,13 +10,13 @@ static void mumps(DMUMPS_STRUC_C *id, int job) {
     if (id->infog[0] < 0) fail("MUMPS failed");
 }
 
-/* F from the Schur complement of the contact equations; it is left factored. */
+/* F from the Schur complement of the contact equations, which stays factored. */
 static void from_complement(const scene *s, DMUMPS_STRUC_C *id, double *flexibility) {
     const int c = s->contacts;
     int *at = room(c, sizeof(int)), info = 0;
     for (int i = 0; i < c; i++) {
         at[i] = i;
-        for (int j = 0; j < i; j++) id->schur[(size_t)j * c + i] = id->schur[(size_t)i * c + j]; /* it comes by rows */
+        for (int j = 0; j < i; j++) id->schur[(size_t)j * c + i] = id->schur[(size_t)i * c + j]; /* stored by rows */
     }
     dpotrf_("L", &c, id->schur, &c, &info);
     if (info) fail("MUMPS' complement is not definite");
@@ -52,7 +52,7 @@ static void from_entries(const scene *s, DMUMPS_STRUC_C *id, double *flexibility
     free(first), free(row), free(inverse), free(full);
 }
 
-/* Factor, F, contact, displacements: their times and the error. */
+/* Times of factor, F, contact and displacements, and the error. */
 static double mumps_again(const scene *s, int last, DMUMPS_STRUC_C *id, double *flexibility, double *spent) {
     double *force = room(s->pairs, sizeof(double)), *x = room(s->n, sizeof(double)), *left = room(s->contacts, sizeof(double));
     double begun = now(), error;
