@@ -163,11 +163,11 @@ contains
       told(other) = .true.
       call found%add_warning(of_couple, model%contact%line_contact(c)%couple(1), 3, ': '// &
                              model%name_of(of_node, model%contact%row_node(i))// &
-                             ' is of its MASTER, and of the SLAVE of '// &
+                             ' belongs to its MASTER and to the SLAVE of '// &
                              model%name_of(of_couple, model%contact%line_contact(other)%couple(1))// &
-                             ': pressures beside it are off, by a quarter where both touch', &
-                             'SLAVE and MASTER of one of the two exchanged: lines that go on in each '// &
-                             'other are one contact')
+                             ': pressures beside it are wrong, by a quarter if both are in contact', &
+                             'exchange SLAVE and MASTER of one of the two: lines that continue '// &
+                             'each other are one contact')
     end do
 
   contains

@@ -101,7 +101,7 @@ class Verify(Case):
             self.refused("verify", f"{deck} out", 2, f"tools/verify: {words}")
 
     def test_tables(self):
-        self.refused("verify", "hertz44.dat folder", 2, "folder/hertz44.summary.csv: No such file or directory; epcont hertz44.dat -o folder --tables all")
+        self.refused("verify", "hertz44.dat folder", 2, "folder/hertz44.summary.csv: No such file or directory: write the tables with epcont hertz44.dat -o folder --tables all")
         self.refused("verify", "hertz44.dat empty.dat", 2, "empty.dat/hertz44.summary.csv: Not a directory")
         for table, text, words in (("nodes", BINARY, "the line is incomplete"), ("nodes", b"", "no node 1: the table is incomplete or of another deck"),
                                    ("nodes", lambda whole: b"\n".join(whole.split(b"\n")[:20]), "no node 20: "),

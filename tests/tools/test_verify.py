@@ -214,7 +214,7 @@ class Wholesale(Case):
             shutil.move(self.path(HERTZ, table), self.place / "aside")
             status, text = self.told(HERTZ)
             self.assertEqual(2, status)
-            self.assertIn(f"hertz44.{table}.csv: no such file; epcont", text)
+            self.assertIn(f"hertz44.{table}.csv: no such file: write it again with epcont", text)
             shutil.move(self.place / "aside", self.path(HERTZ, table))
 
 
