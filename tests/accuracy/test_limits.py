@@ -63,7 +63,7 @@ class Limits(unittest.TestCase):
             with self.subTest(element=element, touch=touch):
                 self.assertRegex(said("stack", element, 5.0, touch, whole=True, wide=(1.0, 1.0), deep=(2.0, 2.0)), GIVEN)
 
-    def test_held_base(self):
+    def test_fixed_base(self):
         """A base of elements whose nodes are all fixed, cut off at the symmetry line, has no corner there."""
         for element in chance.PLANE:
             with self.subTest(element=element):

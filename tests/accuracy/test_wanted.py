@@ -53,7 +53,7 @@ class Wanted(unittest.TestCase):
             self.assertIn("PARAM ACCURACY: field 3 (VALUE) is out of range\n", run.stderr)
             self.assertIn(" a real above 0.0 to below 1.0\n", run.stderr)
 
-    def test_what_accuracy_chooses(self):
+    def test_choices_of_accuracy(self):
         chosen = "  ACCURACY {}\n".format
         cases = [("hertz/hertz330_elastic", ["ACCURACY,0.1"], "0.1000 chooses nothing: no iteration, or TOL and METHOD are in the deck"),
                  ("hertz/hertz330", ["ACCURACY,0.1"], "0.1000 chooses TOL 0.01000, METHOD NEWTON"),

@@ -33,7 +33,7 @@ class Page(unittest.TestCase):
     def test_mandoc(self):
         self.assertEqual(("", "", 0), self.quiet("mandoc", "-T", "lint", "-W", "style"))
 
-    def test_a_fault_would_be_seen(self):
+    def test_a_fault_is_found(self):
         """The checker detects a font that is never closed and an unknown request."""
         if not shutil.which("groff"):
             self.skipTest("no groff")

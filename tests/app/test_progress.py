@@ -184,7 +184,7 @@ class Timing(Case):
         times = self.table("".join(line for line in lines if line.startswith("no_suport: ")), "no_suport")
         self.assertEqual([0.0, 0.0], times["factor"])
 
-    def test_work_shows_where_it_is(self):
+    def test_work_shows_its_layer(self):
         """A large mesh: most of the time is in the parts that grow with it, and all of it within the run."""
         deck = self.place / "large.dat"
         subprocess.run([ROOT / "tools" / "decks", "hertz", "6000", "--plastic", "-o", deck], check=True)

@@ -109,7 +109,7 @@ class Whole(Case):
         self.run_it(0, "a.dat", deck, "-o", "out")
         self.assertEqual(["bounded", "singular"], [row["p_max_is"] for row in self.table()])
 
-    def test_the_worst_figure_is_held_against_its_own_tolerance(self):
+    def test_the_worst_figure_is_relative_to_its_tolerance(self):
         deck = self.deck("a.dat", ROOT / "input" / "hertz" / "hertz44.dat")
         self.run_it(0, deck, "-o", "out")
         summary = dict(line.split(",")[:2] for line in (self.place / "out" / "a.summary.csv").read_text().splitlines())
@@ -235,7 +235,7 @@ class Lists(Case):
         self.assertIn("give a working epcont", self.run_it(3, "a.dat", "-o", "out", "--program", "/bin/true").stderr)
         self.assertIn("cannot be written", self.run_it(3, "a.dat", "-o", "a.dat").stderr)
 
-    def test_a_plan_that_is_none(self):
+    def test_an_invalid_plan(self):
         (self.place / "out" / ".batch").mkdir(parents=True)
         for text in ("{}", "[]", "{\"decks\": [3]}", '{"decks": [["a.dat", "a", {"x": "1"}, 9]]}', "\0"):
             (self.place / "out" / ".batch" / "plan.json").write_text(text)
@@ -374,7 +374,7 @@ class Resumed(Case):
         (self.place / "list").write_text("a.dat\nb.dat\nc_rejected.dat\nd_segfault.dat\ne.dat\n")
         self.first = self.again(1)
 
-    def test_what_has_a_listing_is_kept(self):
+    def test_decks_with_a_listing_are_kept(self):
         self.assertEqual(["a.dat", "b.dat", "c_rejected.dat", "d_segfault.dat", "e.dat"], self.first)
         before = self.table()
         self.assertEqual(["c_rejected.dat", "d_segfault.dat"], self.again(1))
@@ -468,7 +468,7 @@ class StoppedBatch(Case):
                 self.assertEqual(sorted(set(words) - set(ended)), self.calls())
                 (self.place / "calm").unlink()
 
-    def test_sigkill_leaves_a_whole_table_and_what_ended(self):
+    def test_sigkill_leaves_a_whole_table_and_finished_decks(self):
         """All decks except the hanging one have ended; the batch is killed immediately, its children are not."""
         process = self.begin("-j", "4")
         until = time.monotonic() + 60
@@ -527,7 +527,7 @@ class StandIn(Case):
         run = self.run_it(status, "--list", "list", "-o", "out", "--slurm", "--program", self.fake, *arguments, env=self.environment)
         return run, (self.place / "submitted").read_text().splitlines()
 
-    def test_what_is_killed_is_submitted_again_and_named_at_last(self):
+    def test_killed_tasks_are_submitted_again_then_reported(self):
         names = [f"d{k}.dat" for k in range(5)] + ["killed.dat", "rejected.dat"] + [f"e{k}.dat" for k in range(5)]
         self.decks(*names)
         run, submitted = self.submit(1, names, "--chunk", "4", "--partition=short", "--mem=2G", "-j", "2")

@@ -91,7 +91,7 @@ class Fields(Sweep):
 
 
 class Refusals(Sweep):
-    def test_what_does_not_fit(self):
+    def test_values_that_do_not_fit(self):
         line = SMALL_FIELD.splitlines().index("MAT1    1       %E%             %nu%") + 1
         for value, words in (("1.23456e-5", "8 columns hold only 1.2346-5"), ("-1.23456789e-12", "8 columns hold only -1.23-12"), ("x", "not a real: write it as"),
                              ("1e400", "out of the range of reals: give a value between"), ("1.5e400", "out of the range of reals"), ("\uff12.5", "not a real: write it as"), ("\u0663.0", "not a real: write it as"),
@@ -155,7 +155,7 @@ class Refusals(Sweep):
             with self.subTest(table):
                 self.refused(SMALL_FIELD, table, words)
 
-    def test_what_is_no_text(self):
+    def test_files_that_are_not_text(self):
         (self.place / "s.in").write_text(SMALL_FIELD)
         (self.place / "t.csv").write_bytes(b"E,nu\n1.,.3\n\xff\xfe,.3\n")
         self.assertIn("t.csv:3: not UTF-8", self.run_it(3, "s.in", "t.csv", "-o", "set", tool="sweep").stderr)
@@ -177,7 +177,7 @@ class Sets(Sweep):
         self.assertIn("mine.dat exists, and not from an earlier sweep", self.sweep(3, SMALL_FIELD, "deck,E,nu\nmine,3.,.3\n").stderr)
         self.assertEqual("mine", (self.place / "set" / "mine.dat").read_text())
 
-    def test_a_sweep_csv_of_somebody_else(self):
+    def test_a_sweep_csv_of_another_program(self):
         (self.place / "set").mkdir()
         for text in (b"\xff\xfe\0", b"", b"name\nx\n"):
             (self.place / "set" / "sweep.csv").write_bytes(text)

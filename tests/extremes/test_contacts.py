@@ -180,7 +180,7 @@ class Many(Extremes):
 
 
 class Walls(Extremes):
-    def test_pair_between_held_nodes(self):
+    def test_pair_between_fixed_nodes(self):
         """It can neither open nor close, with a message; closed by its supports it carries nothing."""
         for gap in (0.0, 0.5, 1e-60):
             result = self.valid(held_pair(gap))

@@ -187,7 +187,7 @@ class Curves(Extremes):
             self.assertEqual("scene.dat: warning: strained beyond the last point of the table; its last slope is used: element 1 and 1 more\n",
                              beyond.message)
 
-    def test_flat_curve(self):
+    def test_perfectly_plastic(self):
         """Below the yield stress it carries the load; at it and above, the strain is undetermined."""
         flat = [(0.001, 1.0), (1.0, 1.0)]
         self.near(self.valid(yielding(flat, 0.999999)).approach, [-0.000999999]*2)

@@ -78,7 +78,7 @@ class Scales(Extremes):
     def test_so_far_that_nothing_is_left(self):
         self.refused(punch(place=(1e17, 0.0)), 2, "CQUAD4|GRID")
 
-    def test_numbers_that_are_none(self):
+    def test_not_a_number(self):
         deck = column()
         for written, cause in (("1.0e-310", "too small|too near|nearer"), ("4.9e-324", "too small|too near|nearer"),
                                ("1.0e309", "too large|beyond"), ("nan", "not a real"), ("inf", "not a real")):

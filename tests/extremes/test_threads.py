@@ -151,7 +151,7 @@ class Counts(Extremes):
             self.assertEqual(count, self.most(stack(), OMP_NUM_THREADS=str(count)))
         self.assertEqual(2, self.most(stack(), OMP_NUM_THREADS="2,4"))
 
-    def test_one_where_nothing_is_said(self):
+    def test_one_by_default(self):
         self.assertEqual(1, self.most(stack()))
         for words in ("", "0", "many", "-2"):
             self.assertEqual(1, self.most(stack(), OMP_NUM_THREADS=words))

@@ -108,7 +108,7 @@ class Choices(Case):
         deck.write_text((SMALL.parent / "hertz44_paper.dat").read_text().replace(old, new))
         return self.run_it(deck, "-o", self.directory, *ALL)
 
-    def test_the_original_says_what_it_is_off_by(self):
+    def test_the_original_reports_its_error(self):
         self.check(self.run_with("", ""), 0, "formula (2-4) (MUP PAPER) is an approximation: stresses beyond yield are up to 10 % below")
         files = self.files(self.directory)
         c, young, limit, slope = (1 - 2 * .29) / 3, 20400, 85, 15 / (.12 - 85 / 20400)
@@ -246,7 +246,7 @@ class OneRunAtATime(Case):
             self.assertEqual(run.returncode == 3, b"another run is at work" in words)
         self.assertEqual(whole, self.files(self.directory))
 
-    def test_what_is_refused_leaves_nothing(self):
+    def test_rejected_decks_leave_nothing(self):
         sound = self.deck()
         text = sound.read_text()
         for status, spoilt, options in ((2, text.replace("ENDDATA", ""), ()), (2, text.replace("MAT1", "MAT7"), ()),

@@ -19,7 +19,7 @@ def attempts(deck):
 
 class Attempts(unittest.TestCase):
 
-    def test_one_attempt_is_not_told(self):
+    def test_one_attempt_is_not_reported(self):
         self.assertEqual(attempts("input/hertz/hertz44.dat"), [])
 
     def test_nodes_that_came_near(self):

@@ -164,7 +164,7 @@ class Found(scene.Extremes):
             with self.subTest(blocks=blocks):
                 self.assertEqual(self.valid(text).message, "")
 
-    def test_estimates_of_a_mirrored_scene(self):
+    def test_estimates_of_a_mirrored_model(self):
         """If two largest pressures are equal the larger error is reported, in either order."""
         one, other = (self.valid(deck(name)).summary["mesh_error_pressure_zone_2"] for name in ("perr26", "perr26_mirror"))
         self.near(one, other, 1e-6)
@@ -192,7 +192,7 @@ class Found(scene.Extremes):
             self.assertEqual(wanted["status"], got["status"])
             self.near(float(got["force"]), float(wanted["force"]), 1e-7, scale=joined.summary["total_contact_force"])
 
-    def test_what_stands_behind_the_next_body(self):
+    def test_bodies_behind_the_next_body(self):
         """For any search distance, two strips of a spiral meet along the same stretches: the next winding behind them does not matter."""
         spiral = deck("spiral_search")
         scaled = re.sub(r"(?m)^(GRID,\d+,,)([^,]*)", lambda grid: f"{grid[1]}{1.2 * float(grid[2])!r}", spiral)

@@ -105,7 +105,7 @@ class LoadCases(unittest.TestCase):
         self.assertEqual(status, worst, name)
         return [int(row["value"]) for row in all_of_them["summary"] if row["key"] == "factorizations"]
 
-    def test_scenes(self):
+    def test_models(self):
         tables = "DISPLACEMENT = ALL\nSTRESS = ALL\n"
         for name in ["hertz/hertz44_elastic.dat", "cylinder_on_block/cylinder_on_block.dat", "layer_lines/layer_lines.dat", "roller/roller.dat",
                      "ball/ball_on_flat.dat", "off_centre/off_centre.dat"]:
@@ -193,7 +193,7 @@ class LoadCases(unittest.TestCase):
             last = run(deck)[1]["listing"].decode().splitlines()[-1]
             self.assertEqual(last, f"  wanted error of contact pressures {words}")
 
-    def test_names_that_xml_would_read(self):
+    def test_names_with_xml_characters(self):
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder) / 'a&b<"c.dat'
             path.write_text(of_factors(INPUT / "hertz/hertz44_elastic.dat", [1.0, 2.0]))

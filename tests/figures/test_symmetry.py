@@ -55,7 +55,7 @@ class Symmetry(scene.Extremes):
                     with self.subTest(kind=kind, how=how, slave=slave, pairs=pairs, flat=shape is FLAT):
                         self.half_and_whole(kind, shape, how, slave, pairs)
 
-    def test_round_punch_that_is_held(self):
+    def test_fixed_round_punch(self):
         """A rigid punch whose nodes are all fixed is also treated as half a punch by the block."""
         for kind in PLANE:
             with self.subTest(kind=kind):

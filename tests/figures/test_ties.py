@@ -45,7 +45,7 @@ class Ties(scene.Extremes):
         self.near(run.summary["moment_900"], 2e-3, 1e-8)
         self.near(run.nodes[900]["uy"], TURN * LENGTH / 2, 1e-8)
 
-    def test_place_of_the_leader(self):
+    def test_position_of_the_master_node(self):
         """A force at a master node beside the beam has a lever arm: the platen rotates, and moves the node."""
         run = self.valid(beam(f"GRID,900,,{LENGTH},3.0,0.0|{RIGHT}|SUPORT,990,1|GRID,990,,20.0,0.0,0.0|SPC1,1,2,990|"
                               "FORCE,1,900,,1.0E-3,-1.0,0.0,0.0|MOMENT,1,900,,0.0,0.0,0.0,1.0"))
@@ -153,7 +153,7 @@ class Ties(scene.Extremes):
             self.assertGreater(run.summary["plastic_elements"], 0)
             self.near(run.summary["angle_900"], runs[0].summary["angle_900"], 1e-6)
 
-    def test_what_is_refused(self):
+    def test_rejected_decks(self):
         """The exact text."""
         ring = "GRID,1,,1.0,0.0|GRID,2,,2.0,0.0|GRID,3,,1.0,1.0|CTRAX3,1,1,1,2,3|PSOLID,1,1|MAT1,1,1000.0,,0.3|SPC1,1,2,1|RBE2,9,1,12,3|" \
                "MOMENT,1,1,,1.0,0.0,0.0,1.0"

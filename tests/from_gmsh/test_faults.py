@@ -207,7 +207,7 @@ class Mistakes(unittest.TestCase):
         self.assertIn(old, text)
         return text.replace(old, new)
 
-    def test_scenes(self):
+    def test_models(self):
         for old, new, expected in SCENE:
             with self.subTest(f"{old} -> {new}"):
                 self.rejected(expected, toml=self.replaced(TOML, old, new))
@@ -241,7 +241,7 @@ Physical Curve("under") = {5};  Physical Curve("top") = {7};  Physical Curve("wa
         self.rejected(["[[contact]]: Gmsh's Coherence has glued 'above' and 'below': they share 1 node, the first at (2, 2)",
                        "give each body its own points and curves: no Coherence, no BooleanFragments, and Geometry.AutoCoherence = 0 in two.geo"], geo=geo)
 
-    def test_output_that_nobody_reads(self):
+    def test_closed_pipe(self):
         """A closed pipe ends it silently; the deck is written."""
         for name, text in (("scene.toml", TOML), ("two.geo", GEO)):
             (self.place / name).write_text(text, encoding="utf-8")

@@ -108,13 +108,13 @@ class Meshes(unittest.TestCase):
                     first = first or files
                     self.assertEqual(files, first)
 
-    def test_lines_without_middle_nodes(self):
+    def test_lines_without_mid_side_nodes(self):
         text = (self.meshes / "2.2_0_2.msh").read_text()
         text = changed(text, lambda f: [f[0], "1", *f[2:7]] if f[1] == "8" else f)
         self.refused([part for where, (name, place) in LINES.items()
                       for part in (f"{where}: '{name}' has an edge of two nodes on six-node triangles, at {place}", ORDERS)], text)
 
-    def test_lines_with_middle_nodes_of_their_own(self):
+    def test_lines_with_their_own_mid_side_nodes(self):
         text = (self.meshes / "2.2_0_2.msh").read_text()
         text = changed(text, lambda f: [f[0], "2", *f[2:8]] if f[1] == "9" else f)
         self.refused([part for where, (name, place) in LINES.items()
@@ -147,7 +147,7 @@ class Meshes(unittest.TestCase):
         self.assertIn("scene.toml: note: [load.roof] pressure: acts on edges of [load.top] as well: the pressures are added", lines)
         self.assertEqual(sum(line.startswith("PLOADX1") for line in files[0].splitlines()), 6)
 
-    def test_a_scene_of_windows(self):
+    def test_a_model_of_windows(self):
         """With a byte order mark, and lines that end in CR LF."""
         plain = self.made(GEO, name="two.geo")
         self.assertEqual(self.made(GEO.replace("\n", "\r\n"), name="two.geo", toml="\ufeff" + TOML.replace("\n", "\r\n"))[1:], plain[1:])

@@ -136,7 +136,7 @@ class Scenes(unittest.TestCase):
         self.solved(self.place / "punch.dat")
         return (self.place / "punch.lst").read_text().partition("warning: ")[2].partition("\nPLAN")[0].splitlines()
 
-    def test_what_no_mesh_mends(self):
+    def test_errors_of_every_mesh(self):
         """SEARCH is only an initial distance and cuts nothing off; displacements that are not small: valid, but with a warning."""
         def pressure():
             rows = csv.DictReader((self.place / "punch.summary.csv").read_text().splitlines())
@@ -207,7 +207,7 @@ contact = [{ slave = "rim", master = "bed" }, { slave = "rim", master = "under" 
             with self.subTest(changes):
                 self.near(self.approach(self.variant(*changes)), -0.01735714285714, 1e-9)
 
-    def test_ring_force(self):
+    def test_axisymmetric_force(self):
         """Distributed over the area of the ring: the same axial stress everywhere."""
         (self.place / "ring.geo").write_text((SCENES / "press_fit.geo").read_text() + 'Physical Curve("top") = {13};')
         text = (SCENES / "press_fit.toml").read_text().replace("press_fit.geo", "ring.geo").replace("[load]", "[load]\ntop.force = [0.0, -1e5]")

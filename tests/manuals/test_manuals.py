@@ -151,7 +151,7 @@ CONTACT
 ```
 """
 
-    def test_what_is_a_command(self):
+    def test_commands(self):
         taken = [(each.place, each.text, each.remark, each.shown) for block in run_commands.blocks("p", self.PAGE) for each in block]
         self.assertEqual(taken, [
             ("p:1", "tools/decks hertz", "", []), ("p:1", "tools/plot --help", "", ["--only"]),
@@ -163,7 +163,7 @@ CONTACT
         for name in ("README.md", "input/README.md", "input/verification.md", "input/hertz/README.md", "tests/README.md", "tools/README.md"):
             self.assertIn(name, taken)
 
-    def test_without_packages_what_needs_their_files_is_left_out(self):
+    def test_without_packages_commands_that_need_their_files_are_omitted(self):
         block = [run_commands.Command("p:1", text) for text in ("tools/run a.dat", "tools/deck s.toml -o b.dat", "tools/run b.dat")]
         self.assertEqual(run_commands.chosen(block, "plain"), block[:1])
         self.assertEqual(run_commands.chosen(block, "drawing"), block[1:])
@@ -174,7 +174,7 @@ CONTACT
         block[1].text += " c.geo"
         self.assertEqual(run_commands.chosen(block, "drawing"), block[:3])
 
-    def test_what_is_not_as_shown_is_told(self):
+    def test_differences_are_reported(self):
         for text, remark, shown, wanted in (
                 ("true", "", [], []), ("false", "not (exit status 1)", [], []), ("echo 1.5", "1.5", ["1.5"], []), ("echo > a.lst", "a.lst", [], []),
                 ("false", "", [], ["exit status 1, not 0"]), ("true", "exit status 2", [], ["exit status 0, not 2"]),
@@ -187,7 +187,7 @@ CONTACT
                 self.assertEqual(wrong, len(wanted))
                 self.assertEqual(list(pathlib.Path(place).iterdir()), [])
 
-    def test_a_kept_deck_that_is_written_over_is_told(self):
+    def test_an_overwritten_kept_deck_is_reported(self):
         with tempfile.TemporaryDirectory() as folder:
             place, told = pathlib.Path(folder), []
             deck = place / "input/hertz/hertz44.dat"

@@ -165,7 +165,7 @@ class Folders(Case):
         self.deck("new", pairs=[*PAIRS, PAIRS[1].replace("6,", "7,")])
         self.judged(1, "1 deck: 0 the same, 1 differs; worst: force of pair 7 of deck a, only in the second folder")
 
-    def test_what_is_lost_differs_and_new_figures_do_not(self):
+    def test_missing_figures_differ_and_new_ones_do_not(self):
         self.deck("old")
         self.deck("new", spring_7="1.0")
         self.judged(0, "1 deck: the same")

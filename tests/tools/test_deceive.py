@@ -65,7 +65,7 @@ class Case(common.Case):
 
 
 class Scenes(Case):
-    def test_the_finer_scene_is_the_same_scene(self):
+    def test_the_finer_model_is_the_same_model(self):
         """The same bodies, moduli, element types, loads, and lines between the same points; nine times the elements."""
         for name in FAMILIES:
             for number in range(2):
@@ -144,7 +144,7 @@ class Judging(Case):
         with tempfile.TemporaryDirectory() as folder:
             return [(fault.kind, fault.of) for fault in Judge(program, "1", 60)(*SOUND, pathlib.Path(folder)).faults]
 
-    def test_a_sound_scene_has_no_faults(self):
+    def test_a_valid_model_has_no_faults(self):
         self.assertEqual(self.faults(PROGRAM), [])
 
     def test_a_run_that_crashes_takes_no_other_with_it(self):
@@ -164,7 +164,7 @@ class Judging(Case):
         program = self.falsified("finer", "summary", "value", "* 3", "row['key'] == 'total_contact_force'")
         self.assertEqual(self.faults(program), [("figure", "finer")])
 
-    def test_reactions_of_the_exchanged_scene(self):
+    def test_reactions_of_the_exchanged_model(self):
         self.assertEqual(self.faults(self.falsified("exchanged", "nodes", "ry", "* 3")), [("figure", "exchanged")])
 
     def test_a_body_within_another(self):
@@ -221,7 +221,7 @@ class CommandLine(Case):
         self.assertEqual(self.run_it("--family", SOUND[0], "--scenes", "2"), (status, text))
         self.assertFalse((self.place / "kept").exists())
 
-    def test_one_scene_at_length(self):
+    def test_one_model_with_details(self):
         status, text = self.run_it("--family", SOUND[0], "--only", str(SOUND[1]))
         self.assertIn("exchanged", text)
         self.assertIn("half-width", text)

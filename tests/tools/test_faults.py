@@ -52,7 +52,7 @@ class Calls(Case):
             self.assertEqual((0, ""), (run.returncode, run.stderr), tool)
             self.assertIn("usage: ", run.stdout)
 
-    def test_output_that_nobody_reads(self):
+    def test_closed_pipe(self):
         """A closed pipe ends a tool silently."""
         for tool in ("accept", "batch", "compare", "deceive", "decks", "fuzz", "mutate", "sweep", "verify", "convergence.py", "paraviews.py", "plots.py", "tradeoffs.py"):
             for arguments in ("--help",), ("hertz44.dat", "out"):

@@ -88,7 +88,7 @@ class Making(Case):
             self.run_it(0)
             self.assertEqual(1, len(self.calls("pip install")))
 
-    def test_other_packages_or_another_python_make_it_anew(self):
+    def test_other_packages_or_another_python_make_it_again(self):
         self.run_it(0)
         with open(self.top / "tools" / "requirements.txt", "a") as file:
             file.write("another==1.0\n")
@@ -98,7 +98,7 @@ class Making(Case):
         self.run_it(0)
         self.assertEqual(1, len(self.calls("pip install")))
 
-    def test_those_who_ask_at_once_wait_for_one(self):
+    def test_calls_at_once_wait_for_one(self):
         if not shutil.which("flock"):
             self.skipTest("no flock")
         self.note("slow")
@@ -179,7 +179,7 @@ class Skipping(Case):
 
 
 class Lists(unittest.TestCase):
-    def test_each_says_which_pythons_it_is_for(self):
+    def test_each_list_names_its_pythons(self):
         for path in ("tools/requirements.txt", "tests/vtk/requirements.txt", "tools/benchmark/requirements.txt"):
             self.assertRegex((ROOT / path).read_text(), r"\A# Python 3\.\d+ to 3\.\d+: ")
 

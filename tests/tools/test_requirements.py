@@ -186,7 +186,7 @@ class Missing(Case):
         (self.place / "bin" / "apt-get").unlink(missing_ok=True)
         self.refused("missing packages: install libopenblas-openmp-dev (names of Debian packages)", "tools/build")
 
-    def test_root_installs_what_is_missing(self):
+    def test_root_installs_missing_packages(self):
         self.machine(user=0, lacking=["gfortran", "make"])
         self.assertEqual("epcont deck.dat\n", self.run_it(4, "tools/run", "deck.dat").stdout)
         get = "apt-get install -y --no-install-recommends -o DPkg::Lock::Timeout=120 gfortran make"
@@ -198,14 +198,14 @@ class Missing(Case):
         self.assertRegex(self.calls("apt-get")[-1], " libopenblas-openmp-dev$")
         self.assertEqual(2, len(self.calls("cmake --preset release")))
 
-    def test_what_apt_said(self):
+    def test_messages_of_apt(self):
         self.machine(user=0, lacking=["make"])
         self.script("bin", "apt-get", "#!/bin/sh\necho 'E: no such host' >&2\nexit 100\n")
         self.assertEqual("E: no such host\n", self.run_it(3, "tools/build").stderr)
 
 
 class Telling(Case):
-    def test_what_takes_long(self):
+    def test_long_steps(self):
         (self.place / "slow").write_text("build")
         self.assertEqual("tools/build: building build/debug/epcont (a minute or two where all is new)\n", self.run_it(0, "tools/build", "debug").stderr)
 

@@ -183,7 +183,7 @@ class Wholesale(Case):
         self.wrong("zones", lambda rows: [*rows, ["2", *rows[1][1:]]], r"(?m)^zones +1 +2  WRONG$")
         self.wrong("history", lambda rows: rows[:-1], r"(?m)^iterations +6 +7  WRONG$")
 
-    def test_what_is_no_number(self):
+    def test_values_that_are_not_numbers(self):
         for word in ("nan", "inf", "1e999"):
             self.wrong("nodes", lambda rows: [*rows[:9], [*rows[9][:3], word, *rows[9][4:]], *rows[10:]], f"hertz44.nodes.csv:10: ux: '{word}' is not a finite number", status=2)
         for key, status, words in (("total_contact_force", 2, "total_contact_force: '' is not a number"), ("max_pressure", 1, r"(?m)^max_pressure .*WRONG$")):
@@ -193,7 +193,7 @@ class Wholesale(Case):
         self.wrong("summary", lambda rows: [row if row[0] != "status" else ["status", "not certified", ""] for row in rows],
                    r"(?m)^status +valid +not certified  WRONG$")
 
-    def test_what_later_versions_add(self):
+    def test_columns_of_later_versions(self):
         """Unknown columns and keys are named, and are no faults."""
         def widened(rows):
             return [[*rows[0], "largest_stress"]] + [[*row, "1.5"] for row in rows[1:]]

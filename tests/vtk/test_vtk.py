@@ -257,7 +257,7 @@ class Values(Case):
         self.assertNotIn(999, bodies["point_data"]["node_id"])
         self.assertIn("999", (self.directory / "more.nodes.csv").read_text())
 
-    def test_a_pair_of_held_nodes(self):
+    def test_a_pair_of_fixed_nodes(self):
         """No boundary belongs to it: no pressure, no line."""
         deck = self.directory / "held.dat"
         deck.write_text((INPUT / "hertz/hertz44.dat").read_text().replace(
@@ -283,7 +283,7 @@ class Files(Case):
     def written(self):
         return {path.name for path in self.directory.glob("*.vtu*")}
 
-    def test_only_where_asked(self):
+    def test_only_on_request(self):
         self.run_it(INPUT / "hertz/hertz44.dat")
         self.assertEqual(set(), self.written())
 
