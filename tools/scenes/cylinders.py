@@ -96,10 +96,10 @@ def ball(element="ctrax6", n=4, rigid=False, far=0.6, part=0.02):
     flat = "a rigid flat" if rigid else "a flat of the same steel"
     deck = Deck(f"BALL ON A {'RIGID' if rigid else 'DEFORMABLE'} FLAT, {element.upper()}", [
         f"A steel ball, R = {radius:g} mm, E = {young:g}, nu = {nu:g}, pressed on {flat} by {load:.3f} N, the force on the whole "
-        "ring. The upper half of the ball is left out: the plane y = R is a platen. Rings: x is the radius, y the axis."
-        + ("" if rigid else f" The flat is half of a ball of radius {radius:g}, held at its round side."),
+        "ring. The upper half of the ball is left out: the plane y = R is a platen. Axisymmetric: x is the radius, y the axis."
+        + ("" if rigid else f" The flat is half of a ball of radius {radius:g}, fixed at its round side."),
         f"Known answer (Hertz): contact radius {a:g}, p_max {3 * load / (2 * math.pi * a * a):.2f}, approach "
-        f"{a * a / radius:g} between far points: how far away they are here, and how held, shifts it."], rings=True)
+        f"{a * a / radius:g} between far points: it depends on their distance and supports here."], rings=True)
     free = first_free(disc)
     deck.body(disc, 1)
     deck.material(1, young, nu)

@@ -17,7 +17,7 @@ def cylinder_on_block(n=6.0):
     base = block(xs, ys)
     deck = Deck("CYLINDER ON A BLOCK OF ANOTHER MATERIAL", [
         "A steel cylinder, R = 50 mm, on an aluminium block, 200 x 200 mm; 35 kN a mm of length (NAFEMS R0094 no. 1). Half of "
-        "the scene, x >= 0, upper half of the cylinder left out: the plane through its axis is a platen. Both bodies deform.",
+        "the model, x >= 0, upper half of the cylinder left out: the plane through its axis is a platen. Both bodies deform.",
         "Known answer (Hertz): p_max 3585.36 MPa, b 6.21463 mm."])
     _, first = deck.bodies(("Cylinder", disc), ("Block", base))
     free = first - 1
@@ -45,8 +45,8 @@ def flat_punch(n=12, size=12.0, young=1000.0, element="ctria3", growth=(1.4, 1.2
     surface = [node for node in mesh.line["top"] if mesh.point[node][0] <= 1.0]
     deck = Deck("RIGID FLAT PUNCH", [
         "A rigid flat punch of half width a = 1 on an elastic block; all gaps are zero at first, so that every step of the "
-        "contact search is a tie. Half of the scene, x >= 0. The punch is nodes without elements, tied by RBE2; its one free "
-        "motion is the SUPORT. Half of P = 200 on it.",
+        "contact search is a tie. Half of the model, x >= 0. The punch is nodes without elements, tied by RBE2; its rigid-body "
+        "mode is the SUPORT. Half of P = 200 on it.",
         f"Known answer (half space): p = P/(pi sqrt(a^2 - x^2)), 63.66 at the middle; grows without bound at the edge. The "
         f"block is {size:g} a wide and deep."])
     deck.body(mesh, 1)
@@ -77,7 +77,7 @@ def off_centre(n=10, size=10.0, shift=0.25):
     punch = block(inside, graded(0.1, 1.3, 1.0))
     deck = Deck("STIFF PUNCH LOADED OFF CENTRE", [
         f"A nearly rigid punch (an elastic body 10000 times stiffer than the block), half width a = 1, loaded by P = 100 at e = "
-        f"{shift:.6f} off its middle: two free motions, sinking and tilting, as two SUPORT freedoms at its upper corners. All "
+        f"{shift:.6f} off its middle: two rigid-body modes, sinking and tilting, with two SUPORT DOFs at its upper corners. All "
         "gaps are zero at first.",
         f"Known answer (half space): p = P/(pi sqrt(a^2 - x^2)) (1 + 2 e x/a^2), 31.83 at the middle, slope there "
         f"{31.830989 * 2 * shift:.4f}. All pairs touch, since e < a/2."])
@@ -111,7 +111,7 @@ def layer(n=20):
     touch = [node for node in mesh.line["bottom"] if mesh.point[node][0] < 1.5]
     deck = Deck("LAYER ON A RIGID BASE, POINT LOAD", [
         "An elastic layer of height h = 1 lies on a rigid frictionless base; P = 100 on a point of its surface. It lifts off "
-        "at the sides: receding contact, whose width does not depend on P. Half of the scene, x >= 0; half of P.",
+        "at the sides: receding contact, whose width does not depend on P. Half of the model, x >= 0; half of P.",
         "Known answer: half contact a = 0.85699 h, pressure under the load p(0) = 0.96033 P/h = 96.033."])
     deck.body(mesh, 1)
     deck.material(1, 1000.0, 0.3)
@@ -163,9 +163,9 @@ def pin(around=60):
     parts = graded(math.pi / around, 1.25, outside - 1.0)
     plate = rings([1.0 + clearance] + [1.0 + p for p in parts[1:]], around, math.pi, -math.pi / 2)
     deck = Deck("PIN IN A HOLE", [
-        f"A pin, R = 1, in a hole larger by 0.001 in radius, same material, plate of 20 R held at its outer edge; P = {load:.4f} at "
-        "the axis of the pin. Conforming contact: the normals go round, each from the plate's node to the pin's (no CORD2R). "
-        "The two are concentric at first and touch nowhere. Half of the scene, x >= 0; half of P.",
+        f"A pin, R = 1, in a hole larger by 0.001 in radius, same material, plate of 20 R fixed at its outer edge; P = {load:.4f} at "
+        "the axis of the pin. Conforming contact: the normals are radial, each from the plate's node to the pin's (no CORD2R). "
+        "The two are concentric at first, without contact. Half of the model, x >= 0; half of P.",
         f"Known answer (Persson): touching up to 45 degrees, largest pressure 0.88211 P/R = {0.88211 * load:.4f}."])
     _, first = deck.bodies(("Pin", disc), ("Plate", plate))
     free = first - 1

@@ -78,8 +78,8 @@ def gears(module=4.0, z1=20, z2=40, load=600.0, across=3.5, finer=1.3, growth=0.
     two_mesh = tooth(module, z2, False, b / across / finer, growth)
     deck = Deck("TEETH OF TWO SPUR GEARS", [
         f"A tooth of a gear of {z1} teeth and one of {z2}, module {module:g}, pressure angle 20 degrees, that touch at the pitch point; plane strain. "
-        f"The line of action is y. The lower rim moves as one along it, pushed by {load:g} a mm; the upper rim is held. Lines of "
-        "unlike meshes on the two flanks, from fillet to tip.",
+        f"The line of action is y. The lower rim moves as one along it, pushed by {load:g} a mm; the upper rim is fixed. Lines of "
+        "non-matching meshes on the two flanks, from fillet to tip.",
         f"Known answer (Hertz, the involutes' radii of curvature there, {radius[0]:.4f} and {radius[1]:.4f}): p_max {p0:.2f}, half-width {b:.5f}."],
         from_geometry=False)
     one, two = deck.bodies((f"Tooth of {z1}", one_mesh), (f"Tooth of {z2}", two_mesh))
@@ -115,7 +115,7 @@ def roller(radius=5.0, inner=20.0, load=1000.0, across=3.0, finer=1.3, growth=0.
     deck = Deck("ROLLER BETWEEN TWO RACES", [
         f"A roller, R = {radius:g}, between the inner race of a bearing (R = {inner:g}, convex) and the outer one (R = {outer:g}, hollow); plane "
         f"strain, half of it, x >= 0. The bore of the inner race moves up as one with half of {load:g} a mm; the outside of the outer race "
-        "is held. The roller and the inner race are free in y: two SUPORT freedoms.",
+        "is fixed. The roller and the inner race are unconstrained in y: two SUPORT DOFs.",
         f"Known answer (Hertz): inner contact p_max {p1:.2f}, half-width {b1:.5f}; outer contact {p2:.2f}, {b2:.5f}."], from_geometry=False)
     one, two, three = deck.bodies(("Roller", body), ("Inner race", inside), ("Outer race", outside))
     deck.steel(3)

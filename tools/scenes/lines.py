@@ -36,8 +36,8 @@ def joint_lines(load=110.0, pull=400.0, clearance=0.01, radius=30.0, edge=4.0, f
     lever, apart = 30.0 + edge, 28.0 - 2 * edge
     deck = Deck("INSERT JOINT, CONTACT BETWEEN LINES", [
         f"A steel tongue, 8 high, sits 28 deep in a socket with a clearance of {clearance:g} above and below. At its end, 30 outside, "
-        f"it is bent by {load:g} a mm and pulled by {pull:g}, which a tie at its inner end takes. Up and down and against turning only "
-        "contact holds it: two SUPORT freedoms. Lines of unlike meshes; the slave is the coarser one at either place: the "
+        f"it is bent by {load:g} a mm and pulled by {pull:g}, which a tie at its inner end takes. Vertically and in rotation only "
+        "contact restrains it: two SUPORT DOFs. Lines of non-matching meshes; the slave is the coarser one at either place: the "
         "socket below, the tongue above. Edges fall off along arcs, so that pressures converge.",
         ("Elastic." if elastic else "Bilinear, E = 210000, yield stress 240, H = 4000.") + f" Known by statics: it touches below at the mouth "
         f"and above at its inner end, the resultants differ by the load; with the two at the ends of the straight parts, {lever:g} and "
@@ -152,9 +152,9 @@ def spinning_disc(spin=120.0, overlap=0.05, around=12, density=7.85e-9):
     rim = ring(fit - overlap, outer, max(2, 2 * around // 3), max(around + 1, 4 * around // 3))
     deck = Deck("RIM SHRUNK ON A DISC THAT SPINS", [
         f"A rim of radii {fit:g} and {outer:g} shrunk on a disc with a bore of radius {bore:g}, overlap {overlap:g} in radius, both of steel, in "
-        f"plane stress; they spin {spin:g} times a second (RFORCE). One quarter, supports in the lines of symmetry; lines of unlike meshes.",
-        f"Known answer (Lame, with the forces of the spin): the pressure at rest, {shrunk:.4f}, less the radial stress that the spin has there in "
-        f"a disc of one piece, {pull:.4f}: {shrunk - pull:.4f}. The rim comes off at {spin * math.sqrt(shrunk / pull):.2f} a second."],
+        f"plane stress; they rotate {spin:g} times a second (RFORCE). One quarter, supports on the symmetry lines; lines of non-matching meshes.",
+        f"Known answer (Lame, with centrifugal loads): the pressure at rest, {shrunk:.4f}, less the radial stress of the rotation there in "
+        f"a disc of one piece, {pull:.4f}: {shrunk - pull:.4f}. The rim separates at {spin * math.sqrt(shrunk / pull):.2f} a second."],
         strain=False, from_geometry=False)
     first = deck.bodies(("Disc", disc), ("Rim", rim))
     for number, (mesh, start) in enumerate(zip((disc, rim), first), 1):

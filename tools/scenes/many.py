@@ -57,7 +57,7 @@ def blocks(pairs=1500, nodes=43000, crown=0.12, load=20000.0, yields=False):
     lower = coarsening(width, deep, sides, growth_for(sides, finer * nodes / (1 + finer), deep / width), up=False)
     deck = Deck("A CROWNED BLOCK ON ANOTHER", [
         f"Two steel blocks, {width:g} wide and {deep:g} high; the lower side of the upper one is a parabola that rises by {crown:g} to its ends. "
-        f"A force of {load:g} a mm on the top, which stays straight; the bottom is held. " + ("Bilinear." if yields else "Elastic.")],
+        f"A force of {load:g} a mm on the top, which stays straight; the bottom is fixed. " + ("Bilinear." if yields else "Elastic.")],
         from_geometry=False)
     one, two = deck.bodies(("Upper block", upper), ("Lower block", lower))
     deck.steel(2)
@@ -81,8 +81,8 @@ def strip(pairs=2800, rows=14):
     xs = [width * i / (pairs - 1) for i in range(pairs)]
     ys = [high * j / rows for j in range(rows + 1)]
     upper, lower = squared(xs, ys), squared(xs, [y - high for y in ys])
-    deck = Deck("A STRIP ON ANOTHER", [f"Two steel strips, {width:g} long and {high:g} high, quadrilaterals; the bottom of the lower one is held, the "
-                                       "top of the upper one stays straight and is pressed by 100 on each unit of length. All of it touches."],
+    deck = Deck("A STRIP ON ANOTHER", [f"Two steel strips, {width:g} long and {high:g} high, quadrilaterals; the bottom of the lower one is fixed, the "
+                                       "top of the upper one stays straight and is pressed by 100 on each unit of length. All pairs are in contact."],
                 from_geometry=False)
     one, two = deck.bodies(("Upper strip", upper), ("Lower strip", lower))
     deck.steel(2)
@@ -101,8 +101,8 @@ def stack(bodies=30, across=40, rows=33):
     high = width * rows / across
     ticks = [width * i / across for i in range(across + 1)]
     mesh = [squared(ticks, [high * (b + j / rows) for j in range(rows + 1)]) for b in range(bodies)]
-    deck = Deck("A STACK OF BLOCKS", [f"{bodies} steel blocks, {width:g} wide and {high:g} high, one upon the other; the lowest is held, the "
-                                      "uppermost pressed by 10 a mm. The others touch their neighbours alone: two SUPORT freedoms each."],
+    deck = Deck("A STACK OF BLOCKS", [f"{bodies} steel blocks, {width:g} wide and {high:g} high, one upon the other; the lowest is fixed, the "
+                                      "uppermost pressed by 10 a mm. Only contact with their neighbours restrains the others: two SUPORT DOFs each."],
                 from_geometry=False)
     first = deck.bodies(*((f"Block {b + 1}", mesh[b]) for b in range(bodies)))
     deck.steel(bodies)
@@ -163,9 +163,9 @@ def dovetail(fine=0.034, growth=0.18, pull=1000.0, yields=False):
                           ("flank", arc(outside, blunt, 90.0, 180.0 + turned)), ("flank", segment(begin, base))], None, "bottom",
                          beside(begin, end, fine / 1.2, growth, 8.0))
     deck = Deck("A DOVETAIL IN ITS GROOVE", [
-        f"A steel dovetail, flanks at {math.degrees(slope):g} degrees, is pulled out of its groove by {pull:g} a mm. Unlike meshes, fine along the flanks, whose "
-        "ends are rounded. " + ("Bilinear." if yields else "Elastic.") + " Only contact holds it: two SUPORT freedoms.",
-        f"Known by statics: each flank bears {pull / 2 / out[1]:.1f}."], from_geometry=False)
+        f"A steel dovetail, flanks at {math.degrees(slope):g} degrees, is pulled out of its groove by {pull:g} a mm. Non-matching meshes, fine along the flanks, whose "
+        "ends are rounded. " + ("Bilinear." if yields else "Elastic.") + " Only contact restrains it: two SUPORT DOFs.",
+        f"Known by statics: each flank carries {pull / 2 / out[1]:.1f}."], from_geometry=False)
     one, two = deck.bodies(("Dovetail", tongue), ("Block", groove))
     deck.steel(2)
     if yields:

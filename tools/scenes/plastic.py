@@ -36,13 +36,13 @@ def tube(title, known, pressure, young, stress, hardening, nu=0.3, inner=100.0, 
 
 
 def tube_flat(pressure, answer, parts=20, element="ctria3"):
-    return tube("THICK TUBE, NO HARDENING", "E = 210, nu = 0.3, yield stress 0.24, flat curve. Known answer: " + answer +
+    return tube("THICK TUBE, NO HARDENING", "E = 210, nu = 0.3, yield stress 0.24, perfectly plastic. Known answer: " + answer +
                 "; first yield at 0.1037503, limit load 0.1920906.", pressure, 210.0, 0.24, 0.0, parts=parts, element=element)
 
 
 def tube_locking(nu, answer, pressure=60.0, parts=10, element="cquad4"):
     """A nearly incompressible tube, elastic or plastic: elements that lock are too stiff."""
-    return tube("THICK TUBE, NEARLY INCOMPRESSIBLE", f"E = 100000, nu = {nu:g}, yield stress 100, flat curve. Known answer: {answer}.",
+    return tube("THICK TUBE, NEARLY INCOMPRESSIBLE", f"E = 100000, nu = {nu:g}, yield stress 100, perfectly plastic. Known answer: {answer}.",
                 pressure, 1.0e5, 100.0, 0.0, nu, 1.0, 2.0, parts, element)
 
 
@@ -73,7 +73,7 @@ def one_element():
     """Squares of two triangles in a state of uniform strain, sy = 0."""
     deck = Deck("UNIFORM STRAIN", [
         "Three squares of two triangles, plane strain, pulled in x and free in y: sx = 300 and 350 with Et = 21000, sx = 275 "
-        "with a flat curve. E = 210000, nu = 0.3, yield stress 240.",
+        "perfectly plastic. E = 210000, nu = 0.3, yield stress 240.",
         "Known answers, sx -> ex, ey, sz: 300 -> 2.13574758E-3, -1.34364875E-3, 115.851885; 350 -> 3.93080718E-3, "
         "-2.97684146E-3, 150.832007; 275 -> 2.05328221E-3, -1.32411241E-3, 107.814145 (limit 277.128). Squares have side 1: "
         "strains are the displacements of nodes 3, 13, 23."], from_geometry=False)
@@ -116,7 +116,7 @@ def cook(n=24, stress=None):
     flat = grid([i / n for i in range(n + 1)], [j / n for j in range(n + 1)])
     point = [(48.0 * s, 44.0 * s + t * (44.0 - 28.0 * s)) for s, t in flat.point]
     mesh = Mesh(point, flat.element, flat.line)
-    words = ["Cook's membrane: a panel 48 long, 44 high at its held end and 16 at the other, where a shear of 1 in all pulls it "
+    words = ["Cook's membrane: a panel 48 long, 44 high at its fixed end and 16 at the other, where a shear of 1 in all pulls it "
              "up. Plane stress, E = 1, nu = 1/3."]
     if stress:
         words.append(f"Bilinear, yield stress {stress:g}, H = 0.05. No closed form: the answer is compared with an independent program.")
@@ -176,8 +176,8 @@ def insert_joint(clearance=0.01, load=110.0, finest=0.25):
     socket = without_unused(whole.point, [c for c, (x, y) in zip(whole.element, middle) if x < -30.0 or abs(y) > inner], {})
     deck = Deck("INSERT JOINT: A TONGUE IN A SOCKET", [
         f"A steel tongue, 8 high, sits 28 deep in a socket with a clearance of {clearance:g} above and below, and is bent by "
-        f"{load:g} a mm at its end, 30 outside. Only contact holds it: up and down, and against turning (two free motions, two "
-        "SUPORT freedoms); a support at its middle keeps it from sliding out. Pairs on both faces.",
+        f"{load:g} a mm at its end, 30 outside. Only contact restrains it, vertically and in rotation (two rigid-body modes, two "
+        "SUPORT DOFs); a support at its middle keeps it from sliding out. Pairs on both faces.",
         "Bilinear, E = 210000, yield stress 240, H = 4000. It touches below at the mouth and above at its inner end. Known by "
         "statics: the two resultants differ by the load, and their lever is that of the load over the socket. Yielding is local: "
         "the tongue's skins and the socket's edge at the mouth. Both edges are sharp: pressures there grow with the mesh."], from_geometry=True)

@@ -54,8 +54,8 @@ def pin_in_lug(half=45.0, around=24, finer=1.4, size=30.0, element="ctria6"):
     lug = join([patch(arc((0.0, 0.0), hole, 90, -90, turns), arc((0.0, 0.0), size * radius, 90, -90, turns),
                       straight((0.0, hole), (0.0, size * radius), outward), straight((0.0, -hole), (0.0, -size * radius), outward))], element)
     deck = Deck("PIN IN A LUG, CONTACT BETWEEN LINES", [
-        f"A pin, R = {radius:g}, in a hole larger by {clearance:.7f} in radius, of the same material, in a lug of {size:g} R held at its outer "
-        f"edge; {load:g} a mm at the axis of the pin. Unlike meshes. Half of the scene, x >= 0; half of the load. The two are concentric "
+        f"A pin, R = {radius:g}, in a hole larger by {clearance:.7f} in radius, of the same material, in a lug of {size:g} R fixed at its outer "
+        f"edge; {load:g} a mm at the axis of the pin. Non-matching meshes. Half of the model, x >= 0; half of the load. The two are concentric "
         "at first and touch nowhere.",
         f"Known answer (Persson): touching up to {half:g} degrees, largest pressure {top * load / radius:.4f}."], from_geometry=False)
     one, two = deck.bodies(("Pin", pin), ("Lug", lug))
@@ -97,7 +97,7 @@ def nafems(across=5.0, finer=1.4, element="ctria6"):
     below = join([[[(x, -y) for x, y in row] for row in rows] for rows in block], element)
     deck = Deck("CYLINDER ON A BLOCK, CONTACT BETWEEN LINES", [
         "A steel cylinder, R = 50 mm, on an aluminium block, 200 x 200 mm; 35 kN a mm of length (NAFEMS R0094 no. 1). Half of "
-        "the scene, x >= 0, upper half of the cylinder left out: the plane through its axis is a platen. Unlike meshes.",
+        "the model, x >= 0; a platen at its axis replaces the upper half of the cylinder. Non-matching meshes.",
         "Known answer (Hertz): p_max 3585.36 MPa, b 6.21463 mm."], from_geometry=False)
     one, two = deck.bodies(("Cylinder", disc), ("Block", below))
     deck.material(1, STEEL, 0.3)
@@ -121,8 +121,8 @@ def layer_lines(n=20, element="ctria6"):
     parts = round(1.3 * 1.6 / xs[1])
     base = grid([1.6 * i / parts for i in range(parts + 1)], [-0.1, 0.0], "ctria3" if element == "ctria6" else element)
     deck = Deck("LAYER ON A RIGID BASE, CONTACT BETWEEN LINES", [
-        "An elastic layer of height h = 1 lies on a rigid frictionless base (elements whose nodes are all held); P = 100 on a point of "
-        "its surface. It lifts off at the sides: receding contact, whose width does not depend on P. Half of the scene, x >= 0; half of P.",
+        "An elastic layer of height h = 1 lies on a rigid frictionless base (elements whose nodes are all fixed); P = 100 on a point of "
+        "its surface. It lifts off at the sides: receding contact, whose width does not depend on P. Half of the model, x >= 0; half of P.",
         "Known answer: half contact a = 0.85699 h, pressure under the load p(0) = 0.96033 P/h = 96.033."], from_geometry=False)
     one, two = deck.bodies(("Layer", layer), ("Base", base))
     deck.material(1, 1000.0, 0.3)
@@ -141,7 +141,7 @@ def flat_match(lines=True, element="cquad4"):
     lower, upper = grid([-2.0, -1.2, -0.5] + xs + [4.6, 5.4, 6.5], [-3.0, -2.0, -1.2, -0.5, 0.0], element), grid(xs, [0.0, 0.6, 1.4, 2.5], element)
     deck = Deck("FLAT LINE, MATCHING MESHES: " + ("LINES" if lines else "PAIRS"), [
         "A block on a larger one, meshes that match at the flat contact; pressure 10 on the left half of the upper face, 4 on the right: it "
-        "tilts, two free motions. One scene in two decks: flat_pairs.dat by CGAP, flat_lines.dat by BLSEG and BCONP.",
+        "tilts, two rigid-body modes. One model in two decks: flat_pairs.dat by CGAP, flat_lines.dat by BLSEG and BCONP.",
         "Known: both give the same answer, to rounding; 28 in all."], from_geometry=False)
     one, two = deck.bodies(("Upper block", upper), ("Lower block", lower))
     deck.material(1, 3000.0, 0.3)
