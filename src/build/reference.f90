@@ -71,26 +71,47 @@ contains
     type(card_index), intent(in) :: index    !! ids that may be named
     type(findings), intent(inout) :: found   !! errors are added
     integer, intent(out) :: position(:)      !! [cards]
-    integer :: i, id
+    integer :: i
 
-    associate (table => deck%card(card), noun => index%noun)
+    associate (table => deck%card(card))
       !$omp parallel do num_threads(threads_over(table%count))
       do i = 1, table%count
         position(i) = 0
         if (table%given(column, i)) position(i) = index%find(int(table%value(column, i)))
       end do
       !$omp end parallel do
-      do i = 1, table%count
-        if (position(i) > 0) cycle
-        if (.not. table%given(column, i)) cycle   ! the reader has reported required fields
-        id = int(table%value(column, i))
-        if (id == 0 .or. .not. (table%sound(i) .and. index%whole)) cycle
-        call found%add_error(card, i, column, ': '//table%entry%field_text(column)//': there is no '// &
-                             trim(noun)//' '//text_of(id), &
-                             'the id of '//trim(merge('an', 'a ', noun == 'element'))//' '//trim(noun))
+    end associate
+    if (index%whole .and. any(position == 0)) &
+      call report_missing(deck, card, column, index%noun, position == 0, found)
+  end subroutine resolve
+
+  !> Report each missing id once, at the first card that names it. The reader has reported required fields.
+  pure subroutine report_missing(deck, card, column, noun, lacking, found)
+    type(deck_type), intent(in) :: deck
+    integer, intent(in) :: card, column
+    character(len=*), intent(in) :: noun     !! of the missing cards
+    logical, intent(in) :: lacking(:)        !! cards that name no position
+    type(findings), intent(inout) :: found   !! errors are added
+    character(len=:), allocatable :: what
+    integer, allocatable :: id(:), row(:)
+    integer :: first, i
+
+    associate (table => deck%card(card))
+      row = pack([(i, i=1, table%count)], lacking .and. table%given(column, :) .and. table%sound)
+      row = row(sorted_order(int(table%value(column, row))))
+      id = int(table%value(column, row))
+      first = 1
+      do i = 1, size(id)
+        if (any(id(i + 1:min(i + 1, size(id))) == id(i))) cycle   ! not the last one of equal ids
+        what = ': '//table%entry%field_text(column)//': there is no '//trim(noun)//' '//text_of(id(i))
+        if (i > first) &
+          what = what//'; '//text_of(i - first + 1)//' '//trim(table%entry%name)//' cards refer to it'
+        if (id(i) /= 0) call found%add_error(card, row(first), column, what, 'the id of '// &
+                                             trim(merge('an', 'a ', noun == 'element'))//' '//trim(noun))
+        first = i + 1
       end do
     end associate
-  end subroutine resolve
+  end subroutine report_missing
 
   !> Find the set that SPC =, MPC = or LOAD = names in each load case. Without a choice, the only set is used;
   !! a set of loads only if the deck has at most one case.

@@ -109,7 +109,7 @@ def part5(place, turns, options):
 
 
 def kept(part):
-    """Where what a part measured is kept."""
+    """File with the results of a part."""
     return TOP / f"build/benchmark/part{part}.json"
 
 
