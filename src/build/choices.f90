@@ -1,7 +1,7 @@
 !> Choices of the PARAMs for the contact solver and the plastic iteration.
 module epcont_build_choices
   use epcont_base_kinds, only: wp
-  use epcont_deck_card_kinds, only: card_param
+  use epcont_deck_card_kinds, only: card_mats1, card_param
   use epcont_deck_deck, only: deck_type
   use epcont_model_controls, only: controls_type, method_name, original_controls, rule_name, &
       solver_name
@@ -34,6 +34,10 @@ contains
     controls%by_inversion = deck%parameter_word('FLEXIB') == 'INVERT'
     controls%paper_ratio = deck%parameter_word('MUP') == 'PAPER'
     controls%flow_theory = deck%parameter_word('THEORY') == 'FLOW'
+    associate (mats1 => deck%card(card_mats1))
+      if (deck%parameter_row('THEORY') == 0) &
+        controls%flow_theory = any(mats1%value(mats1%column('HR'), :) > 1.0_wp)
+    end associate
 
   contains
 

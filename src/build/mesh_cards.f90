@@ -10,7 +10,7 @@ module epcont_build_mesh_cards
   use epcont_element_kinematics, only: axisymmetric, plane_strain, plane_stress
   use epcont_model_arrays, only: add_elements, new_scene, scene_type, set_sections
   use epcont_model_controls, only: uniaxial_curve
-  use epcont_model_finding, only: findings, item_density, of_section
+  use epcont_model_finding, only: findings, item_density, item_hardening, of_section
   use epcont_model_model, only: model_type
   use epcont_model_yield_curve, only: bilinear_curve, curve_fault, straighten
   implicit none
@@ -30,6 +30,7 @@ module epcont_build_mesh_cards
     real(wp) :: reference_temperature = 0.0_wp
     real(wp) :: density = 1.0_wp    !! not zero, as a wrong card must not cause another error [mass/length**3]
     type(uniaxial_curve) :: curve
+    integer :: yielding = 0         !! its MATS1, 0 if absent
   end type material_card
 
 contains
@@ -135,6 +136,8 @@ contains
       do i = 1, mats1%count
         if (m(i) == 0 .or. .not. mats1%sound(i)) cycle
         if (material(m(i))%young > 0.0_wp) call read_yielding(deck, i, table(i), material(m(i)), found)
+        material(m(i))%yielding = i
+        material(m(i))%curve%kinematic = kinematic_part(deck, i, found)
       end do
     end associate
   end subroutine read_materials
@@ -198,6 +201,24 @@ contains
     if (table > 0) call read_table(deck, i, table, material%young, material%curve, found)
   end subroutine read_yielding
 
+  !> Read the kinematic part of the hardening: HR, and PARAM HRFRAC.
+  real(wp) function kinematic_part(deck, i, found) result(part)
+    type(deck_type), intent(in) :: deck
+    integer, intent(in) :: i   !! the MATS1
+    type(findings), intent(inout) :: found
+
+    part = 0.0_wp
+    select case (nint(deck%card(card_mats1)%number('HR', i)))
+    case (2)
+      part = 1.0_wp
+    case (3)
+      if (deck%parameter_row('HRFRAC') == 0) call refuse(deck, card_mats1, i, 'HR', &
+        ': field 7 (HR) is 3, and the kinematic part of the hardening is missing', &
+        'PARAM HRFRAC, from 0 to 1; or HR 1 (isotropic) or 2 (kinematic)', found)
+      part = deck%parameter_value('HRFRAC', 1.0_wp)
+    end select
+  end function kinematic_part
+
   !> Read TABLES1. Its yield stress is kept; its yield strain is replaced by stress over E, so that the
   !! elastic part is that of the MAT1.
   subroutine read_table(deck, i, t, young, curve, found)
@@ -251,6 +272,8 @@ contains
         ! Without a MAT1 the finding is at the section.
         if (named(s) > 0) call found%add_origin([of_section, s, item_density], &
             [card_mat1, named(s), deck%card(card_mat1)%column('RHO')])
+        if (section(s)%yielding > 0) call found%add_origin([of_section, s, item_hardening], &
+            [card_mats1, section(s)%yielding, deck%card(card_mats1)%column('HR')])
         if (s <= shell%count) call choose_kinematics(deck, s, kinematics(s), found)
       end do
       if (deck%parameter_word('PLANE') == 'STRESS' .and. all(kinematics /= plane_stress) .and. &

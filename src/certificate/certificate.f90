@@ -12,6 +12,7 @@ module epcont_certificate_certificate
   use epcont_certificate_scene, only: overlaps_type
   use epcont_certificate_tied, only: check_springs, check_ties, gather_ties, longest_arms
   use epcont_certificate_unit_strains, only: find_slopes, largest_face, largest_of
+  use epcont_certificate_yielding, only: replayed_history
   use epcont_element_element_kind, only: most_nodes, most_points
   use epcont_element_kinematics, only: directions
   use epcont_model_model, only: model_type
@@ -57,6 +58,8 @@ module epcont_certificate_certificate
     logical :: balanced = .false.         !! all values except `off_curve` are within tolerance
     logical :: valid = .false.            !! `off_curve` is within tolerance too
     type(overlaps_type) :: scene          !! penetration of bodies; searched if all else is valid
+    !> Flow theory: plastic history after the increment, from displacements alone [points]
+    type(replayed_history), allocatable :: history(:)
   contains
     procedure :: figures
     procedure :: has_spoilt
@@ -90,11 +93,13 @@ contains
 
   !> Check an answer. Its inputs are the displacements with and without rigid-body displacements, the
   !! reactions, the stresses at the integration points and the contact forces.
-  subroutine certify(model, answer, curve_tolerance, found)
+  subroutine certify(model, answer, curve_tolerance, found, before)
     type(model_type), intent(in) :: model   !! model
     type(answer_type), intent(in) :: answer   !! answer to check
     real(wp), intent(in) :: curve_tolerance   !! largest stress error that the iteration allows
     type(certificate_type), intent(out) :: found   !! the certificate, without its search for penetration
+    !> Flow theory: history before the increment [points]
+    type(replayed_history), intent(in), optional :: before(:)
     real(wp) :: load(directions, model%mesh%nodes)
     type(balance_type) :: total
     real(wp) :: forces, largest_force, largest_stress, length
@@ -111,7 +116,8 @@ contains
     face = largest_face(model)
     largest_stress = max(largest_of(size(answer%point_stress), answer%point_stress), &
                          part_of_held*held_stress(model), given_force/face)
-    call add_elements(model, answer, largest_stress, total, found)
+    if (present(before)) found%history = before
+    call add_elements(model, answer, largest_stress, total, found, before)
     total%residual = total%residual - load - answer%reaction
     unstressed = given_force == 0.0_wp .and. found%stress_roundings <= most_roundings
     if (unstressed) found%off_curve = 0.0_wp
@@ -179,12 +185,13 @@ contains
   !> Add the internal forces of elements and the work of their stresses. Put the largest stress error and the
   !! effects of rounding and rigid-body displacements into the certificate. Threads share the elements in
   !! fixed parts, which are added in order.
-  subroutine add_elements(model, answer, largest_stress, total, found)
+  subroutine add_elements(model, answer, largest_stress, total, found, before)
     type(model_type), intent(in) :: model        !! the model
     type(answer_type), intent(in) :: answer      !! answer to check
     real(wp), intent(in) :: largest_stress       !! of the model [stress]
     type(balance_type), intent(inout) :: total   !! sums to add to
     type(certificate_type), intent(inout) :: found
+    type(replayed_history), intent(in), optional :: before(:)
     real(wp) :: slope(directions, most_nodes, most_points, size(model%mesh%kinds))
     type(checked_elements) :: part
     integer :: first, k
@@ -194,9 +201,8 @@ contains
     end do
     !$omp parallel do num_threads(threads_over(model%mesh%elements)) schedule(dynamic) ordered private(part)
     do first = 1, model%mesh%elements, at_once
-      call check_elements(model, answer, largest_stress, first, &
-                          min(first + at_once - 1, model%mesh%elements), &
-                          slope, part)
+      call check_elements(model, answer, largest_stress, &
+                          [first, min(first + at_once - 1, model%mesh%elements)], slope, part, before)
       !$omp ordered
       call add_part(model, total, found, first, part)
       !$omp end ordered
@@ -224,6 +230,8 @@ contains
         total%stored = total%stored + part%work(p)
       end do
     end do
+    if (allocated(part%history)) &
+      found%history(lbound(part%work, 1):ubound(part%work, 1)) = part%history
     total%strained = total%strained + part%strained
     call total%expansion%include(part%expansion)
     found%off_curve = max(found%off_curve, part%off_curve)

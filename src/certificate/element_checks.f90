@@ -4,7 +4,8 @@ module epcont_certificate_element_checks
   use epcont_base_kinds, only: wp
   use epcont_certificate_free_expansion, only: expansion_type, free_strains
   use epcont_certificate_unit_strains, only: largest_of, strain_by, unit_strains
-  use epcont_certificate_yielding, only: stress_after, stress_on_curve, von_mises_stress
+  use epcont_certificate_yielding, only: replayed_history, return_to_curve, stress_on_curve, &
+      von_mises_stress
   use epcont_element_element_kind, only: most_nodes, most_points
   use epcont_element_kinematics, only: axisymmetric, components, directions, plane_stress
   use epcont_model_model, only: model_type
@@ -21,6 +22,7 @@ module epcont_certificate_element_checks
     real(wp) :: off_curve = 0.0_wp, motion_strain = 0.0_wp, lost_stress = 0.0_wp   !! as in the certificate
     real(wp) :: rounding_stress = 0.0_wp, stress_roundings = 0.0_wp
     type(expansion_type) :: expansion
+    type(replayed_history), allocatable :: history(:)   !! flow theory: after the increment [points]
   end type checked_elements
 
   !> Strains and volumes at an element's integration points.
@@ -32,20 +34,23 @@ module epcont_certificate_element_checks
 contains
 
   !> Check some consecutive elements.
-  subroutine check_elements(model, answer, largest_stress, first, last, slope, part)
+  subroutine check_elements(model, answer, largest_stress, range, slope, part, before)
     type(model_type), intent(in) :: model       !! the model
     type(answer_type), intent(in) :: answer     !! its displacements, deformations and stresses
     real(wp), intent(in) :: largest_stress      !! reference for stresses [stress]
-    integer, intent(in) :: first, last          !! numbers of the elements
+    integer, intent(in) :: range(2)             !! numbers of the first and last element
     real(wp), intent(in) :: slope(directions, most_nodes, most_points, *)   !! of each element type
     type(checked_elements), intent(out) :: part
+    !> Flow theory: history before the increment [points]
+    type(replayed_history), intent(in), optional :: before(:)
     type(element_points) :: points
     real(wp) :: force(directions)
     integer :: c, e, k, p
 
-    allocate (part%force(directions, size(model%mesh%connectivity, 1), first:last), source=0.0_wp)
-    allocate (part%work(model%mesh%first_point(first):model%mesh%first_point(last + 1) - 1))
-    do e = first, last
+    allocate (part%force(directions, size(model%mesh%connectivity, 1), range(1):range(2)), source=0.0_wp)
+    allocate (part%work(model%mesh%first_point(range(1)):model%mesh%first_point(range(2) + 1) - 1))
+    if (present(before)) allocate (part%history, source=before(lbound(part%work, 1):ubound(part%work, 1)))
+    do e = range(1), range(2)
       call unit_strains(model, e, slope(:, :, :, model%mesh%kind(e)), points%unit, points%volume)
       call free_strains(model, e, model%loads%rise, points%volume, points%free)
       associate (stress => answer%point_stress(:, &
@@ -76,7 +81,7 @@ contains
     real(wp), dimension(directions, most_nodes) :: motion, u
     real(wp) :: largest, farthest, rounding, strain(components)   ! strain by `u`, and rigid-body displacement
                                                                   ! with `motion`
-    real(wp) :: before(components, most_points, size(answer%committed))   ! strains of load steps
+    real(wp) :: on_curve(components)   ! stress of the material
     integer :: k, n, node, p
     logical :: moves, ring
 
@@ -87,7 +92,6 @@ contains
       u(:, k) = answer%deformation(:, node)
       motion(:, k) = answer%displacement(:, node) - u(:, k)
     end do
-    call find_strains_before(model, answer, e, points, before)
     moves = any(motion(:, :n) /= 0.0_wp)
     largest = largest_of(directions*n, u)
     farthest = maxval(abs(motion(:, :n)) + abs(u(:, :n)))
@@ -99,9 +103,16 @@ contains
         part%work(point) = points%volume(p)*dot_product(answer%point_stress(:, point), strain)
         part%strained = part%strained + points%volume(p)*maxval(abs(strain))
         strain(:3) = strain(:3) - points%free(p)
-        call check_stress(model, largest_stress, model%mesh%section(e), &
-                          reshape([before(:, p, :), strain], [components, size(before, 3) + 1]), &
-                          answer%point_stress(:, point), rounding*largest, part)
+        associate (section => model%mesh%section(e))
+          if (allocated(part%history) .and. allocated(model%sections%curve(section)%strain)) then
+            call return_to_curve(model, section, strain, &
+                                 part%history(point - lbound(part%work, 1) + 1), on_curve)
+          else
+            on_curve = stress_on_curve(model, section, strain)
+          end if
+          call check_stress(model, largest_stress, section, on_curve, answer%point_stress(:, point), &
+                            rounding*largest, part)
+        end associate
       end associate
       if (.not. moves) cycle
       strain = strain_by(n, motion, points%unit(1, 1, 1, p), ring)
@@ -110,50 +121,20 @@ contains
     end do
   end subroutine check_points
 
-  !> Find the strains of an element at the end of each load step that flow theory continued from.
-  subroutine find_strains_before(model, answer, e, points, before)
-    type(model_type), intent(in) :: model
-    type(answer_type), intent(in) :: answer
-    integer, intent(in) :: e
-    type(element_points), intent(in) :: points
-    real(wp), intent(out) :: before(:, :, :)   !! [components, points, load steps]
-    real(wp) :: free(most_points), u(directions, most_nodes)
-    integer :: k, n, p, step
-
-    n = model%mesh%node_count(e)
-    do step = 1, size(before, 3)
-      associate (committed => answer%committed(step))
-        do k = 1, n
-          u(:, k) = committed%deformation(:, model%mesh%connectivity(k, e))
-        end do
-        call free_strains(model, e, committed%rise, points%volume, free)
-      end associate
-      do p = 1, model%mesh%kinds(model%mesh%kind(e))%points
-        before(:, p, step) = strain_by(n, u, points%unit(1, 1, 1, p), &
-                                       model%sections%kinematics(model%mesh%section(e)) == axisymmetric)
-        before(:3, p, step) = before(:3, p, step) - free(p)
-      end do
-    end do
-  end subroutine find_strains_before
-
   !> Find the stress error, relative. If the material yields, it is the larger of two: the von Mises stress of
   !! the difference over the stress on the curve (at least the yield stress, if stresses reach it), and the
   !! difference of the mean stresses, which are elastic, over the largest stress. If the material is elastic,
   !! it is the largest difference over the largest stress. Stress errors by rounding of strains have the same
   !! references.
-  subroutine check_stress(model, largest_stress, section, strain, stress, rounding, part)
+  subroutine check_stress(model, largest_stress, section, on_curve, stress, rounding, part)
     type(model_type), intent(in) :: model
     real(wp), intent(in) :: largest_stress
     integer, intent(in) :: section
-    !> At the end of each load step that flow theory continued from, and now [components, any]
-    real(wp), intent(in) :: strain(:, :)
-    real(wp), intent(in) :: stress(components)
+    real(wp), intent(in) :: on_curve(components), stress(components)   !! of the material; of the answer
     real(wp), intent(in) :: rounding         !! rounding error of the strain
     type(checked_elements), intent(inout) :: part
-    real(wp) :: apart(components), off, on_curve(components), scale, stiffest
+    real(wp) :: apart(components), off, scale, stiffest
 
-    if (size(strain, 2) == 1) on_curve = stress_on_curve(model, section, strain(:, 1))
-    if (size(strain, 2) > 1) on_curve = stress_after(model, section, strain)
     apart = stress - on_curve
     scale = largest_stress
     off = ratio(maxval(abs(apart)), largest_stress)

@@ -7,10 +7,25 @@ module epcont_certificate_yielding
   use epcont_model_model, only: model_type
   implicit none
   private
-  public :: stress_after, stress_on_curve, von_mises_stress
+  public :: replayed_history, return_to_curve, stress_on_curve, von_mises_stress
 
   !> Number of bisections that reduce an interval to rounding.
   integer, parameter :: halvings = 60
+
+  !> Plastic history of a point, integrated from displacements.
+  type :: replayed_history
+    real(wp) :: plastic(components) = 0.0_wp   !! plastic strain xx, yy, zz, xy (engineering)
+    real(wp) :: hardened = 0.0_wp              !! equivalent plastic strain
+  end type replayed_history
+
+  !> Moduli of a material.
+  type :: moduli_type
+    real(wp) :: bulk = 1.0_wp, shear = 1.0_wp   !! K, G [stress]
+    real(wp) :: moves = 0.0_wp                  !! kinematic hardening [stress]
+  contains
+    procedure :: growth
+    procedure :: lost
+  end type moduli_type
 
 contains
 
@@ -99,74 +114,100 @@ contains
     end function strain_across
   end function stress_on_curve
 
-  !> Find the stress after several load steps of flow theory with isotropic hardening [stress].
-  pure function stress_after(model, section, strain) result(stress)
-    type(model_type), intent(in) :: model     !! its sections and their curves
-    integer, intent(in) :: section            !! a yielding section of the model
-    real(wp), intent(in) :: strain(:, :)      !! xx, yy, zz, xy (engineering) [components, load steps]
-    real(wp) :: stress(components), plastic(components), hardened
-    integer :: step
-
-    plastic = 0.0_wp
-    hardened = 0.0_wp
-    do step = 1, size(strain, 2)
-      call return_to_curve(model, section, strain(:, step), plastic, hardened, stress)
-    end do
-  end function stress_after
-
-  !> Integrate one load step: bisection for the elastic part of the strain deviator at its end.
-  pure subroutine return_to_curve(model, section, strain, plastic, hardened, stress)
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: section
-    real(wp), intent(in) :: strain(components)
-    real(wp), intent(inout) :: plastic(components), hardened   !! plastic strain, and its equivalent, before
-                                                               !! the step
+  !> Integrate an increment of flow theory: bisection for the part of the trial stress, relative to the back
+  !! stress, that is left at its end.
+  pure subroutine return_to_curve(model, section, strain, history, stress)
+    type(model_type), intent(in) :: model                  !! its sections and their curves
+    integer, intent(in) :: section                         !! a yielding section of the model
+    real(wp), intent(in) :: strain(components)             !! xx, yy, zz, xy (engineering), at its end
+    type(replayed_history), intent(inout) :: history       !! before it; then after it
     real(wp), intent(out) :: stress(components)
-    real(wp) :: bulk, deviator(components), equivalent, high, low, mean, part, shear
+    type(moduli_type) :: moduli
+    real(wp) :: beyond(components), grown, high, low, part, trial(components)
     integer :: k
 
-    bulk = model%sections%young(section)/(3.0_wp*(1.0_wp - 2.0_wp*model%sections%poisson(section)))
-    shear = model%sections%young(section)/(2.0_wp*(1.0_wp + model%sections%poisson(section)))
-    low = 0.0_wp
-    high = 1.0_wp
-    part = high
-    do k = 1, halvings
-      call divide(part, mean, deviator, equivalent)
-      if (3.0_wp*shear*part*equivalent > stress_when_hardened(model%sections%curve(section), &
-                                                              model%sections%young(section), &
-                                                               hardened + (1.0_wp - part)*equivalent)) then
-        high = part
-      else
-        low = part
-      end if
-      if (low == high) exit   ! all elastic
-      part = 0.5_wp*(low + high)
-    end do
-    call divide(part, mean, deviator, equivalent)
-    stress = 2.0_wp*shear*part*deviator
-    stress(:3) = stress(:3) + 3.0_wp*bulk*mean
-    if (model%sections%kinematics(section) == plane_stress) stress(3) = 0.0_wp
-    plastic = plastic + (1.0_wp - part)*deviator*[1.0_wp, 1.0_wp, 1.0_wp, 2.0_wp]
-    hardened = hardened + (1.0_wp - part)*equivalent
-
-  contains
-
-    !> Split the elastic strain into mean and deviator; in plane stress the normal strain is that of a body
-    !! with a part of the shear modulus.
-    pure subroutine divide(part, mean, deviator, equivalent)
-      real(wp), intent(in) :: part
-      real(wp), intent(out) :: mean, deviator(components), equivalent
-      real(wp) :: beyond(components), lambda
-
-      beyond = strain - plastic
-      lambda = bulk - 2.0_wp/3.0_wp*part*shear
-      if (model%sections%kinematics(section) == plane_stress) &
-        beyond(3) = -lambda/(lambda + 2.0_wp*part*shear)*(beyond(1) + beyond(2))
-      mean = sum(beyond(:3))/3.0_wp
-      deviator = [beyond(:3) - mean, 0.5_wp*beyond(4)]
-      equivalent = sqrt(2.0_wp/3.0_wp*(sum(deviator(:3)**2) + 2.0_wp*deviator(4)**2))
-    end subroutine divide
+    associate (curve => model%sections%curve(section), young => model%sections%young(section), &
+               poisson => model%sections%poisson(section), &
+               sheet => model%sections%kinematics(section) == plane_stress)
+      moduli%bulk = young/(3.0_wp*(1.0_wp - 2.0_wp*poisson))
+      moduli%shear = young/(2.0_wp*(1.0_wp + poisson))
+      moduli%moves = curve%kinematic*hardening_of(curve, young)
+      low = 0.0_wp
+      high = 1.0_wp
+      part = high
+      do k = 1, halvings
+        call find_trial(moduli, sheet, strain, history%plastic, part, beyond, trial)
+        grown = history%hardened + moduli%growth(part, trial)
+        if (part*von_mises_stress(trial) > &
+            stress_when_hardened(curve, young, grown) - moduli%moves*grown) then
+          high = part
+        else
+          low = part
+        end if
+        if (low == high) exit   ! all elastic
+        part = 0.5_wp*(low + high)
+      end do
+      call find_trial(moduli, sheet, strain, history%plastic, part, beyond, trial)
+      stress = 2.0_wp*moduli%shear*deviator_of(beyond) - moduli%lost(part)*trial
+      stress(:3) = stress(:3) + moduli%bulk*sum(beyond(:3))
+      if (sheet) stress(3) = 0.0_wp
+    end associate
+    history%hardened = history%hardened + moduli%growth(part, trial)
+    history%plastic = history%plastic + moduli%lost(part)*trial/(2.0_wp*moduli%shear)* &
+                      [1.0_wp, 1.0_wp, 1.0_wp, 2.0_wp]
   end subroutine return_to_curve
+
+  !> Equivalent plastic strain of an increment.
+  pure real(wp) function growth(self, part, trial)
+    class(moduli_type), intent(in) :: self
+    real(wp), intent(in) :: part, trial(components)
+
+    growth = (1.0_wp - part)*von_mises_stress(trial)/(3.0_wp*self%shear + self%moves)
+  end function growth
+
+  !> Stress that the plastic strain of an increment takes, over the trial stress.
+  pure real(wp) function lost(self, part)
+    class(moduli_type), intent(in) :: self
+    real(wp), intent(in) :: part
+
+    lost = (1.0_wp - part)/(1.0_wp + self%moves/(3.0_wp*self%shear))
+  end function lost
+
+  !> Find the strain beyond the plastic strain, and the trial stress relative to the back stress. In plane
+  !! stress the normal strain is that without normal stress at the end of the increment.
+  pure subroutine find_trial(moduli, sheet, strain, plastic, part, beyond, trial)
+    type(moduli_type), intent(in) :: moduli
+    logical, intent(in) :: sheet   !! plane stress
+    real(wp), intent(in) :: strain(components), plastic(components), part
+    real(wp), intent(out) :: beyond(components), trial(components)
+    real(wp) :: back(components), lambda, soft
+
+    back = 2.0_wp/3.0_wp*moduli%moves*plastic*[1.0_wp, 1.0_wp, 1.0_wp, 0.5_wp]
+    beyond = strain - plastic
+    soft = (1.0_wp - moduli%lost(part))*moduli%shear
+    lambda = moduli%bulk - 2.0_wp/3.0_wp*soft
+    if (sheet) beyond(3) = -(lambda*(beyond(1) + beyond(2)) + moduli%lost(part)*back(3))/ &
+                           (lambda + 2.0_wp*soft)
+    trial = 2.0_wp*moduli%shear*deviator_of(beyond) - back
+  end subroutine find_trial
+
+  !> Find the deviator of a strain, with the tensor's shear strain.
+  pure function deviator_of(strain) result(deviator)
+    real(wp), intent(in) :: strain(components)
+    real(wp) :: deviator(components)
+
+    deviator = [strain(:3) - sum(strain(:3))/3.0_wp, 0.5_wp*strain(4)]
+  end function deviator_of
+
+  !> Hardening of a bilinear curve: stress over plastic strain [stress].
+  pure real(wp) function hardening_of(curve, young) result(hardening)
+    type(uniaxial_curve), intent(in) :: curve
+    real(wp), intent(in) :: young
+
+    hardening = 0.0_wp
+    if (curve%kinematic > 0.0_wp) hardening = (curve%stress(3) - curve%stress(2))/ &
+      (curve%strain(3) - curve%strain(2) - (curve%stress(3) - curve%stress(2))/young)
+  end function hardening_of
 
   !> Find the yield stress at an equivalent plastic strain; the last slope of the curve continues [stress].
   pure real(wp) function stress_when_hardened(curve, young, hardened) result(stress)

@@ -9,9 +9,10 @@ module epcont_contact_geometry_complete
   use epcont_element_kinematics, only: directions, plane_strain
   use epcont_geometry_outline_shape, only: new_outline_shape, outline_shape
   use epcont_model_arrays, only: angle, dof_tie, scene_type
-  use epcont_model_controls, only: method_auto, method_newton
+  use epcont_model_controls, only: method_modsec, method_newton, method_secant
   use epcont_model_element_shapes, only: check_axis, complete_elements
-  use epcont_model_finding, only: findings, of_node, of_paper_ratio, of_platen, of_section, of_theory
+  use epcont_model_finding, only: findings, item_hardening, of_node, of_paper_ratio, of_platen, &
+      of_section, of_theory
   use epcont_model_freedoms, only: check_reference, follow_to_the_end, tie_freedom
   use epcont_model_given, only: check_values, take_arrays
   use epcont_model_load_cases, only: load_cases, put_case
@@ -108,7 +109,8 @@ contains
     call check_spring_ends(model, found)
   end subroutine complete_freedoms
 
-  !> Check that MUP PAPER has the secant stiffness and plane strain, and flow theory another method.
+  !> Check that MUP PAPER has the secant stiffness and plane strain, that flow theory has a method for
+  !! histories, and that kinematic hardening has flow theory and a bilinear curve.
   pure subroutine check_controls(model, found)
     type(model_type), intent(in) :: model   !! the model
     type(findings), intent(inout) :: found   !! errors are added
@@ -117,9 +119,24 @@ contains
     if (model%controls%flow_theory) then
       if (model%controls%paper_ratio) call found%add_error(of_theory, 0, 2, &
         ': FLOW does not go with MUP PAPER, a ratio of total theory', 'MUP EXACT, or THEORY TOTAL')
-      if (all(model%controls%method /= [method_auto, method_newton])) call found%add_error(of_theory, 0, 2, &
-        ': FLOW goes with METHOD NEWTON alone', 'METHOD NEWTON or AUTO, or THEORY TOTAL')
+      if (any(model%controls%method == [method_secant, method_modsec])) &
+        call found%add_error(of_theory, 0, 2, &
+        ': FLOW does not go with METHOD SECANT or MODSEC, which use the whole strain', &
+        'METHOD NEWTON, INISTR or AUTO, or THEORY TOTAL')
     end if
+    do s = 1, size(model%sections%curve)
+      associate (curve => model%sections%curve(s))
+        if (curve%kinematic == 0.0_wp) cycle
+        if (.not. model%controls%flow_theory) then
+          call found%add_error(of_theory, 0, 2, ': TOTAL has no kinematic hardening (MATS1 HR 2 or 3)', &
+                               'THEORY FLOW, or HR 1')
+          exit
+        end if
+        if (size(curve%stress) > 3) call found%add_error(of_section, s, item_hardening, &
+          ': field 7 (HR): kinematic hardening of a table with more than two slopes', &
+          'HR 1, or a table of three points')
+      end associate
+    end do
     if (.not. model%controls%paper_ratio) return
     if (model%controls%method == method_newton) &
       call found%add_error(of_paper_ratio, 0, 2, ': PAPER does not go with METHOD NEWTON', &

@@ -132,13 +132,13 @@ module epcont_deck_catalogue
     'PARAM: a choice for the whole deck', &
     '  NAME; word; parameter', &
     '  VALUE; word; its value', &
-    'MATS1: yielding of a MAT1: von Mises, isotropic hardening', &
+    'MATS1: yielding of a MAT1: von Mises', &
     '  MID; id; its MAT1', &
     '  TID; id optional; its TABLES1; blank: bilinear from LIMIT1 and H', &
     '  TYPE; word PLASTIC NLELAST; both are taken as PARAM THEORY says', &
     '  H; real zero from=0; stress over plastic strain beyond LIMIT1; blank with TID [stress]', &
     '  YF; whole from=1 to=1 default=1; yield criterion: 1, von Mises', &
-    '  HR; whole from=1 to=1 default=1; hardening rule: 1', &
+    '  HR; whole from=1 to=3 default=1; hardening: 1 isotropic, 2 kinematic, 3 both (PARAM HRFRAC)', &
     '  LIMIT1; real positive; yield stress; with TID that of its second point [stress]', &
     'TABLES1: uniaxial curve of stress over total strain', &
     '  TID; id; table', &
@@ -300,7 +300,8 @@ module epcont_deck_catalogue
     ' ends the iteration; default 0.01, for NEWTON 1.E-8', &
     'MAXIT; whole from=1 to=100000 for=MATS1; iterations of a load step; default 100', &
     'THEORY; for=MATS1 word TOTAL FLOW; plasticity: stresses follow from the strains at full load'// &
-    ' (TOTAL), or increment by increment (FLOW); default TOTAL', &
+    ' (TOTAL), or increment by increment (FLOW); default TOTAL, with HR 2 or 3 FLOW', &
+    'HRFRAC; real positive to=1 for=MATS1; kinematic part of the hardening, for HR 3', &
     'MUP; for=MATS1 word EXACT PAPER; Poisson''s ratio in the equivalent strain: exact, or formula'// &
     ' (2-4); default EXACT', &
     'ORIGINAL; word NO YES; methods of about 1980: SOLVER BAND, FLEXIB INVERT, RULE CONRY, METHOD'// &

@@ -5,7 +5,7 @@ module epcont_linear_solved_state
   use epcont_material_material_law, only: point_state
   implicit none
   private
-  public :: committed_step, force_change, relative_change, solved_state
+  public :: force_change, relative_change, solved_state
 
   type :: solved_state
     real(wp), allocatable :: displacement(:, :)   !! [length] [directions, nodes]
@@ -20,13 +20,6 @@ module epcont_linear_solved_state
   contains
     procedure :: take
   end type solved_state
-
-  !> End of the load step from which the next one continued (flow theory).
-  type :: committed_step
-    !> Temperature of the nodes of each element (`load_set%rise`), and the displacements without rigid-body
-    !! displacements
-    real(wp), allocatable :: rise(:, :), deformation(:, :)
-  end type committed_step
 
 contains
 

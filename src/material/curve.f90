@@ -26,6 +26,7 @@ module epcont_material_curve
     real(wp), allocatable :: total_slope(:) !! d sigma/d eps after each point [stress] [points]
   contains
     procedure :: at_strain
+    procedure :: hardening
   end type deviatoric_curve
 
   !> Values of the curve at a strain.
@@ -65,6 +66,15 @@ contains
     if (paper_ratio) &
       curve%deviatoric = curve%total*(1.0_wp - elastic%young*elastic%shift*curve%stress(1)/curve%stress)
   end function new_curve
+
+  !> Stress over plastic strain right after the yield point [stress].
+  pure real(wp) function hardening(self)
+    class(deviatoric_curve), intent(in) :: self
+
+    associate (elastic => 3.0_wp*self%elastic%shear)
+      hardening = elastic*(self%slope(1)/(elastic - self%slope(1)))
+    end associate
+  end function hardening
 
   !> Evaluate the curve at a deviatoric equivalent strain.
   pure function at_strain(self, e) result(point)

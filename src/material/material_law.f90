@@ -10,6 +10,7 @@
 !> computed; its input is ignored.
 module epcont_material_material_law
   use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: rounded_off
   use epcont_element_kinematics, only: components
   use epcont_material_curve, only: curve_value, deviatoric_curve
   use epcont_material_elasticity, only: elasticity, equivalent_stress, isotropic_matrix
@@ -30,8 +31,9 @@ module epcont_material_material_law
   type, extends(curve_value) :: point_state
     real(wp) :: stress(components) = 0.0_wp   !! [stress]
     real(wp) :: across = 0.0_wp               !! strain zz
-    real(wp) :: deviatoric = 0.0_wp           !! equivalent strain e of strain deviator minus committed
-                                              !! plastic strain
+    !> Deviator of the strain minus committed plastic strain and back strain (`back_strain`), with the
+    !! tensor's shear strain, and its equivalent strain e
+    real(wp) :: deviator(components) = 0.0_wp, deviatoric = 0.0_wp
     logical :: plastic = .false.              !! it yields, or has yielded in an earlier increment
   end type point_state
 
@@ -40,10 +42,14 @@ module epcont_material_material_law
     logical :: sheet = .false.         !! plane stress
     logical :: yields = .false.
     real(wp) :: yield_stress = 0.0_wp  !! of the virgin material [stress]
+    ! If the yield surface moves, of a bilinear curve:
+    real(wp) :: hardening = 0.0_wp     !! stress over plastic strain [stress]
+    real(wp) :: kinematic = 0.0_wp     !! its part by motion of the yield surface (Prager) [stress]
     type(deviatoric_curve) :: curve
   contains
     procedure :: update
     procedure :: history_after
+    procedure, private :: back_strain
     procedure :: secant_matrix
     procedure :: tangent_matrix
     procedure :: distance
@@ -60,45 +66,57 @@ contains
     real(wp) :: beyond(components)   ! committed plastic strain
 
     beyond = strain - committed%strain
-    if (self%sheet) beyond(3) = strain_across(self, beyond, committed%accumulated)
-    call find_state(self, beyond, committed%accumulated, trial)
+    if (self%sheet) beyond(3) = strain_across(self, beyond, committed)
+    call find_state(self, beyond, committed, trial)
     trial%across = beyond(3) + committed%strain(3)
     if (self%sheet) trial%stress(3) = 0.0_wp
     if (committed%accumulated == 0.0_wp) return
     trial%plastic = .true.
     trial%total = equivalent_of(deviator_of([strain(:2), trial%across, strain(4)])) + &
-                  self%shift*trial%modulus*trial%deviatoric
+                  self%shift*equivalent_stress(trial%stress)
   end subroutine update
 
   !> Find the state at a strain minus the plastic strain, with its zz as given.
-  pure subroutine find_state(self, strain, accumulated, state)
+  pure subroutine find_state(self, strain, committed, state)
     class(material_law), intent(in) :: self
-    real(wp), intent(in) :: strain(components), accumulated
+    real(wp), intent(in) :: strain(components)
+    type(plastic_history), intent(in) :: committed
     type(point_state), intent(out) :: state
-    real(wp) :: deviator(components), on_curve
+    real(wp) :: back(components), elastic, on_curve
 
-    deviator = deviator_of(strain)
-    state%deviatoric = equivalent_of(deviator)
-    ! The curve is over e of loads that grow from zero: elastic plus plastic strain.
-    state%curve_value = self%curve%at_strain(state%deviatoric + accumulated)
-    if (accumulated > 0.0_wp) then
-      on_curve = state%modulus*(state%deviatoric + accumulated)
-      state%yielded = on_curve < 3.0_wp*self%shear*state%deviatoric
-      state%modulus = 3.0_wp*self%shear
-      if (state%yielded) state%modulus = on_curve/state%deviatoric
-    end if
+    back = self%back_strain(committed)
+    state%deviator = deviator_of(strain) - back
+    state%deviatoric = equivalent_of(state%deviator)
+    associate (accumulated => committed%accumulated, e => state%deviatoric)
+      ! The curve is over e of loads that grow from zero: elastic plus plastic strain.
+      state%curve_value = self%curve%at_strain(e + accumulated)
+      if (accumulated > 0.0_wp) then
+        elastic = 3.0_wp*self%shear*e
+        on_curve = state%modulus*(e + accumulated)
+        if (self%kinematic > 0.0_wp) then
+          ! Radial return: the yield surface moves by the kinematic part of the hardening, and grows by the
+          ! rest.
+          on_curve = elastic - max(0.0_wp, elastic - self%yield_stress - (self%hardening - self%kinematic)* &
+                                   accumulated)/(1.0_wp + self%hardening/(3.0_wp*self%shear))
+        end if
+        state%yielded = on_curve < elastic*(1.0_wp - rounded_off)
+        state%modulus = 3.0_wp*self%shear
+        if (state%yielded) state%modulus = on_curve/e
+      end if
+    end associate
     state%plastic = state%yielded
-    state%stress = 2.0_wp/3.0_wp*state%modulus*deviator
+    state%stress = 2.0_wp/3.0_wp*state%modulus*state%deviator + 2.0_wp*self%shear*back
     state%stress(:3) = state%stress(:3) + 3.0_wp*self%bulk*(sum(strain(:3))/3.0_wp)
   end subroutine find_state
 
   !> Find the strain zz in plane stress, minus the plastic strain, at which the stress zz is zero. This stress
   !! increases with the strain; its zero is between that of the elastic body and that of constant volume.
-  pure real(wp) function strain_across(self, strain, accumulated) result(across)
+  pure real(wp) function strain_across(self, strain, committed) result(across)
     class(material_law), intent(in) :: self
-    real(wp), intent(in) :: strain(components), accumulated
+    real(wp), intent(in) :: strain(components)
+    type(plastic_history), intent(in) :: committed
     type(point_state) :: state
-    real(wp) :: deviator(components), elastic, low, high, next, rate
+    real(wp) :: elastic, low, high, next, rate
     integer :: step
 
     elastic = -(self%bulk - 2.0_wp*self%shear/3.0_wp)/(self%bulk + 4.0_wp*self%shear/3.0_wp)
@@ -107,16 +125,13 @@ contains
     low = min(across, -(strain(1) + strain(2)))
     high = max(across, -(strain(1) + strain(2)))
     do step = 1, most_steps
-      call find_state(self, [strain(:2), across, strain(4)], accumulated, state)
+      call find_state(self, [strain(:2), across, strain(4)], committed, state)
       if (.not. state%yielded .and. step == 1) return
       if (state%stress(3) == 0.0_wp) return
       if (state%stress(3) > 0.0_wp) high = across
       if (state%stress(3) < 0.0_wp) low = across
       rate = self%bulk + 4.0_wp/9.0_wp*state%modulus
-      if (.not. self%curve%paper_ratio) then
-        deviator = deviator_of([strain(:2), across, strain(4)])
-        rate = rate + radial_stiffness(state)*deviator(3)**2
-      end if
+      if (.not. self%curve%paper_ratio) rate = rate + radial_stiffness(state)*state%deviator(3)**2
       next = across - state%stress(3)/rate
       if (next <= low .or. next >= high) next = 0.5_wp*(low + high)
       if (abs(next - across) <= epsilon(1.0_wp)*abs(next)) return
@@ -125,21 +140,27 @@ contains
   end function strain_across
 
   !> Find the history of a point after an increment.
-  pure type(plastic_history) function history_after(self, strain, committed, state) result(history)
+  pure type(plastic_history) function history_after(self, committed, state) result(history)
     class(material_law), intent(in) :: self
-    real(wp), intent(in) :: strain(components)       !! at the end of the increment
     type(plastic_history), intent(in) :: committed   !! before it
-    type(point_state), intent(in) :: state           !! from `update`
+    type(point_state), intent(in) :: state           !! from `update`, at its end
     real(wp) :: elastic
 
     history = committed
     if (.not. state%yielded) return
     elastic = state%modulus/(3.0_wp*self%shear)   ! elastic part of the deviator
-    associate (deviator => deviator_of([strain(:2), state%across, strain(4)] - committed%strain))
-      history%strain = committed%strain + (1.0_wp - elastic)*deviator*[1.0_wp, 1.0_wp, 1.0_wp, 2.0_wp]
-    end associate
+    history%strain = committed%strain + (1.0_wp - elastic)*state%deviator*[1.0_wp, 1.0_wp, 1.0_wp, 2.0_wp]
     history%accumulated = committed%accumulated + (1.0_wp - elastic)*state%deviatoric
   end function history_after
+
+  !> Find the back stress over twice the shear modulus: Prager's, proportional to the plastic strain.
+  pure function back_strain(self, committed) result(back)
+    class(material_law), intent(in) :: self
+    type(plastic_history), intent(in) :: committed
+    real(wp) :: back(components)   !! with the tensor's shear strain
+
+    back = self%kinematic/(3.0_wp*self%shear)*committed%strain*[1.0_wp, 1.0_wp, 1.0_wp, 0.5_wp]
+  end function back_strain
 
   !> Find the deviator of a strain, with the tensor's shear strain.
   pure function deviator_of(strain) result(deviator)
@@ -176,20 +197,17 @@ contains
   end function secant_matrix
 
   !> Find D of d stress = D d strain about a state, consistent with `update` [stress].
-  pure function tangent_matrix(self, strain, committed, state) result(d)
+  pure function tangent_matrix(self, state) result(d)
     class(material_law), intent(in) :: self
-    real(wp), intent(in) :: strain(components)
-    type(plastic_history), intent(in) :: committed
     type(point_state), intent(in) :: state       !! from `update`
     real(wp) :: d(components, components)
-    real(wp) :: across(components), deviator(components), radial
+    real(wp) :: across(components), radial
     integer :: j
 
     d = isotropic_matrix(self%bulk, state%modulus/3.0_wp, .false.)
-    deviator = deviator_of([strain(:2), state%across, strain(4)] - committed%strain)
     radial = radial_stiffness(state)
     do j = 1, components
-      d(:, j) = d(:, j) + radial*deviator*deviator(j)
+      d(:, j) = d(:, j) + radial*state%deviator*state%deviator(j)
     end do
     if (.not. self%sheet) return
     ! Eliminate the strain zz, since the stress zz is zero.

@@ -43,6 +43,10 @@ contains
         law%yields = allocated(model%sections%curve(s)%strain)
         if (law%yields) law%yield_stress = model%sections%curve(s)%stress(2)
         law%curve = new_curve(model%sections%curve(s), law%elasticity, model%controls%paper_ratio)
+        if (model%sections%curve(s)%kinematic > 0.0_wp) then
+          law%hardening = law%curve%hardening()
+          law%kinematic = model%sections%curve(s)%kinematic*law%hardening
+        end if
         yields(s) = law%yields
       end associate
     end do
@@ -51,19 +55,17 @@ contains
     materials%can_yield = yields(materials%of_point)
   end subroutine find_materials
 
-  !> Commit an increment of the loads: the next one starts from its strains.
-  subroutine commit(self, strain, state)
+  !> Commit an increment of the loads: the next one starts from its states.
+  subroutine commit(self, state)
     class(model_materials), intent(inout) :: self
-    real(wp), intent(in) :: strain(:, :)           !! at its end [components, points]
-    type(point_state), intent(in) :: state(:)      !! its states [points]
+    type(point_state), intent(in) :: state(:)      !! at its end [points]
     integer :: p
 
-    if (.not. allocated(self%committed)) allocate (self%committed(size(strain, 2)))
-    !$omp parallel do num_threads(threads_over(size(strain, 2)))
-    do p = 1, size(strain, 2)
+    if (.not. allocated(self%committed)) allocate (self%committed(size(state)))
+    !$omp parallel do num_threads(threads_over(size(state)))
+    do p = 1, size(state)
       if (self%can_yield(p)) &
-        self%committed(p) = self%section(self%of_point(p))%history_after(strain(:, p), self%committed(p), &
-                                                                               state(p))
+        self%committed(p) = self%section(self%of_point(p))%history_after(self%committed(p), state(p))
     end do
     !$omp end parallel do
   end subroutine commit

@@ -49,6 +49,7 @@ module epcont_model_controls
   type :: uniaxial_curve
     real(wp), allocatable :: strain(:)   !! [points]
     real(wp), allocatable :: stress(:)   !! [stress] [points]
+    real(wp) :: kinematic = 0.0_wp       !! part of the hardening by motion of the yield surface, 0 to 1
     !> Strain and stress of the last point if it only gives a slope, and no table ends there
     real(wp) :: endless(2) = -1.0_wp
   end type uniaxial_curve

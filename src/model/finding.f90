@@ -18,7 +18,8 @@ module epcont_model_finding
   !> Parts of an item. By default, a number is a column of its card (0: all, 1: the id), and -k is the k-th
   !! entry of its list (of an element: node k of the model). Parts of sections and body loads are named here;
   !! the part of a SUPORT DOF is its component, that of a spring is the end whose component is meant.
-  integer, parameter, public :: item_density = 1, item_acceleration = 1, item_centre = 2, item_spin_up = 3
+  integer, parameter, public :: item_density = 1, item_hardening = 2, &
+    item_acceleration = 1, item_centre = 2, item_spin_up = 3
 
 contains
 

@@ -28,6 +28,7 @@ module epcont_plan_iteration_plan
     logical :: chosen_here = .false.       !! epcont chooses the method, not the deck
     !> Largest change, and largest estimated error, of a displacement with which the iteration ends
     real(wp) :: tolerance = 0.0_wp
+    logical :: keeps = .false.             !! factors are kept for another load case
     integer :: threads = 1                 !! threads that work on bodies in parallel
     logical :: joined = .false.            !! contact solver JOINED, otherwise CONRY
     logical :: rule_chosen_here = .false.  !! epcont chooses the contact solver, not the deck

@@ -7,13 +7,14 @@ module epcont_plasticity_equilibrium_iteration
   use epcont_linear_linear_problem, only: linear_problem, new_linear_problem
   use epcont_linear_solved_state, only: solved_state
   use epcont_material_linear_law, only: elastic_law
+  use epcont_material_material_law, only: plastic_history
   use epcont_model_expansion, only: find_free_strains
   use epcont_model_load_set, only: load_set
-  use epcont_model_controls, only: method_inistr, method_modsec, method_newton, method_secant
+  use epcont_model_controls, only: method_inistr, method_newton, method_secant
   use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_plan_planned_model, only: planned_model
+  use epcont_plasticity_choose_method, only: choose_method, mixes
   use epcont_plasticity_error_estimate, only: error_estimate, finite_ratio
-  use epcont_plasticity_initial_stress, only: initial_stress_method
   use epcont_plasticity_law_of_state, only: factor_law, linearise
   use epcont_plasticity_newton, only: newton_method
   use epcont_plasticity_observer, only: iteration_record, observer
@@ -44,11 +45,11 @@ module epcont_plasticity_equilibrium_iteration
     type(linear_problem), allocatable :: linear     !! as after the last solve
     !> With factors of the unloaded state, if another load case needs them and the model yields
     type(linear_problem), allocatable :: virgin
-    logical :: keeps = .false.                      !! another load case may follow
     type(load_set) :: start                         !! loads at the start of the path; no `load`: unloaded
     type(load_set), allocatable :: last             !! at its end, if it has several load steps
     real(wp) :: load_factor = 1.0_wp                !! part of the path
     type(solved_state), allocatable :: state         !! state at this load
+    type(solved_state) :: committed                  !! state before it: the last committed one
     logical :: converged = .false.
     logical :: runs_away = .false.                  !! no equilibrium: displacements grow without end
     integer :: failed_body = 0                      !! body that could not be factored
@@ -56,7 +57,7 @@ module epcont_plasticity_equilibrium_iteration
     type(pivot_record), allocatable :: pivot(:)         !! kept pivots of all solves
     type(solved_state), private :: about             !! state about which the law is linear
     type(iteration_record), private :: now          !! the last solve
-    logical, allocatable, private :: touching(:)    !! active set, from which the next search starts [pairs]
+    logical, allocatable :: touching(:)             !! active set, from which the next search starts [pairs]
     real(wp), allocatable, private :: force(:)      !! the last contact forces [force] [pairs]
     type(error_estimate), private :: estimate
     integer, private :: factored_before = 0         !! bodies, for load cases before
@@ -67,9 +68,9 @@ module epcont_plasticity_equilibrium_iteration
     procedure :: begin
     procedure :: take_loads
     procedure :: iterate
+    procedure :: go_back
     procedure :: return_to
     procedure :: factorizations
-    procedure :: finish
     procedure, private :: put_loads
     procedure, private :: set_law
     procedure, private :: judge
@@ -82,13 +83,18 @@ module epcont_plasticity_equilibrium_iteration
 
 contains
 
-  !> The state without loads. Of several load cases the first is one without `linear`; the others have it from
-  !! the one before, and the factors of the unloaded state.
-  subroutine begin(self, scene)
+  !> Begin at the start of the path. The first load case is one without `linear`; the others have it from the
+  !! one before, and the factors of the unloaded state.
+  subroutine begin(self, scene, loads, history, state)
     class(equilibrium_iteration), intent(inout) :: self
     type(planned_model), intent(inout) :: scene     !! gets the loads of the first load step
+    ! Start of the path; absent: unloaded
+    type(load_set), intent(in), optional :: loads
+    type(plastic_history), intent(in), optional :: history(:)   !! [points]
+    type(solved_state), intent(in), optional :: state
 
-    if (self%plan%load_steps > 1) self%last = scene%model%loads
+    if (self%plan%load_steps > 1 .or. present(loads)) self%last = scene%model%loads
+    if (present(loads)) self%start = loads
     call self%put_loads(scene, 1.0_wp/self%plan%load_steps)
     if (allocated(self%virgin)) self%linear = self%virgin
     self%stiff = allocated(self%linear)
@@ -102,13 +108,19 @@ contains
     end if
     associate (linear => self%linear, model => scene%model)
       self%factored_before = linear%factorizations
-      linear%rule%keeps = self%keeps .and. .not. linear%materials%yields
+      linear%rule%keeps = self%plan%keeps .and. .not. linear%materials%yields
       if (allocated(linear%materials%committed)) deallocate (linear%materials%committed)   ! of another case
-      allocate (self%about%displacement(directions, model%mesh%nodes), source=0.0_wp)
-      allocate (self%about%strain(components, model%mesh%points), source=0.0_wp)
+      if (present(history)) linear%materials%committed = history
+      if (present(state)) then
+        self%committed = state
+      else
+        allocate (self%committed%displacement(directions, model%mesh%nodes), source=0.0_wp)
+        allocate (self%committed%strain(components, model%mesh%points), source=0.0_wp)
+      end if
+      if (linear%materials%yields) self%committed%point = linear%materials%states(self%committed%strain)
       allocate (self%force(model%contact%pairs), source=0.0_wp)
-      if (linear%materials%yields) self%about%point = linear%materials%states(self%about%strain)
     end associate
+    call self%go_back()
     allocate (self%history(0), self%pivot(0))
   end subroutine begin
 
@@ -188,6 +200,19 @@ contains
     end do
   end subroutine iterate
 
+  !> Return to the committed state, to continue with other loads. It may have other pairs.
+  subroutine go_back(self)
+    class(equilibrium_iteration), intent(inout) :: self
+
+    self%about = self%committed
+    self%yielded = 0
+    if (allocated(self%about%point)) self%yielded = count(self%about%point%yielded)
+    if (.not. allocated(self%about%contact%force)) return
+    if (size(self%about%contact%force) /= size(self%force)) return
+    self%force = self%about%contact%force
+    self%touching = self%about%contact%touching
+  end subroutine go_back
+
   !> Return to an earlier state: its loads, and the stiffness about it.
   subroutine return_to(self, scene, state, part, watch)
     class(equilibrium_iteration), intent(inout) :: self
@@ -211,40 +236,6 @@ contains
     factorizations = self%linear%factorizations - self%factored_before
   end function factorizations
 
-  !> Pass on the data for another load case.
-  subroutine finish(self, is_equilibrium, linear, virgin)
-    class(equilibrium_iteration), intent(inout) :: self
-    logical, intent(in) :: is_equilibrium   !! the last active set belongs to an equilibrium state
-    type(linear_problem), allocatable, intent(inout) :: linear, virgin
-
-    if (is_equilibrium) call move_alloc(self%touching, self%linear%touching)
-    call move_alloc(self%linear, linear)
-    call move_alloc(self%virgin, virgin)
-  end subroutine finish
-
-  !> Create the method, without data, as at the start of each load.
-  subroutine choose_method(plan, method)
-    type(iteration_plan), intent(in) :: plan
-    class(secant_method), allocatable, intent(out) :: method
-
-    select case (plan%method)
-    case (method_newton)
-      allocate (newton_method :: method)
-    case (method_inistr)
-      allocate (initial_stress_method :: method)
-    case default
-      allocate (secant_method :: method)
-    end select
-    if (mixes(plan)) allocate (method%mixer)
-  end subroutine choose_method
-
-  !> Does the method combine its last states?
-  pure logical function mixes(plan)
-    type(iteration_plan), intent(in) :: plan
-
-    mixes = any(plan%method == [method_modsec, method_inistr])
-  end function mixes
-
   !> Set the law about the last state and make its stiffness, unless a body cannot be factored.
   subroutine set_law(self, scene, method, watch)
     class(equilibrium_iteration), intent(inout) :: self
@@ -259,7 +250,7 @@ contains
     self%elastic = self%yielded == 0
     call factor_law(scene, method, self%about, self%linear, self%failed_body, watch)
     self%stiff = .true.
-    if (self%keeps .and. self%elastic .and. self%linear%materials%yields .and. &
+    if (self%plan%keeps .and. self%elastic .and. self%linear%materials%yields .and. &
         .not. allocated(self%virgin)) self%virgin = self%linear
   end subroutine set_law
 

@@ -25,7 +25,7 @@ contains
 
     associate (law => linear%law, state => about%point(p))
       law%initial_stress(:, p) = 0.0_wp
-      if (state%yielded) law%initial_stress(:, p) = &
+      if (state%plastic) law%initial_stress(:, p) = &
         state%stress - matmul(law%matrix(:, :, law%matrix_of(p)), about%strain(:, p))
     end associate
   end subroutine linearise

@@ -1,26 +1,32 @@
-!> The load path: the loads are applied in equal load steps. Each is iterated to equilibrium, and in flow
-!> theory committed before the next one.
+!> The load path: the loads grow from those at its start to those at its end, in load steps. Each step is
+!> iterated to equilibrium. In flow theory a step is an increment: it is committed before the next one, and
+!> halved if it does not converge.
 module epcont_plasticity_load_path
   use epcont_assembly_bodies, only: weak_pivot
   use epcont_base_kinds, only: wp
   use epcont_contact_problem, only: contact_solved, pivot_record
   use epcont_linear_linear_problem, only: linear_problem
-  use epcont_linear_solved_state, only: committed_step, solved_state
+  use epcont_linear_solved_state, only: solved_state
+  use epcont_material_material_law, only: plastic_history
+  use epcont_model_load_set, only: load_set
   use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_plan_planned_model, only: planned_model
   use epcont_plasticity_equilibrium_iteration, only: equilibrium_iteration
   use epcont_plasticity_observer, only: iteration_record, observer
   use epcont_plasticity_unloading, only: find_unloaded
-  use epcont_system_stopwatch, only: stage_stiffness, stage_yielding
+  use epcont_system_stopwatch, only: stage_yielding
   implicit none
   private
-  public :: followed_loads, follow_loads
+  public :: followed_loads, load_path, path_end
+
+  !> Parts of a load step; an increment is at least one of them.
+  integer, parameter :: parts = 64
 
   !> Result of the loads: the answer, or the state closest to it.
   type, extends(solved_state) :: followed_loads
-    real(wp) :: load_factor = 0.0_wp       !! part of the loads of this state
-    logical :: converged = .false.         !! for all loads, to the tolerance of the iteration
-    logical :: carried = .false.           !! a part of the loads, to this tolerance
+    real(wp) :: load_factor = 0.0_wp       !! part of the path up to this state
+    logical :: converged = .false.         !! for the whole path, to the tolerance of the iteration
+    logical :: carried = .false.           !! for a part of it, to this tolerance
     logical :: runs_away = .false.         !! no equilibrium: the displacements grow without end
     integer :: failed_body = 0             !! body that could not be factored
     logical :: lacks_memory = .false.      !! the reason was too little memory
@@ -29,79 +35,132 @@ module epcont_plasticity_load_path
     type(weak_pivot) :: weakest            !! of the stiffness
     type(iteration_record), allocatable :: history(:)   !! every solve
     type(pivot_record), allocatable :: pivot(:)         !! kept pivots of all solves
-    !> Flow theory: load steps before the last, for the certificate [any]
-    type(committed_step), allocatable :: committed(:)
     integer :: unloaded = 0                !! elements whose strain decreased after yielding, while the load
                                            !! grew
     integer :: first_unloaded = 0          !! one of them
   contains
-    procedure, private :: keep_step, keep_committed
+    procedure, private :: keep_step
   end type followed_loads
+
+  !> End of a path, from which another one can start.
+  type :: path_end
+    type(load_set) :: loads
+    type(plastic_history), allocatable :: history(:)   !! [points]
+    type(solved_state) :: state
+  end type path_end
+
+  type :: load_path
+    private
+    type(equilibrium_iteration) :: iteration
+    integer :: place = 0                     !! part of the path that is done
+    integer :: stride = parts                !! of the next load step
+    !> e of points that yielded in the last load step, else 0 [points]
+    real(wp), allocatable :: strained(:)
+  contains
+    procedure :: begin
+    procedure :: advance
+    procedure :: commit
+    procedure :: is_complete
+    procedure :: finish
+    procedure, private :: part_of_loads
+  end type load_path
 
 contains
 
-  !> Apply the loads step by step. The first load case starts without `linear`; the others get it from the
-  !! previous one, with the factors of the unloaded state. The model keeps the loads of the state found.
-  subroutine follow_loads(scene, plan, keeps, linear, virgin, answer, watch)
-    type(planned_model), intent(inout) :: scene                !! model, with the loads at the end
-    type(iteration_plan), intent(in) :: plan                   !! method and tolerances; may differ from the
-                                                               !! model's
-    logical, intent(in) :: keeps                               !! another load case may follow
+  !> Begin a path. The first load case starts without `linear`; the others get it from the previous one, with
+  !! the factors of the unloaded state.
+  subroutine begin(self, scene, plan, linear, virgin, from)
+    class(load_path), intent(out) :: self
+    !> With the loads at the end of the path; gets those of the first load step
+    type(planned_model), intent(inout) :: scene
+    type(iteration_plan), intent(in) :: plan          !! method and tolerances; may differ from the model's
     type(linear_problem), allocatable, intent(inout) :: linear   !! as after the last solve
     !> With factors of the unloaded state, if they will be needed and the model yields
     type(linear_problem), allocatable, intent(inout) :: virgin
-    type(followed_loads), intent(out) :: answer                !! state and history
-    class(observer), intent(inout) :: watch                    !! takes the time, called after each solve
-    type(equilibrium_iteration) :: iteration
-    real(wp) :: strained(scene%model%mesh%points)   ! e of points that yielded in the last load step, else 0
-    integer :: step
+    class(path_end), intent(in), optional :: from     !! start of the path; absent: unloaded
 
-    iteration%plan = plan
-    iteration%keeps = keeps
-    call move_alloc(linear, iteration%linear)
-    call move_alloc(virgin, iteration%virgin)
-    call iteration%begin(scene)
-    call watch%lap(stage_stiffness)
-    allocate (answer%committed(0))
-    strained = 0.0_wp
-    do step = 1, plan%load_steps
-      if (scene%model%controls%flow_theory .and. step > 1) then
-        call iteration%linear%materials%commit(answer%strain, answer%point)
-        call answer%keep_committed(scene%model%loads%rise)
-      end if
-      if (step > 1) call iteration%take_loads(scene, real(step, wp)/plan%load_steps)
-      call iteration%iterate(scene, watch)
+    self%iteration%plan = plan
+    call move_alloc(linear, self%iteration%linear)
+    call move_alloc(virgin, self%iteration%virgin)
+    if (present(from)) then
+      call self%iteration%begin(scene, from%loads, from%history, from%state)
+    else
+      call self%iteration%begin(scene)
+    end if
+    call move_alloc(self%iteration%linear, linear)
+    allocate (self%strained(scene%model%mesh%points), source=0.0_wp)
+  end subroutine begin
+
+  !> Make the next load step. The model gets the loads of the state found.
+  subroutine advance(self, scene, linear, answer, watch)
+    class(load_path), intent(inout) :: self
+    type(planned_model), intent(inout) :: scene
+    type(linear_problem), allocatable, intent(inout) :: linear   !! as after the last solve
+    class(followed_loads), intent(inout) :: answer               !! state found
+    class(observer), intent(inout) :: watch                      !! takes the time, called after each solve
+
+    call move_alloc(linear, self%iteration%linear)
+    associate (iteration => self%iteration, flow => scene%model%controls%flow_theory)
+      do
+        if (self%place > 0 .or. self%stride < parts) &
+          call iteration%take_loads(scene, self%part_of_loads(self%place + self%stride))
+        call iteration%iterate(scene, watch)
+        if (iteration%converged .or. .not. flow .or. self%stride == 1 .or. iteration%failed_body > 0) exit
+        self%stride = self%stride/2
+        call iteration%go_back()
+      end do
       call answer%keep_step(scene, iteration, watch)
-      if (.not. iteration%converged) exit
-      if (plan%load_steps > 1 .and. .not. scene%model%controls%flow_theory) &
-        call find_unloaded(scene%model, answer%point, plan%tolerance, strained, answer%unloaded, &
-                           answer%first_unloaded)
-      call watch%lap(stage_yielding)
-    end do
-    answer%converged = iteration%converged
-    call move_alloc(iteration%history, answer%history)
-    call move_alloc(iteration%pivot, answer%pivot)
-    call iteration%finish(answer%failed_body == 0 .and. answer%contact%state == contact_solved, &
-                          linear, virgin)
-  end subroutine follow_loads
+      answer%converged = iteration%converged
+      if (iteration%converged) then
+        self%place = self%place + self%stride
+        if (mod(self%place, 2*self%stride) == 0) self%stride = min(parts, 2*self%stride)
+        if (iteration%plan%load_steps > 1 .and. .not. flow) &
+          call find_unloaded(scene%model, answer%point, iteration%plan%tolerance, self%strained, &
+                             answer%unloaded, answer%first_unloaded)
+      end if
+      call move_alloc(iteration%linear, linear)
+    end associate
+    call watch%lap(stage_yielding)
+  end subroutine advance
 
-  !> Keep the last load step, which is now committed. gfortran 12 leaks an array constructor of such a type.
-  pure subroutine keep_committed(self, rise)
-    class(followed_loads), intent(inout) :: self
-    real(wp), allocatable, intent(in) :: rise(:, :)   !! temperatures of this load step (`load_set%rise`)
-    type(committed_step), allocatable :: more(:)
-    integer :: k, n
+  !> Commit an increment: the next one starts from its state.
+  subroutine commit(self, linear, answer)
+    class(load_path), intent(inout) :: self
+    type(linear_problem), intent(inout) :: linear
+    class(followed_loads), intent(in) :: answer   !! its state
 
-    n = size(self%committed)
-    allocate (more(n + 1))
-    do k = 1, n
-      call move_alloc(self%committed(k)%rise, more(k)%rise)
-      call move_alloc(self%committed(k)%deformation, more(k)%deformation)
-    end do
-    if (allocated(rise)) more(n + 1)%rise = rise
-    more(n + 1)%deformation = self%deformation
-    call move_alloc(more, self%committed)
-  end subroutine keep_committed
+    call linear%materials%commit(answer%point)
+    self%iteration%committed = answer%solved_state
+  end subroutine commit
+
+  !> Are all loads applied?
+  pure logical function is_complete(self)
+    class(load_path), intent(in) :: self
+
+    is_complete = self%place == parts*self%iteration%plan%load_steps
+  end function is_complete
+
+  !> Part of the loads after some parts of load steps.
+  pure real(wp) function part_of_loads(self, place)
+    class(load_path), intent(in) :: self
+    integer, intent(in) :: place
+
+    part_of_loads = real(place, wp)/(parts*self%iteration%plan%load_steps)
+  end function part_of_loads
+
+  !> Pass on the history of the iteration, and the data for another load case.
+  subroutine finish(self, linear, virgin, answer)
+    class(load_path), intent(inout) :: self
+    type(linear_problem), allocatable, intent(inout) :: linear, virgin
+    class(followed_loads), intent(inout) :: answer
+
+    call move_alloc(self%iteration%history, answer%history)
+    call move_alloc(self%iteration%pivot, answer%pivot)
+    call move_alloc(self%iteration%virgin, virgin)
+    ! The last active set belongs to an equilibrium state.
+    if (answer%failed_body == 0 .and. answer%contact%state == contact_solved) &
+      call move_alloc(self%iteration%touching, linear%touching)
+  end subroutine finish
 
   !> Store the result of a load step. If it was not carried, nothing is stored, unless it is the first.
   subroutine keep_step(self, scene, iteration, watch)

@@ -48,11 +48,11 @@ contains
     real(wp) :: matrix(components, components)
 
     associate (material => linear%materials%section(linear%materials%of_point(p)), &
-               strain => about%strain(:, p), state => about%point(p), history => linear%materials%history(p))
+               strain => about%strain(:, p), state => about%point(p))
       linear%law%initial_stress(:, p) = 0.0_wp
       matrix = material%secant_matrix(state)
       if (state%yielded) &
-        matrix = self%blend*matrix + (1.0_wp - self%blend)*material%tangent_matrix(strain, history, state)
+        matrix = self%blend*matrix + (1.0_wp - self%blend)*material%tangent_matrix(state)
       if (state%plastic) linear%law%initial_stress(:, p) = state%stress - matmul(matrix, strain)
       call linear%law%set_matrix(p, matrix)
     end associate

@@ -10,8 +10,8 @@ import subprocess
 import sys
 
 LAYERS = ["base", "system", "deck", "element", "geometry", "model", "contact_geometry", "build", "material", "linalg", "plan",
-          "assembly", "flexibility", "contact", "linear", "plasticity", "result", "certificate", "accuracy", "verdict", "attempts", "solution",
-          "messages", "report", "epcont", "app"]   # solution, epcont: src/solution.f90, src/epcont.f90
+          "assembly", "flexibility", "contact", "linear", "plasticity", "result", "certificate", "accuracy", "verdict", "attempts", "evaluation", "solution",
+          "messages", "report", "epcont", "app"]   # from verdict to solution, and epcont: files of src itself
 # A certificate computed by the code it certifies is worth nothing.
 SHUNNED = {"certificate": {"linalg", "assembly", "flexibility", "contact", "linear", "plasticity"}}
 VERSION = "src/base/version.f90"
