@@ -139,6 +139,8 @@ contains
         material(m(i))%yielding = i
         material(m(i))%curve%kinematic = kinematic_part(deck, i, found)
       end do
+      if (deck%parameter_row('HRFRAC') > 0 .and. all(nint(mats1%value(mats1%column('HR'), :)) /= 3)) &
+        call found%add_note(card_param, deck%parameter_row('HRFRAC'), 1, ' has no effect without HR 3 (MATS1)')
     end associate
   end subroutine read_materials
 

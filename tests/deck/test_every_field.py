@@ -69,6 +69,8 @@ DECKS = {
     "MATS1,1,,PLASTIC,50.,1,1,10.|",
     "flow": OUTPUT + "NLPARM = 3|BEGIN BULK|PARAM,PLANE,STRAIN|" + CORNERS + "SPC1,1,12,1,2|SPC,1,3,2,.02,4,2,.02|CQUAD4,1,1,1,2,3,4|PSHELL,1,1,1.|"
     "MAT1,1,1000.,,.3|MATS1,1,,PLASTIC,50.,1,1,10.|PARAM,THEORY,FLOW|NLPARM,3,2|",
+    "mixed": OUTPUT + "NLPARM = 3|BEGIN BULK|PARAM,PLANE,STRAIN|" + CORNERS + "SPC1,1,12,1,2|SPC,1,3,2,.02,4,2,.02|CQUAD4,1,1,1,2,3,4|PSHELL,1,1,1.|"
+    "MAT1,1,1000.,,.3|MATS1,1,,PLASTIC,50.,1,3,10.|PARAM,HRFRAC,.5|NLPARM,3,2|",
     "table": "PARAM,PLANE,STRESS|" + CORNERS + "SPC1,1,12,1,2|SPC,1,3,2,.02,4,2,.02|CQUAD4,1,1,1,2,3,4|PSHELL,1,1,1.|MAT1,1,1000.,,.3|"
     "MATS1,1,3,NLELAST|TABLES1,3,,,,,,,,0.,0.,.01,10.,.1,12.,ENDT|TABLES1,4,,,,,,,,0.,0.,.01,10.,.1,13.,ENDT|",
 }
@@ -108,7 +110,7 @@ CARDS = {
     "CBAR": ("plane", 0, [("EID", "91", NOTED), ("PID", "2", NOTED), ("GA", "3", NOTED), ("GB", "3", NOTED), *[ANYTHING] * 12]),
     "PARAM": ("plane", 0, [("NAME", "NONE", error("unknown parameter NONE")), ("VALUE", "NONE", error("PARAM PLANE: field 3 (VALUE)"))]),
     "MATS1": ("yield", 0, [("MID", "99", unknown("MAT1")), ("TID", "99", unknown("TABLES1")), ("TYPE", "ELASTIC", error("field 4 (TYPE)")), ("H", "60.", CHANGES),
-                           ("YF", "2", ZERO), ("HR", "2", ZERO), ("LIMIT1", "9.", CHANGES)]),
+                           ("YF", "2", ZERO), ("HR", "2", LISTED), ("LIMIT1", "9.", CHANGES)]),
     "TABLES1": ("table", 0, [("TID", "99", error("there is no TABLES1 3")), *[("", "1", BLANK)] * 7, ("X1 ..", ".1", error("TABLES1 3")),
                              ("Y1 ..", "1.", error("TABLES1 3")), ("Y4 ..", "14=13.", CHANGES)]),
     "CTRIA6": ("ctria6", 0, [*ELEMENT, *((f"G{k}", "99", unknown("GRID")) for k in range(1, 7))]),
@@ -148,9 +150,9 @@ PARAMETERS = {
     "PLANE": ("ctria3", "STRAIN", CHANGES), "RULE": ("plane", "JOINED", LISTED), "GAPGEOM": ("plane", "YES", CHANGES), "UNITS": ("plane", "MM", LISTED),
     "METHOD": ("yield", "SECANT", LISTED), "TOL": ("yield", ".1", LISTED), "MAXIT": ("yield", "7", LISTED), "MUP": ("yield", "PAPER", LISTED),
     "ORIGINAL": ("plane", "YES", LISTED), "NLOAD": ("yield", "2", LISTED), "SEARCH": ("feet", ".1", CHANGES), "SOLVER": ("plane", "FRONTAL", LISTED),
-    "FLEXIB": ("strip", "INVERT", LISTED), "ACCURACY": ("plane", ".1", LISTED), "THEORY": ("flow", "TOTAL", CHANGES), "CORNER": ("lines", "170.", LISTED),
+    "FLEXIB": ("strip", "INVERT", LISTED), "ACCURACY": ("plane", ".1", LISTED), "THEORY": ("flow", "TOTAL", CHANGES), "HRFRAC": ("mixed", ".9", CHANGES), "CORNER": ("lines", "170.", LISTED),
     "WTMASS": ("plane", "2.", CHANGES), "LGDISP": ("plane", "-1", NOTED), "INREL": ("plane", "0", NOTED)}
-WITHOUT = {"PLANE": "ctrax3", "RULE": "yield", "GAPGEOM": "lines", "METHOD": "plane", "TOL": "plane", "MAXIT": "plane", "MUP": "plane", "NLOAD": "plane", "THEORY": "plane",
+WITHOUT = {"PLANE": "ctrax3", "RULE": "yield", "GAPGEOM": "lines", "METHOD": "plane", "TOL": "plane", "MAXIT": "plane", "MUP": "plane", "NLOAD": "plane", "HRFRAC": "yield", "THEORY": "plane",
            "SEARCH": "plane", "FLEXIB": "yield", "CORNER": "plane", "WTMASS": "yield"}
 #: The same for each statement of case control, put before the others of `plane` or in place of the one with its name.
 STATEMENTS = {
