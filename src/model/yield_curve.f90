@@ -44,13 +44,13 @@ contains
     type(uniaxial_curve), intent(inout) :: curve   !! as many strains as stresses
     real(wp), intent(in) :: young                  !! E [stress]
     type(curve_fault), intent(out) :: fault        !! error, if there is one
-    character(len=:), allocatable :: remedy
+    character(len=:), allocatable :: what, remedy   ! gfortran 12 leaks expressions in constructors
     integer :: k
 
     associate (strain => curve%strain, stress => curve%stress)
       if (size(strain) < 3) then
-        fault = curve_fault(size(strain) + 1, 'has '//plural(size(strain), 'point'), &
-                            'at least 3: 0.0 0.0, the yield point, and one beyond it')
+        what = 'has '//plural(size(strain), 'point')
+        fault = curve_fault(size(strain) + 1, what, 'at least 3: 0.0 0.0, the yield point, and one beyond it')
       else if (strain(1) /= 0.0_wp .or. stress(1) /= 0.0_wp) then
         fault = curve_fault(1, 'the first point is not 0.0, 0.0', 'a curve from the origin')
       else if (stress(2) <= 0.0_wp .or. abs(strain(2) - stress(2)/young) > &
@@ -63,9 +63,11 @@ contains
         strain(2) = stress(2)/young
         do k = 3, size(strain)
           if (strain(k) <= strain(k - 1)) then
-            fault = curve_fault(k, 'the strain does not rise', 'more than '//short_real(strain(k - 1)))
+            remedy = 'more than '//short_real(strain(k - 1))
+            fault = curve_fault(k, 'the strain does not rise', remedy)
           else if (stress(k) < (1.0_wp - rounded_off)*stress(k - 1)) then
-            fault = curve_fault(k, 'the stress falls (softening)', 'at least '//short_real(stress(k - 1)))
+            remedy = 'at least '//short_real(stress(k - 1))
+            fault = curve_fault(k, 'the stress falls (softening)', remedy)
           else if (stress(k) - stress(k - 1) > young*(strain(k) - strain(k - 1))*(1.0_wp + no_effect)) then
             fault = curve_fault(k, 'steeper than the elastic line of the MAT1', 'a slope of at most E')
           end if
