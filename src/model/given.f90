@@ -121,20 +121,45 @@ contains
     if (.not. present(of)) call found%add_error(of_scene, 0, 0, text, remedy)
   end subroutine need
 
-  !> Check that an array is allocated and has the required shape.
+  !> Check that an array is allocated and has the required shape. Its rank is not assumed: gfortran 12
+  !! would dereference an array that is not allocated.
   subroutine fit(found, name, wanted, array)
     type(findings), intent(inout) :: found
     character(len=*), intent(in) :: name
     integer, intent(in) :: wanted(:)
-    type(*), intent(in), optional :: array(..)   !! absent: the array is not allocated
+    type(*), intent(in), optional :: array(:)   !! absent: the array is not allocated
+    integer, allocatable :: extent(:)
 
-    if (.not. present(array)) then
+    if (present(array)) extent = shape(array)
+    call fit_shape(found, name, wanted, extent)
+  end subroutine fit
+
+  !> The same for an array of rank 2.
+  subroutine fit_matrix(found, name, wanted, array)
+    type(findings), intent(inout) :: found
+    character(len=*), intent(in) :: name
+    integer, intent(in) :: wanted(:)
+    type(*), intent(in), optional :: array(:, :)   !! absent: the array is not allocated
+    integer, allocatable :: extent(:)
+
+    if (present(array)) extent = shape(array)
+    call fit_shape(found, name, wanted, extent)
+  end subroutine fit_matrix
+
+  !> Report an array that is not allocated or has another shape.
+  subroutine fit_shape(found, name, wanted, extent)
+    type(findings), intent(inout) :: found
+    character(len=*), intent(in) :: name
+    integer, intent(in) :: wanted(:)
+    integer, allocatable, intent(in) :: extent(:)   !! not allocated: nor is the array
+
+    if (.not. allocated(extent)) then
       call need(found, [.false.], name//' is not allocated', 'allocate it, with size 0 if empty')
     else if (size(wanted) > 0) then
-      call need(found, [all(shape(array) == wanted)], name//' has the shape '//text_of_shape(shape(array)), &
+      call need(found, [all(extent == wanted)], name//' has the shape '//text_of_shape(extent), &
                 text_of_shape(wanted))
     end if
-  end subroutine fit
+  end subroutine fit_shape
 
   !> Check that arrays are allocated, with one column for each node, section or pair.
   subroutine check_shapes(found, given)
@@ -142,7 +167,7 @@ contains
     type(scene_type), intent(in) :: given
     integer :: nodes(2), pairs(2), sections(1)
 
-    call fit(found, 'x', any_shape, given%x)
+    call fit_matrix(found, 'x', any_shape, given%x)
     call fit(found, 'young', any_shape, given%young)
     call fit(found, 'initial_gap', any_shape, given%initial_gap)
     call fit(found, 'block', any_shape, given%block)
@@ -153,18 +178,18 @@ contains
     nodes = [directions, size(given%x, 2)]
     sections = size(given%young)
     pairs = [2, size(given%initial_gap)]
-    call fit(found, 'x(2, nodes)', nodes, given%x)
-    call fit(found, 'held(2, nodes)', nodes, given%held)
-    call fit(found, 'prescribed(2, nodes)', nodes, given%prescribed)
-    call fit(found, 'reference(2, nodes)', nodes, given%reference)
-    call fit(found, 'load(2, nodes)', nodes, given%load)
+    call fit_matrix(found, 'x(2, nodes)', nodes, given%x)
+    call fit_matrix(found, 'held(2, nodes)', nodes, given%held)
+    call fit_matrix(found, 'prescribed(2, nodes)', nodes, given%prescribed)
+    call fit_matrix(found, 'reference(2, nodes)', nodes, given%reference)
+    call fit_matrix(found, 'load(2, nodes)', nodes, given%load)
     call fit(found, 'poisson(sections)', sections, given%poisson)
     call fit(found, 'kinematics(sections)', sections, given%kinematics)
     call fit(found, 'thickness(sections)', sections, given%thickness)
     if (allocated(given%density)) call fit(found, 'density(sections)', sections, given%density)
     call fit(found, 'curve(sections)', sections, given%curve)
-    call fit(found, 'pair_node(2, pairs)', pairs, given%pair_node)
-    call fit(found, 'normal(2, pairs)', pairs, given%normal)
+    call fit_matrix(found, 'pair_node(2, pairs)', pairs, given%pair_node)
+    call fit_matrix(found, 'normal(2, pairs)', pairs, given%normal)
     if (.not. allocated(given%temperature)) return
     call fit(found, 'temperature(nodes)', nodes(2:), given%temperature)
     call fit(found, 'expansion(sections)', sections, given%expansion)
@@ -264,7 +289,7 @@ contains
     if (row == 0) return
     call fit(found, name//'section', any_shape, block%section)
     if (found%errors == 0) &
-      call fit(found, name//'node', [kinds(row)%nodes, size(block%section)], block%node)
+      call fit_matrix(found, name//'node', [kinds(row)%nodes, size(block%section)], block%node)
     if (found%errors > 0) return
     elements = elements + size(block%section)
     call need(found, all(within(block%node, nodes), dim=1), name//'node(:, #) is no node', up_to(nodes))
