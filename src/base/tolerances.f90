@@ -15,7 +15,7 @@ module epcont_base_tolerances
     !> Rounding left by a sum whose terms cancel, relative to the sum of their magnitudes (loads along a
     !! rigid-body mode, the gap between two points, prescribed displacements that are a rigid-body
     !! displacement): about a hundred terms, each rounded once.
-    !! > contact/test_random, model/test_facing, test_travel; < model/test_facing, test_travel
+    !! > contact/test_bounds, test_random, model/test_facing, test_travel; < model/test_facing, test_travel
     cancelled = 100*epsilon(1.0_wp), &
 
     ! Rounding of solutions.

@@ -108,7 +108,7 @@ contains
       where (problem%upper < huge(1.0_wp)) scaled%upper = problem%upper/scaled%force_unit - scaled%lower
       if (all(scaled%lower == 0.0_wp)) return
       scaled%known_force = scaled%known_force - scaled%lower
-      scaled%resultant = scaled%resultant - scaled%motion%carried(scaled%lower)
+      scaled%resultant = scaled%motion%not_carried(scaled%resultant, scaled%lower)
     end subroutine take_bounds
 
     !> Force that opens a gap; 0 if nothing deforms.

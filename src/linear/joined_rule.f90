@@ -52,7 +52,7 @@ contains
     associate (motion => self%problem%motion, unit => self%problem%motion%units())
       self%search%lower = self%problem%lower
       self%search%upper = self%problem%upper
-      call find_rigid_start(motion%over(unit), (self%resultant - motion%carried(self%problem%lower))/unit, &
+      call find_rigid_start(motion%over(unit), motion%not_carried(self%resultant, self%problem%lower)/unit, &
                             spread(0.0_wp, 1, motion%pairs), self%rigid, &
                             self%problem%upper - self%problem%lower)
     end associate
