@@ -102,7 +102,10 @@ contains
       self%lacks_memory = self%matrix%lacks_memory
       if (self%lacks_memory) return
       if (body%solver == solver_frontal) then
+        ! In a task of its own: libgomp leaks the dependences of tasks that a thread makes outside of tasks.
+        !$omp task shared(work) if(.false.)
         call work%fill_fronts()
+        !$omp end task
       else
         call work%fill(1, 1, size(body%part))
       end if

@@ -37,7 +37,7 @@ contains
     unit = [self%layout%unit, 0]
     !$omp parallel num_threads(solve_threads(self)) private(above)
     call use_one_thread_each()
-    !$omp single
+    !$omp master   ! libgomp leaks the dependences of tasks that another thread makes
     do p = 1, size(beyond)
       if (unit(p) /= p) cycle
       above = merge(self%layout%parent(p), size(unit), self%layout%parent(p) > 0)
@@ -45,7 +45,7 @@ contains
       call take_unit(p, self%layout%of_unit%of(p))
       !$omp end task
     end do
-    !$omp end single
+    !$omp end master
     !$omp end parallel
 
   contains
@@ -123,7 +123,7 @@ contains
     unit = [self%layout%unit, 0]
     !$omp parallel num_threads(solve_threads(self)) private(above)
     call use_one_thread_each()
-    !$omp single
+    !$omp master   ! see solve_lower
     do p = size(self%height), 1, -1
       if (unit(p) /= p .or. self%first(p + 1) <= first) cycle
       above = merge(self%layout%parent(p), size(unit), self%layout%parent(p) > 0)
@@ -131,7 +131,7 @@ contains
       call take_unit(self%layout%of_unit%of(p))
       !$omp end task
     end do
-    !$omp end single
+    !$omp end master
     !$omp end parallel
 
   contains
