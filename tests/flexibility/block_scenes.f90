@@ -2,7 +2,8 @@
 module block_scenes
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: plane_strain
-  use epcont_model_arrays, only: add_elements, line_couple, named_line, new_scene, scene_type, set_pairs, set_sections
+  use epcont_model_arrays, only: add_elements, line_couple, new_scene, scene_type, set_pairs, set_sections
+  use model_lines, only: lines_of
   implicit none
   private
   public :: turn, two_blocks
@@ -39,7 +40,7 @@ contains
       call set_pairs(scene, reshape([(below(i), above(i), i=1, n)], [2, n]), &
                      spread(matmul(turn(angle), [0.0_wp, 1.0_wp]), 2, n), spread(0.0_wp, 1, n))
     else
-      scene%line = [named_line(above), named_line(below)]
+      scene%line = lines_of(above, below)
       scene%couple = [line_couple([1, 2])]
     end if
 
