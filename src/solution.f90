@@ -4,7 +4,7 @@ module epcont_solution
   use epcont_attempts, only: attempt_list, attempts, because_near, because_no_contact, &
     because_not_converged, because_not_unique, because_refused, because_singular, because_unbalanced, &
     more_pairs, more_steps, other_rule, refinement
-  use epcont_base_error, only: error_type
+  use epcont_base_error, only: error_type, status_valid
   use epcont_base_kinds, only: wp
   use epcont_certificate_certificate, only: certificate_type
   use epcont_certificate_yielding, only: replayed_history
@@ -51,6 +51,9 @@ module epcont_solution
   contains
     procedure :: solve
     procedure :: return_to_given
+    procedure :: can_start
+    procedure, private :: keep_end
+    procedure, private :: has_memory
     procedure, private :: solve_as_planned
     procedure, private :: follow
     procedure, private :: begin_replay
@@ -86,9 +89,40 @@ contains
     if (self%answer%failed_body == 0 .and. self%answer%contact%state == contact_solved) &
       call self%assess_answer(watch)
     self%verdict = find_verdict(self%answer, self%certificate, self%model%contact%contact_is_off)
+    call self%keep_end()
     if (.not. self%kept%another) call self%kept%forget()
     if (allocated(self%kept%virgin) .and. allocated(self%kept%linear)) deallocate (self%kept%linear)
   end subroutine solve
+
+  !> Keep the end of this load case for the next one of a sequence. Without plastic strain, equilibrium does
+  !! not depend on the loads before.
+  subroutine keep_end(self)
+    class(solution_type), intent(inout) :: self
+
+    if (allocated(self%start)) deallocate (self%start)
+    if (.not. (self%has_memory() .and. self%verdict%status() == status_valid)) return
+    allocate (self%start)
+    self%start%loads = self%model%loads
+    self%start%state = self%answer%solved_state
+    self%start%replayed = self%certificate%history
+    call self%kept%linear%materials%commit(self%answer%point)
+    call move_alloc(self%kept%linear%materials%committed, self%start%history)
+  end subroutine keep_end
+
+  !> Can a load case start where the one before has ended?
+  pure logical function can_start(self)
+    class(solution_type), intent(in) :: self
+
+    can_start = allocated(self%start) .or. .not. self%has_memory()
+  end function can_start
+
+  !> Does the answer of a load case depend on those before?
+  pure logical function has_memory(self)
+    class(solution_type), intent(in) :: self
+
+    has_memory = self%model%controls%sequence .and. self%model%controls%flow_theory .and. &
+                 self%iteration%yields
+  end function has_memory
 
   !> Choose the first attempt of the list that has a reason.
   subroutine choose_attempt(self, what, why)
@@ -201,6 +235,7 @@ contains
     call check_memory(self%expected%bytes, limit, error)
     if (allocated(error)) return
     self%iteration%threads = plan_threads(self%numbering, self%expected%bytes, granted_threads())
+    call self%iteration%set_tolerances(self%model%controls)
     call watch%expect(self%expected%operations)
     call self%follow(self%model%controls%load_steps, watch)
   end subroutine solve_as_planned

@@ -78,11 +78,11 @@ class Catalogue:
                 match = re.match(r"(\d+)(\.\.)?\s+\d+-\d+\s", line)
                 if not match:
                     continue
-                kind = line[23:30].strip()
-                words = re.findall(r"\b[A-Z]{4,}\b", line[47:].split(";")[-1]) if kind == "word" else []
+                kind = line[25:32].strip()
+                words = re.findall(r"\b[A-Z]{4,}\b", line[49:].split(";")[-1]) if kind == "word" else []
                 if match[2]:
                     self.lists[name] = len(self.columns[name])
-                self.columns[name].append(Column(line[16:22].strip(), kind, words))
+                self.columns[name].append(Column(line[16:24].strip(), kind, words))
         self.parameters = {}
         lines = ask("PARAM")
         for line in lines[lines.index("NAME      VALUE") + 1:]:

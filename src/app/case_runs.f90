@@ -4,7 +4,7 @@ module epcont_app_case_runs
   use epcont_app_process, only: print_error, print_text
   use epcont_app_progress_display, only: progress_type
   use epcont_base_diagnostic, only: place_type
-  use epcont_base_error, only: error_type, status_valid
+  use epcont_base_error, only: error_type, status_no_answer, status_valid
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: newline, plural, shown, text_of
   use epcont_messages_outcome, only: judge, limit_of_pressure, reason_of, remark_lines
@@ -43,6 +43,10 @@ contains
       run%case = cases(k)
       if (run%has_cases()) call put_case(run%cases, run%case, run%model)
       run%kept%another = k < size(cases)
+      if (run%case > 1 .and. .not. run%can_start()) then
+        call skip_case(run, of_deck, results)
+        cycle
+      end if
       call run%solve(of_deck%memory, watch, error)
       if (allocated(error)) then
         error%message = of_deck%path//': '//error%message
@@ -63,6 +67,19 @@ contains
       call watch%lap(stage_writing)
     end do
   end subroutine solve_pattern
+
+  !> Skip a load case of a sequence, since the one before has not reached its end.
+  subroutine skip_case(run, of_deck, results)
+    type(run_results), intent(in) :: run
+    type(deck_run), intent(inout) :: of_deck
+    type(results_type), intent(inout) :: results
+
+    call results%skip_case(run)
+    of_deck%status = max(of_deck%status, status_no_answer)
+    call print_error(shown(of_deck%path)//case_name(run)// &
+      ': not solved: it starts from the end of the SUBCASE before, which was not reached'//newline)
+    if (.not. of_deck%quiet) call print_text(of_deck%name//case_name(run)//'  not solved', of_deck%status)
+  end subroutine skip_case
 
   !> Make lines for standard error: warnings, and the reason if the answer is not valid, each after the name
   !! of the deck.

@@ -8,8 +8,8 @@ module epcont_build_cases
   use epcont_build_mesh_cards, only: element_cards
   use epcont_build_reference, only: card_index, check_choices, check_combinations, chosen_sets, &
       named_node, nodes_of_fields, note_unnamed, note_unused, resolve
-  use epcont_deck_card_kinds, only: card_bconp, card_force, card_grav, card_load, card_moment, card_nlparm, &
-      card_param, card_ploadx1, card_rforce, card_spc, card_spc1, card_spcd
+  use epcont_deck_card_kinds, only: card_bconp, card_force, card_grav, card_load, card_mats1, card_moment, &
+      card_nlparm, card_param, card_ploadx1, card_rforce, card_spc, card_spc1, card_spcd
   use epcont_deck_deck, only: deck_type
   use epcont_deck_entry, only: farthest, least_cause
   use epcont_build_tie_cards, only: check_directions, digit, dof_node, find_moments, find_platens, names
@@ -45,6 +45,7 @@ contains
     call note_unused(deck, support_cards, supports, found)
     call chosen_sets(deck, [load_cards, card_load], deck%subcase%load, 'LOAD', found, loads)
     allocate (cases%case(size(loads)))
+    cases%sequence = deck%is_sequence()
     used = [integer ::]
     do k = 1, size(loads)
       cases%case(k)%id = deck%subcase(k)%id
@@ -58,6 +59,12 @@ contains
     call check_choices(deck, deck%subcase%contact, nint(deck%card(card_bconp)%value(1, :)), 'BCONTACT', &
                        'there is no such BCONP', 'ALL, NONE or the id of a BCONP', found)
     call choose_load_steps()
+    associate (mats1 => deck%card(card_mats1))
+      if (cases%sequence .and. .not. data%controls%flow_theory .and. &
+          any(mats1%word(mats1%column('TYPE'), :) == 'PLASTIC')) call found%add_error(deck%sequence, &
+        'a sequence of SUBCASEs needs flow theory: total theory has no memory of earlier loads', &
+        'remove PARAM THEORY or ORIGINAL, or write CNTNLSUB = NO: each begins with the unloaded state')
+    end associate
     call note_unused(deck, load_cards, used, found)
     call note_unused(deck, [card_load], loads, found)
     call find_platens(deck, nodes, supports, used, data, found)
@@ -91,15 +98,22 @@ contains
       end associate
     end subroutine combine
 
-    !> Set the load steps of each case: from its NLPARM, else from PARAM NLOAD.
+    !> Set the load steps and the iteration of each case: from its NLPARM, else from PARAM.
     subroutine choose_load_steps()
       integer :: k, row
 
       cases%case%load_steps = data%controls%load_steps
+      cases%case%most_iterations = data%controls%most_iterations
+      cases%case%tolerance = data%controls%tolerance
       associate (nlparm => deck%card(card_nlparm), choice => deck%subcase%nlparm)
         do k = 1, size(choice)
           row = findloc(nint(nlparm%value(1, :)), choice(k)%id, dim=1)
-          if (choice(k)%id > 0 .and. row > 0) cases%case(k)%load_steps = nint(nlparm%number('NINC', row))
+          if (choice(k)%id == 0 .or. row == 0) cycle
+          associate (case => cases%case(k))
+            case%load_steps = nint(nlparm%number('NINC', row))
+            if (nlparm%has('MAXITER', row)) case%most_iterations = nint(nlparm%number('MAXITER', row))
+            if (nlparm%has('EPSU', row)) case%tolerance = nlparm%number('EPSU', row)
+          end associate
         end do
         call check_choices(deck, choice, nint(nlparm%value(1, :)), 'NLPARM', 'there is no such NLPARM', &
                            'the id of an NLPARM card', found)

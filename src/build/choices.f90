@@ -35,8 +35,9 @@ contains
     controls%paper_ratio = deck%parameter_word('MUP') == 'PAPER'
     controls%flow_theory = deck%parameter_word('THEORY') == 'FLOW'
     associate (mats1 => deck%card(card_mats1))
-      if (deck%parameter_row('THEORY') == 0) &
-        controls%flow_theory = any(mats1%value(mats1%column('HR'), :) > 1.0_wp)
+      if (deck%parameter_row('THEORY') == 0) controls%flow_theory = &
+        any(mats1%value(mats1%column('HR'), :) > 1.0_wp) .or. deck%is_sequence() .and. &
+        any(mats1%word(mats1%column('TYPE'), :) == 'PLASTIC')
     end associate
 
   contains

@@ -138,9 +138,11 @@ contains
         if (material(m(i))%young > 0.0_wp) call read_yielding(deck, i, table(i), material(m(i)), found)
         material(m(i))%yielding = i
         material(m(i))%curve%kinematic = kinematic_part(deck, i, found)
+        material(m(i))%curve%elastic = mats1%word(mats1%column('TYPE'), i) == 'NLELAST'
       end do
       if (deck%parameter_row('HRFRAC') > 0 .and. all(nint(mats1%value(mats1%column('HR'), :)) /= 3)) &
-        call found%add_note(card_param, deck%parameter_row('HRFRAC'), 1, ' has no effect without HR 3 (MATS1)')
+        call found%add_note(card_param, deck%parameter_row('HRFRAC'), 1, &
+                            ' has no effect without HR 3 (MATS1)')
     end associate
   end subroutine read_materials
 

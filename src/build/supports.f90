@@ -2,6 +2,7 @@
 module epcont_build_supports
   use epcont_base_kinds, only: wp
   use epcont_build_reference, only: card_index, named_node, nodes_of_fields, nodes_of_lists, resolve
+  use epcont_base_text, only: text_of
   use epcont_build_tie_cards, only: check_directions, digit, direction_text, dof_node, names
   use epcont_deck_card_kinds, only: card_grid, card_rbe2, card_spc, card_spc1, card_spcd, card_suport
   use epcont_deck_deck, only: deck_type
@@ -40,11 +41,13 @@ contains
         else
           call find_held(deck, nodes, case(k)%supports, data, now, cases%held_at, found)
         end if
-        do p = 1, size(first)
+        ! In a sequence, the cases of a pattern follow each other.
+        do p = merge(max(1, size(first)), 1, cases%sequence), size(first)
           if (case(k)%contact == case(first(p))%contact .and. all(held(:, :, p) .eqv. now)) exit
         end do
         case(k)%pattern = p
       end associate
+      if (cases%sequence .and. k > 1) call check_sequence(deck, k, now .neqv. held(:, :, size(first)), found)
       if (p <= size(first)) cycle
       first = [first, k]
       held = reshape([held, now], [angle, size(data%held, 2), p])
@@ -56,6 +59,21 @@ contains
     data%held = now(:directions, :)
     data%platen%held = now(angle, data%platen%leader)
   end subroutine read_supports
+
+  !> Check that a SUBCASE of a sequence has the supports of the one before.
+  subroutine check_sequence(deck, case, differs, found)
+    type(deck_type), intent(in) :: deck
+    integer, intent(in) :: case           !! number of the SUBCASE
+    logical, intent(in) :: differs(:, :)  !! the DOF is fixed in one of them only [angle, nodes]
+    type(findings), intent(inout) :: found
+    integer :: at(2)
+
+    if (.not. any(differs)) return
+    at = findloc(differs, .true.)
+    call found%add_error(deck%subcase(case)%place, 'SUBCASE '//text_of(deck%subcase(case)%id)// &
+      ': its supports are not those of the SUBCASE before: '//direction_text(deck, at(1), at(2)), &
+      'fix the same DOFs in all SUBCASEs of a sequence, and move them with SPCD; or write CNTNLSUB = NO')
+  end subroutine check_sequence
 
   !> Find the DOFs that GRID PS and a set of supports fix.
   subroutine find_held(deck, nodes, set, data, held, moved, found)

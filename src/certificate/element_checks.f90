@@ -55,9 +55,10 @@ contains
       call free_strains(model, e, model%loads%rise, points%volume, points%free)
       associate (stress => answer%point_stress(:, &
                                                model%mesh%first_point(e):model%mesh%first_point(e + 1) - 1))
-        call part%expansion%add_element(model%sections%young(model%mesh%section(e)), stress, &
-          points%unit(:, :, :model%mesh%node_count(e), :), points%volume, points%free(:size(stress, 2)))
         call check_points(model, answer, largest_stress, e, points, part)
+        call part%expansion%add_element(model%sections%young(model%mesh%section(e)), stress, &
+          points%unit(:, :, :model%mesh%node_count(e), :), points%volume, &
+          inelastic_strains(points%free(:size(stress, 2)), part, model%mesh%first_point(e)))
         do k = 1, model%mesh%node_count(e)
           do p = 1, size(stress, 2)
             do c = 1, directions
@@ -69,6 +70,21 @@ contains
       end associate
     end do
   end subroutine check_elements
+
+  !> Thermal and plastic strains of an element [components, points].
+  pure function inelastic_strains(free, part, first) result(strain)
+    real(wp), intent(in) :: free(:)             !! thermal, along each axis [points]
+    type(checked_elements), intent(in) :: part
+    integer, intent(in) :: first                !! number of its first point
+    real(wp) :: strain(components, size(free))
+    integer :: p
+
+    do p = 1, size(free)
+      strain(:, p) = free(p)*[1.0_wp, 1.0_wp, 1.0_wp, 0.0_wp]
+      if (allocated(part%history)) &
+        strain(:, p) = strain(:, p) + part%history(first + p - lbound(part%work, 1))%plastic
+    end do
+  end function inelastic_strains
 
   !> Check the integration points of an element.
   subroutine check_points(model, answer, largest_stress, e, points, part)
@@ -104,7 +120,8 @@ contains
         part%strained = part%strained + points%volume(p)*maxval(abs(strain))
         strain(:3) = strain(:3) - points%free(p)
         associate (section => model%mesh%section(e))
-          if (allocated(part%history) .and. allocated(model%sections%curve(section)%strain)) then
+          if (allocated(part%history) .and. allocated(model%sections%curve(section)%strain) .and. &
+              .not. model%sections%curve(section)%elastic) then
             call return_to_curve(model, section, strain, &
                                  part%history(point - lbound(part%work, 1) + 1), on_curve)
           else

@@ -1,4 +1,4 @@
-!> Effects of temperatures on the certificate: thermal strains, and the stresses if all thermal expansion were
+!> Effects of thermal and plastic strains on the certificate: the stresses if all these strains were
 !> fixed. If bodies expand freely, all stresses, forces and work are rounding errors of these stresses.
 module epcont_certificate_free_expansion
   use epcont_base_kinds, only: wp
@@ -13,7 +13,7 @@ module epcont_certificate_free_expansion
   real(wp), parameter, public :: part_of_held = 1.0e-3_wp
 
   type :: expansion_type
-    real(wp) :: work = 0.0_wp         !! of the stresses in thermal strains
+    real(wp) :: work = 0.0_wp         !! of the stresses in thermal and plastic strains
     ! If all expansion were fixed:
     real(wp) :: held_force = 0.0_wp   !! the largest at a node [force]
     real(wp) :: held_work = 0.0_wp    !! work of the stresses
@@ -65,25 +65,26 @@ contains
   end function held_stress
 
   !> Add the contribution of an element.
-  pure subroutine add_element(self, young, stress, unit, volume, free)
+  pure subroutine add_element(self, young, stress, unit, volume, inelastic)
     class(expansion_type), intent(inout) :: self
     real(wp), intent(in) :: young                 !! E of its section [stress]
     real(wp), intent(in) :: stress(:, :)          !! at its points [stress] [components, places]
     real(wp), intent(in) :: unit(:, :, :, :)      !! strains [components, directions, nodes, places]
-    real(wp), intent(in) :: volume(:), free(:)    !! of the points, and their thermal strains [places]
+    real(wp), intent(in) :: volume(:)             !! of the points [places]
+    real(wp), intent(in) :: inelastic(:, :)       !! thermal and plastic strains [components, places]
     real(wp) :: force
     integer :: c, k, p
 
-    if (all(free == 0.0_wp)) return
+    if (all(inelastic == 0.0_wp)) return
     do p = 1, size(stress, 2)
-      self%work = self%work + volume(p)*free(p)*sum(stress(:3, p))
-      self%held_work = self%held_work + volume(p)*young*free(p)**2
+      self%work = self%work + volume(p)*dot_product(inelastic(:, p), stress(:, p))
+      self%held_work = self%held_work + volume(p)*young*maxval(abs(inelastic(:, p)))**2
     end do
     do k = 1, size(unit, 3)
       do c = 1, size(unit, 2)
         force = 0.0_wp
         do p = 1, size(stress, 2)
-          force = force + volume(p)*young*abs(free(p)*sum(unit(:3, c, k, p)))
+          force = force + volume(p)*young*abs(dot_product(inelastic(:, p), unit(:, c, k, p)))
         end do
         self%held_force = max(self%held_force, force)
       end do

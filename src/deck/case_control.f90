@@ -32,7 +32,10 @@ module epcont_deck_case_control
   type :: case_control
     character(len=:), allocatable :: title                   !! empty if not given
     type(subcase_control), allocatable :: subcase(:)         !! at least one
+    type(place_type) :: sequence   !! statement that makes the load cases a sequence; line 0: absent
     logical :: echo_unsorted = .false., echo_sorted = .false.   !! list the cards as they are, sorted by name
+  contains
+    procedure :: is_sequence
   end type case_control
 
   !> Keywords. Beginning with `first_own`, all may be given for a single load case.
@@ -66,7 +69,6 @@ contains
     logical :: stated(size(keyword))
     type(statement) :: parts
     type(subcase_control) :: common, now   ! statements before the first SUBCASE, and of the current load case
-    type(place_type) :: sequence     ! statement that makes them a sequence; line 0: none
     integer :: cases, line
 
     bulk = behind_begin_bulk(lines)
@@ -83,9 +85,6 @@ contains
       call take_statement()
     end do
     control%subcase(max(1, cases)) = now
-    if (sequence%line > 0 .and. size(control%subcase) > 1) call faults%add_error( &
-      sequence, 'a sequence of SUBCASEs, each from the end of the one before, is not supported', &
-      'write CNTNLSUB = NO: each begins with the unloaded state')
 
   contains
 
@@ -99,14 +98,14 @@ contains
         if (index(static, words) == 0) &
           call faults%add_note(parts%value_place, 'SOL: epcont solves for static loads only')
         if (index(sequential, words) > 0 .and. .not. any(stated .and. keyword == 'CNTNLSUB')) &
-          sequence = parts%value_place
+          control%sequence = parts%value_place
       case ('CEND')
         if (len(parts%value) > 0) &
           call faults%add_error(parts%value_place, 'CEND takes no value', 'remove it')
       case ('CNTNLSUB')
-        sequence = place_type()
+        control%sequence = place_type()
         if (len(parts%value) == 0 .or. upper(parts%value) == 'YES') then
-          sequence = parts%word_place
+          control%sequence = parts%word_place
         else if (upper(parts%value) /= 'NO') then
           call refuse(parts, 'a word', ' known to epcont', &
                       'NO or YES: a list of SUBCASEs (SID) is not supported', faults)
@@ -167,6 +166,13 @@ contains
       stated(first_own:) = .false.
     end subroutine begin_subcase
   end subroutine read_case_control
+
+  !> Does each load case start from the end of the one before?
+  pure logical function is_sequence(self)
+    class(case_control), intent(in) :: self
+
+    is_sequence = self%sequence%line > 0 .and. size(self%subcase) > 1
+  end function is_sequence
 
   !> Report a value that is missing or not accepted.
   subroutine refuse(parts, needed, which, remedy, faults)

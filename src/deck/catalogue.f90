@@ -135,7 +135,7 @@ module epcont_deck_catalogue
     'MATS1: yielding of a MAT1: von Mises', &
     '  MID; id; its MAT1', &
     '  TID; id optional; its TABLES1; blank: bilinear from LIMIT1 and H', &
-    '  TYPE; word PLASTIC NLELAST; both are taken as PARAM THEORY says', &
+    '  TYPE; word PLASTIC NLELAST; NLELAST: nonlinear elastic, always total theory', &
     '  H; real zero from=0; stress over plastic strain beyond LIMIT1; blank with TID [stress]', &
     '  YF; whole from=1 to=1 default=1; yield criterion: 1, von Mises', &
     '  HR; whole from=1 to=3 default=1; hardening: 1 isotropic, 2 kinematic, 3 both (PARAM HRFRAC)', &
@@ -284,7 +284,11 @@ module epcont_deck_catalogue
     'NLPARM: increments of the loads, in load cases that choose it (NLPARM = ID)', &
     '  ID; id; parameters', &
     '  NINC; whole from=1 to=10000 default=1; increments, of equal size', &
-    '  ; any ignored times=22; iteration: see PARAM METHOD, TOL and MAXIT']
+    '  ; any ignored times=3; time and stiffness updates', &
+    '  MAXITER; whole from=1 to=100000 for=MATS1; iterations of an increment; default PARAM MAXIT', &
+    '  ; any ignored times=2; tests of convergence, output', &
+    '  EPSU; real positive below=1 for=MATS1; instead of PARAM TOL', &
+    '  ; any ignored times=15; other tests, line search, step control']
 
   character(len=*), parameter :: cards(*) = [scene_cards, load_cards]
 
@@ -300,7 +304,7 @@ module epcont_deck_catalogue
     ' ends the iteration; default 0.01, for NEWTON 1.E-8', &
     'MAXIT; whole from=1 to=100000 for=MATS1; iterations of a load step; default 100', &
     'THEORY; for=MATS1 word TOTAL FLOW; plasticity: stresses follow from the strains at full load'// &
-    ' (TOTAL), or increment by increment (FLOW); default TOTAL, with HR 2 or 3 FLOW', &
+    ' (TOTAL), or increment by increment (FLOW); default FLOW with a sequence or HR 2, 3', &
     'HRFRAC; real positive to=1 for=MATS1; kinematic part of the hardening, for HR 3', &
     'MUP; for=MATS1 word EXACT PAPER; Poisson''s ratio in the equivalent strain: exact, or formula'// &
     ' (2-4); default EXACT', &

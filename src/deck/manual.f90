@@ -43,7 +43,7 @@ contains
 
     text = trim(entry%name)//': '//entry%meaning//newline//newline// &
            'use: used; ignored (checked, no effect); blank (must be blank)'//newline//newline// &
-           'field  columns  name   kind     default  use      meaning [unit], range'//newline
+           'field  columns  name     kind     default  use      meaning [unit], range'//newline
     field = entry%field
     if (entry%list_slot == huge(1)) &   ! the rest of its last line must be blank
       field = [field, (field_entry(), slot=1, modulo(-size(field), fields_a_line))]
@@ -80,11 +80,11 @@ contains
     subroutine add_row(more, name, kind, default, use, meaning)
       character(len=*), intent(in) :: more   !! text after the number of the field
       character(len=*), intent(in) :: name, kind, default, use, meaning
-      character(len=50) :: head
+      character(len=52) :: head
       integer :: first
 
       first = 9 + 8*mod(slot - 1, 8)
-      write (head, '(i0, a, t8, i0, "-", i0, t17, a, t24, a, t33, a, t42, a)') &
+      write (head, '(i0, a, t8, i0, "-", i0, t17, a, t26, a, t35, a, t44, a)') &
         number_of(slot), more, first, first + 7, name, kind, default, use
       text = text//head//meaning//newline
     end subroutine add_row

@@ -41,6 +41,7 @@ module epcont_material_material_law
   type, extends(elasticity) :: material_law
     logical :: sheet = .false.         !! plane stress
     logical :: yields = .false.
+    logical :: remembers = .false.     !! plastic strain is left after unloading (flow theory)
     real(wp) :: yield_stress = 0.0_wp  !! of the virgin material [stress]
     ! If the yield surface moves, of a bilinear curve:
     real(wp) :: hardening = 0.0_wp     !! stress over plastic strain [stress]

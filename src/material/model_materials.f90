@@ -41,6 +41,7 @@ contains
         law%elasticity = new_elasticity(model%sections%young(s), model%sections%poisson(s))
         law%sheet = model%sections%kinematics(s) == plane_stress
         law%yields = allocated(model%sections%curve(s)%strain)
+        law%remembers = law%yields .and. .not. model%sections%curve(s)%elastic
         if (law%yields) law%yield_stress = model%sections%curve(s)%stress(2)
         law%curve = new_curve(model%sections%curve(s), law%elasticity, model%controls%paper_ratio)
         if (model%sections%curve(s)%kinematic > 0.0_wp) then
@@ -64,8 +65,9 @@ contains
     if (.not. allocated(self%committed)) allocate (self%committed(size(state)))
     !$omp parallel do num_threads(threads_over(size(state)))
     do p = 1, size(state)
-      if (self%can_yield(p)) &
-        self%committed(p) = self%section(self%of_point(p))%history_after(self%committed(p), state(p))
+      associate (law => self%section(self%of_point(p)))
+        if (law%remembers) self%committed(p) = law%history_after(self%committed(p), state(p))
+      end associate
     end do
     !$omp end parallel do
   end subroutine commit

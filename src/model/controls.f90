@@ -36,6 +36,7 @@ module epcont_model_controls
     logical :: by_inversion = .false.  !! PARAM FLEXIB INVERT: flexibility by inversion, at any cost
     logical :: paper_ratio = .false.   !! PARAM MUP PAPER: Poisson's ratio (2-4) in the equivalent strain
     logical :: flow_theory = .false.   !! PARAM THEORY FLOW: each increment continues from the one before
+    logical :: sequence = .false.      !! each load case starts from the end of the one before
     logical :: original = .false.      !! PARAM ORIGINAL YES: the methods of the program of about 1980
   end type controls_type
 
@@ -49,6 +50,7 @@ module epcont_model_controls
   type :: uniaxial_curve
     real(wp), allocatable :: strain(:)   !! [points]
     real(wp), allocatable :: stress(:)   !! [stress] [points]
+    logical :: elastic = .false.         !! nonlinear elastic: always total theory
     real(wp) :: kinematic = 0.0_wp       !! part of the hardening by motion of the yield surface, 0 to 1
     !> Strain and stress of the last point if it only gives a slope, and no table ends there
     real(wp) :: endless(2) = -1.0_wp

@@ -67,6 +67,8 @@ module epcont_model_load_cases
     integer :: temperatures = 0                 !! id of its set of temperatures, 0 if absent
     integer :: contact = 0                      !! its single BCONP; contact_all or contact_none
     integer :: load_steps = 1                   !! in which its loads are applied
+    integer :: most_iterations = 100            !! of a load step
+    real(wp) :: tolerance = 0.0_wp              !! of the iteration; 0: default of the method
     integer :: pattern = 1                      !! group of cases with the same supports and contacts
   contains
     procedure :: share_of
@@ -76,6 +78,7 @@ module epcont_model_load_cases
   !> All load cases, and the contents of their sets.
   type :: load_cases
     type(load_case), allocatable :: case(:)
+    logical :: sequence = .false.                          !! each starts from the end of the one before
     integer :: patterns = 1                                !! number of groups that are solved separately
     type(nodal_force), allocatable :: force(:)             !! FORCE
     type(set_pressure), allocatable :: pressure(:)         !! PLOADX1
@@ -101,6 +104,8 @@ contains
     cases%case(1)%factor = [1.0_wp]
     cases%case(1)%supports = 1
     cases%case(1)%load_steps = data%controls%load_steps
+    cases%case(1)%most_iterations = data%controls%most_iterations
+    cases%case(1)%tolerance = data%controls%tolerance
     cases%force = [(nodal_force(1, i, data%load(:, i)), i=1, size(data%load, 2))]
     cases%pressure = [(set_pressure(1, data%pressure(i)), i=1, size(data%pressure))]
     cases%body = [(set_body_load(1, data%body_load(i)), i=1, size(data%body_load))]
@@ -155,7 +160,10 @@ contains
         call add_moment(model, cases%moment(i)%platen, share*cases%moment(i)%moment, model%loads%load)
       end do
     end associate
+    model%controls%sequence = cases%sequence
     model%controls%load_steps = cases%case(k)%load_steps
+    model%controls%most_iterations = cases%case(k)%most_iterations
+    model%controls%tolerance = cases%case(k)%tolerance
     call put_displacements(cases, cases%case(k), model)
     call find_travels(model)
     call put_temperatures(cases, cases%case(k), model)

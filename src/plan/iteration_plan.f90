@@ -1,7 +1,7 @@
 !> Choice of the plastic iteration of a model and of the contact solver in each of its solves.
 module epcont_plan_iteration_plan
   use epcont_base_kinds, only: wp
-  use epcont_model_controls, only: method_auto, method_newton, method_secant, rule_auto
+  use epcont_model_controls, only: controls_type, method_auto, method_newton, method_secant, rule_auto
   use epcont_model_model, only: model_type
   implicit none
   private
@@ -34,6 +34,8 @@ module epcont_plan_iteration_plan
     logical :: rule_chosen_here = .false.  !! epcont chooses the contact solver, not the deck
     logical :: from_first_pivot = .false.  !! contact solves start from no active set, not from the last
     real(wp) :: off_curve = 0.0_wp         !! largest stress error with which the iteration ends
+  contains
+    procedure :: set_tolerances
   end type iteration_plan
 
 contains
@@ -43,7 +45,6 @@ contains
     type(model_type), intent(in) :: model
     logical, intent(in) :: joined           !! all bodies form one system
     type(iteration_plan) :: plan
-    logical :: by_newton
     integer :: e
 
     associate (asked => model%controls)
@@ -56,15 +57,25 @@ contains
       plan%method = asked%method
       ! NEWTON has no tangent for MUP PAPER. That option follows the paper, so the paper's method is used.
       if (plan%chosen_here) plan%method = merge(method_secant, method_newton, asked%paper_ratio)
-      by_newton = plan%method == method_newton
-      if (asked%tolerance /= 0.0_wp) then
-        plan%tolerance = asked%tolerance
-      else if (asked%accuracy > 0.0_wp) then
-        plan%tolerance = asked%accuracy*merge(newton_part, secant_part, by_newton)
-      else
-        plan%tolerance = merge(newton_tolerance, secant_tolerance, by_newton)
-      end if
-      if (plan%yields) plan%off_curve = plan%tolerance*merge(1.0_wp, looseness, by_newton)
     end associate
+    call plan%set_tolerances(model%controls)
   end function plan_iteration
+
+  !> Set the tolerances of a load case.
+  pure subroutine set_tolerances(self, asked)
+    class(iteration_plan), intent(inout) :: self
+    type(controls_type), intent(in) :: asked   !! of the load case
+    logical :: tight
+
+    ! Errors of an increment are carried on to the next ones.
+    tight = self%method == method_newton .or. asked%flow_theory
+    if (asked%tolerance /= 0.0_wp) then
+      self%tolerance = asked%tolerance
+    else if (asked%accuracy > 0.0_wp) then
+      self%tolerance = asked%accuracy*merge(newton_part, secant_part, tight)
+    else
+      self%tolerance = merge(newton_tolerance, secant_tolerance, tight)
+    end if
+    if (self%yields) self%off_curve = self%tolerance*merge(1.0_wp, looseness, tight)
+  end subroutine set_tolerances
 end module epcont_plan_iteration_plan

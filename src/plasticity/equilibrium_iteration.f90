@@ -331,7 +331,7 @@ contains
                    now%iteration > many_solves .or. now%error > slow*now%change .or. &
                    any(scene%model%loads%prescribed /= 0.0_wp)
       wants_test = wants_test .and. now%residual > solved_to .and. method /= method_newton .and. &
-                   .not. scene%model%controls%paper_ratio
+                   .not. (scene%model%controls%paper_ratio .or. scene%model%controls%flow_theory)
     end associate
   end function wants_test
 

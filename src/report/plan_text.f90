@@ -146,10 +146,12 @@ contains
 
     if (.not. scene%iteration%yields) then
       call plan%say('elastic material only: one solve, no iteration')
+      if (scene%model%controls%sequence) &
+        call plan%say('a sequence of load cases: without plastic strain, each is independent of those before')
       return
     end if
-    call plan%say(when(scene%model%controls%flow_theory, 'flow', 'total')// &
-             ' theory of plasticity; bodies that can yield: '//text_of(count(yielding_bodies(scene%model))))
+    call plan%say(theory_text(scene%model)//'; bodies that can yield: '// &
+                  text_of(count(yielding_bodies(scene%model))))
     associate (method => scene%iteration%method)
       call plan%say('plasticity iteration '//trim(method_name(method))//': '//method_text(method))
     end associate
@@ -162,10 +164,26 @@ contains
              '; at most '//plural(scene%model%controls%most_iterations, 'iteration'))
     if (scene%iteration%load_steps > 1) &
       call plan%say(plural(scene%iteration%load_steps, 'load step')//when(scene%model%controls%flow_theory, &
-        ', each from the plastic strains of the one before', '; elastic unloading is not modelled'))
+        ', each from the end of the one before', '; elastic unloading is not modelled'))
     if (scene%model%controls%paper_ratio) call plan%say('MUP PAPER: Poisson''s ratio in the equivalent '// &
       'strain by formula (2-4): stresses up to (1 - 2 nu)/3 below the curve')
   end subroutine say_iteration
+
+  !> Name the theory of plasticity, and the reason for flow theory.
+  pure function theory_text(model) result(text)
+    type(model_type), intent(in) :: model
+    character(len=:), allocatable :: text
+
+    text = 'total theory of plasticity'
+    if (.not. model%controls%flow_theory) return
+    text = 'flow theory of plasticity ('
+    if (model%controls%sequence) then
+      text = text//'a sequence of load cases, each from the end of the one before)'
+    else
+      text = text//when(any(model%sections%curve%kinematic > 0.0_wp), 'kinematic hardening', &
+                        'PARAM THEORY')//')'
+    end if
+  end function theory_text
 
   !> Name the contact solver.
   subroutine say_rule(plan, scene)

@@ -61,6 +61,7 @@ module epcont_report_results
     procedure :: begin
     procedure :: add_plan
     procedure :: add_case
+    procedure :: skip_case
     procedure :: finish
   end type results_type
 
@@ -118,6 +119,15 @@ contains
     if (self%vtk .and. run%outcome%has_answer .and. .not. allocated(error)) &
       call write_vtk(run, self%stem//run%case_suffix(), error)
   end subroutine add_case
+
+  !> Skip a load case that could not start.
+  subroutine skip_case(self, run)
+    class(results_type), intent(inout) :: self
+    type(run_results), intent(in) :: run
+
+    self%case(run%case)%row%subcase = run%deck%subcase(run%case)%id
+    self%case(run%case)%row%status = 'not solved'
+  end subroutine skip_case
 
   !> Has the load case this file, and is it requested?
   pure logical function is_wanted(self, run, suffix)

@@ -143,7 +143,7 @@ CARDS = {
                             ("GE", ".1", NOTED), ("S", ".1", NOTED)]),
     "PELAS": ("plane", 0, [("PID1", "99", error("there is no PELAS 30")), ("K1", "60.", CHANGES), ("GE1", ".1", NOTED), ("S1", ".1", NOTED),
                            ("PID2", "99", error("there is no PELAS 31")), ("K2", "70.", CHANGES), ("GE2", ".1", NOTED), ("S2", ".1", NOTED)]),
-    "NLPARM": ("flow", 0, [("ID", "9", error("there is no such NLPARM")), ("NINC", "4", CHANGES), *([ANYTHING]*22)]),
+    "NLPARM": ("flow", 0, [("ID", "9", error("there is no such NLPARM")), ("NINC", "4", CHANGES), *([ANYTHING]*3), ("MAXITER", "9", LISTED), *([ANYTHING]*2), ("EPSU", ".1", CHANGES), *([ANYTHING]*15)]),
 }
 #: The same for each PARAM.
 PARAMETERS = {
@@ -157,7 +157,7 @@ WITHOUT = {"PLANE": "ctrax3", "RULE": "yield", "GAPGEOM": "lines", "METHOD": "pl
 #: The same for each statement of case control, put before the others of `plane` or in place of the one with its name.
 STATEMENTS = {
     "SOL": ("SOL 103", note("SOL: epcont solves for static loads")), "CEND": ("CEND 1", error("CEND takes no value")), "TITLE": ("TITLE = X", LISTED), "ECHO": ("ECHO = SORT", LISTED),
-    "CNTNLSUB": ("CNTNLSUB = YES", error("a sequence of SUBCASEs")), "SUBCASE": ("SUBCASE 9", CHANGES), "SUBTITLE": ("SUBTITLE = X", LISTED),
+    "CNTNLSUB": ("CNTNLSUB = YES", LISTED), "SUBCASE": ("SUBCASE 9", CHANGES), "SUBTITLE": ("SUBTITLE = X", LISTED),
     "LABEL": ("LABEL = X", LISTED), "SPC": ("SPC = 9", error("SPC = 9: the deck has no such set")), "LOAD": ("LOAD = 12", CHANGES),
     "MPC": ("MPC = 5", CHANGES), "BCONTACT": ("BCONTACT = NONE", CHANGES), "DISPLACEMENT": ("DISPLACEMENT = NONE", CHANGES),
     "STRESS": ("STRESS = NONE", CHANGES), "SPCFORCES": ("SPCFORCES = ALL", CHANGES), "NLPARM": ("NLPARM = 5", error("NLPARM = 5: there is no such NLPARM")),
