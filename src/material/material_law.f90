@@ -111,7 +111,7 @@ contains
   end subroutine find_state
 
   !> Find the strain zz in plane stress, minus the plastic strain, at which the stress zz is zero. This stress
-  !! increases with the strain; its zero is between that of the elastic body and that of constant volume.
+  !! increases with the strain, at least by the bulk modulus.
   pure real(wp) function strain_across(self, strain, committed) result(across)
     class(material_law), intent(in) :: self
     real(wp), intent(in) :: strain(components)
@@ -123,11 +123,15 @@ contains
     elastic = -(self%bulk - 2.0_wp*self%shear/3.0_wp)/(self%bulk + 4.0_wp*self%shear/3.0_wp)
     across = elastic*(strain(1) + strain(2))
     if (.not. self%yields) return
-    low = min(across, -(strain(1) + strain(2)))
-    high = max(across, -(strain(1) + strain(2)))
     do step = 1, most_steps
       call find_state(self, [strain(:2), across, strain(4)], committed, state)
-      if (.not. state%yielded .and. step == 1) return
+      if (step == 1) then
+        if (.not. state%yielded) return
+        ! Twice the range, so that rounding does not exclude the zero.
+        next = across - 2.0_wp*state%stress(3)/self%bulk
+        low = min(across, next)
+        high = max(across, next)
+      end if
       if (state%stress(3) == 0.0_wp) return
       if (state%stress(3) > 0.0_wp) high = across
       if (state%stress(3) < 0.0_wp) low = across
