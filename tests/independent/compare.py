@@ -124,18 +124,35 @@ def pairs_of_lines(path, place):
     return found
 
 
+def increments(path, place, case):
+    """The parts of the loads at the ends of a load case's increments; those that did not converge are halved. None without an answer."""
+    found = []
+    for row in read(place / f"{path.stem}.history.csv", case):
+        while found and found[-1] >= float(row["load_factor"]):
+            found.pop()
+        found.append(float(row["load_factor"]))
+    return found if found and found[-1] == 1.0 else None
+
+
 def run(program, path, tolerance):
     """Exit status of the program, that expected by the independent program, the program's messages, and (load case, verdict, words) of each."""
     with tempfile.TemporaryDirectory() as place:
         done = subprocess.run([program.resolve(), tightened(path, place), "-o", place, "--tables", "all"], capture_output=True, text=True)
         try:
-            cases = list(solve(path, pairs_of_lines(path, pathlib.Path(place))))
+            numbers = [case.number for case in deck_of(path).by_case()]
+            cases = list(solve(path, pairs_of_lines(path, pathlib.Path(place)), {number: increments(path, pathlib.Path(place), number) for number in numbers}))
         except DeckError as error:
             cases = [(None, None, error)]
         rejected = any(isinstance(problem, DeckError) for _, _, problem in cases)
         if (done.returncode in (2, 3)) != rejected or done.returncode not in range(5):
             return [(None, DIFFER, f"exit status {done.returncode}\n{done.stdout}{done.stderr}")]
-        return [(case, *verdict(path, pathlib.Path(place), done.stderr, case, found, tolerance)) for case, found, _ in cases]
+        verdicts = []
+        for case, found, _ in cases:
+            if f"SUBCASE {case}: not solved: it starts from the end" in done.stderr:
+                verdicts.append((case, verdicts[-1][1], "not solved, like the load case before"))
+            else:
+                verdicts.append((case, *verdict(path, pathlib.Path(place), done.stderr, case, found, tolerance)))
+        return verdicts
 
 
 def main():
@@ -143,13 +160,14 @@ def main():
     parser.add_argument("program", type=pathlib.Path)
     parser.add_argument("decks", nargs="*", type=pathlib.Path)
     parser.add_argument("--random", type=int, default=0, metavar="N", help="random models instead of decks; those that differ are kept in build/random")
+    parser.add_argument("--histories", action="store_true", help="random sequences of load cases with flow theory")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--tolerance", type=float, default=1e-8)
     parser.add_argument("-j", "--processes", type=int, default=1)
     options = parser.parse_args()
     if bool(options.decks) == bool(options.random):
         parser.error("either decks or --random")
-    decks, counts = options.decks or write(KEPT, options.random, options.seed), collections.Counter()
+    decks, counts = options.decks or write(KEPT, options.random, options.seed, options.histories), collections.Counter()
     with multiprocessing.Pool(options.processes) as pool:
         for path, found in zip(decks, pool.imap(functools.partial(run, options.program, tolerance=options.tolerance), decks)):
             for case, word, words in found:

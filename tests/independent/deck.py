@@ -19,6 +19,7 @@ KINDS = {"contact": {"force": ["force"], "length": ["initial_gap", "gap"], "pres
                       "modulus": ["secant_modulus"], "place": ["x", "y"]}}
 
 LONGEST = 1000000   # range of ids
+SEQUENTIAL = "66", "106", "NLSTATIC"   # values of SOL whose SUBCASEs follow each other
 
 
 class DeckError(Exception):
@@ -61,6 +62,32 @@ class Deck:
                     if card[i]:
                         factors[int(card[i + 1])] = factors.get(int(card[i + 1]), 0.0) + real(card[2]) * real(card[i])
         return factors or {chosen: 1.0}
+
+    @property
+    def is_sequence(self):
+        """Does each load case start from the end of the one before?"""
+        return bool(self.case.get("sequence"))
+
+    @property
+    def is_flow(self):
+        """Is plasticity flow theory?"""
+        parameter, cards = {card[1]: card[2] for card in self.of("PARAM")}, self.of("MATS1")
+        if not cards or parameter.get("ORIGINAL") == "YES":
+            return False
+        remembers = self.is_sequence and any(at(card, 3) == "PLASTIC" for card in cards)
+        theory = parameter.get("THEORY", "FLOW" if remembers or any(integer(at(card, 6), 1) > 1 for card in cards) else "TOTAL")
+        return theory == "FLOW"
+
+    def increments(self):
+        """Their number in this load case: NINC of its NLPARM, or PARAM NLOAD; and EPSU."""
+        by_id = {int(card[1]): (integer(at(card, 2), 1), real(at(card, 9))) for card in self.of("NLPARM")}
+        parameter = {card[1]: card[2] for card in self.of("PARAM")}
+        return by_id.get(self.case.get("NLPARM"), (integer(parameter.get("NLOAD", ""), 1), 0.0))
+
+    def hardening(self):
+        """By MAT1: kinematic part of the hardening, and whether plastic strain remains after unloading."""
+        fraction = next((real(card[2]) for card in self.of("PARAM") if card[1] == "HRFRAC"), 1.0)
+        return {int(card[1]): ({1: 0.0, 2: 1.0, 3: fraction}[integer(at(card, 6), 1)], at(card, 3) != "NLELAST") for card in self.of("MATS1")}
 
     def supports(self):
         """The set of supports."""
@@ -237,9 +264,12 @@ def read(path):
 
 def take_case_control(deck, lines):
     """Statements above the first SUBCASE apply to all."""
-    now = deck.case
+    now, follows = deck.case, {}
     for line in lines:
-        match = re.match(r"\s*(?:(SPC|LOAD|MPC)|(TEMP|BCON|SUBC)[A-Z]*)(?:\s*\(\s*(?:LOAD|BOTH)\s*\))?[\s=]\s*=?\s*(\d+)\s*$", line)
+        order = re.match(r"\s*(SOL|CNTNLSUB)\b[\s=]*(\w*)", line)
+        if order:
+            follows[order[1]] = order[2]
+        match = re.match(r"\s*(?:(SPC|LOAD|MPC|NLPARM)|(TEMP|BCON|SUBC)[A-Z]*)(?:\s*\(\s*(?:LOAD|BOTH)\s*\))?[\s=]\s*=?\s*(\d+)\s*$", line)
         off = re.match(r"\s*BCON[A-Z]*[\s=]\s*=?\s*(ALL|NONE)\s*$", line)
         if match and match[2] == "SUBC":
             now = dict(deck.case, SUBCASE=int(match[3]))
@@ -249,6 +279,7 @@ def take_case_control(deck, lines):
     if len(deck.cases) > 1:
         for case in deck.cases:
             case["several"], case["any SPC"] = True, any("SPC" in other for other in deck.cases)
+            case["sequence"] = follows["CNTNLSUB"] in ("", "YES") if "CNTNLSUB" in follows else follows.get("SOL") in SEQUENTIAL
     elif deck.cases:
         deck.case, deck.cases = deck.cases[0], []
 

@@ -35,15 +35,18 @@ class Model:
         self.parameter = {card[1]: card[2] for card in self.deck.of("PARAM")}
         moduli = self.deck.moduli()
         curves = {name: np.array(points).T for name, points in self.deck.curves(moduli).items()}
+        hardening = self.deck.hardening()
         paper = self.parameter.get("MUP") == "PAPER" or self.parameter.get("ORIGINAL") == "YES"
         self.section = {}
         for card in self.deck.of("PSHELL"):
             strain = at(card, 4) == "-1" or self.parameter.get("PLANE") == "STRAIN"
             if not strain and self.parameter.get("PLANE") != "STRESS":
                 raise DeckError("neither plane strain nor plane stress")
-            self.section[int(card[1])] = (real(card[3]), Law(*moduli[int(card[2])], not strain, curves.get(int(card[2])), paper))
+            m = int(card[2])
+            self.section[int(card[1])] = (real(card[3]), Law(*moduli[m], not strain, curves.get(m), paper, hardening.get(m, (0.0, False))))
         for card in self.deck.of("PSOLID"):
-            self.section[int(card[1])] = (None, Law(*moduli[int(card[2])], False, curves.get(int(card[2]))))
+            m = int(card[2])
+            self.section[int(card[1])] = (None, Law(*moduli[m], False, curves.get(m), paper, hardening.get(m, (0.0, False))))
         expansions = self.deck.expansions()
         self.expansion = {int(card[1]): expansions[int(card[2])] for card in self.deck.of("PSHELL") + self.deck.of("PSOLID")}
 
@@ -179,6 +182,14 @@ class Model:
                     self.stretch[k, column[end]] = sign
                     self.pull[k, column[end]] = sign * stiffness
         self.stretch, self.pull = self.stretch.tocsr(), self.pull.tocsr()
+
+    def loads(self):
+        """All that grows with the loads."""
+        return {name: getattr(self, name) for name in ("force", "given", "held", "free", "twist")}
+
+    def take_loads(self, loads):
+        for name, value in loads.items():
+            setattr(self, name, value)
 
     def masters(self, v):
         """Displacements of all independent DOFs."""

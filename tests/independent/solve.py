@@ -24,6 +24,7 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as spl
 
 from deck import DeckError, read
+from history import Diverged, History
 from model import Model
 from pressures import pressures
 
@@ -48,7 +49,9 @@ class Problem:
         self.exchanges = 0
         self.touching = np.ones(len(self.g), bool)   # start of the search
         nothing = np.zeros((len(model.volume), 4))
-        self.linearise(model.of_points("secant_matrix", nothing, 4, 4), nothing)
+        self.elastic = model.of_points("secant_matrix", nothing, 4, 4)
+        self.memory = model   # or plastic strains (history.py)
+        self.linearise(self.elastic, nothing)
         self.stiff = abs(self.k.diagonal()).max()
 
     def linearise(self, d, initial):
@@ -124,8 +127,11 @@ class Problem:
         if len(pivots) and pivots.min() <= 1e-11 * abs(self.k.diagonal()).min():
             raise DeckError("a body is free to move and has no SUPORT")
 
-    def answer(self):
+    def answer(self, history=None, parts=()):
+        """`history`: the loads before, with flow theory; `parts` of the loads at the ends of increments."""
         self.check_free()
+        if history:
+            return history.follow(self, parts)
         found = self.linear_answer()
         if any(law.curve is not None for law, _ in self.model.groups):
             found = self.yielding_answer(found)
@@ -216,7 +222,7 @@ def product(matrix, z):
 def tables(problem, v, force, gap, touching):
     model = problem.model
     u = model.tie @ v + model.held
-    stress, total, secant, plastic = model.respond(model.strains(u))
+    stress, total, secant, plastic = problem.memory.respond(model.strains(u))
     reaction = np.where(model.dof_held, model.lead.T @ model.unbalanced(u, stress, force) - model.twist, 0.0)
     reaction, moments = reaction[:len(u)].reshape(-1, 2), reaction[len(u):]
     masters, pulls = model.masters(v), model.pull @ u
@@ -261,14 +267,25 @@ def text(value):
     return f"{value:.17g}" if isinstance(value, float) else str(value)
 
 
-def solve(path, told=None):
+def solve(path, told=None, parts=None):
     """(number of the load case, its tables, its problem), or None and a reason instead, for each case of a deck. `told`: nodes of the
-    pairs of lines of each, if another program has found them."""
+    pairs of lines of each, if another program has found them; `parts`: of the loads at the ends of increments, likewise."""
+    history, ended = None, True
     for deck in read(path).by_case():
         try:
+            if not ended:
+                raise NoEquilibrium("the load case before has no end to start from")
             problem = Problem(Model(deck, told and told.get(deck.number)))
-            yield deck.number, tables(problem, *problem.answer()), problem
-        except (DeckError, NoEquilibrium) as error:
+            if not deck.is_flow:
+                yield deck.number, tables(problem, *problem.answer()), problem
+                continue
+            history = history if history and deck.is_sequence else History(problem.model)
+            n = deck.increments()[0]
+            found = problem.answer(history, parts and parts.get(deck.number) or [k / n for k in range(1, n + 1)])
+            yield deck.number, tables(problem, *found), problem
+            history.finish(problem.model)
+        except (DeckError, NoEquilibrium, Diverged) as error:
+            ended = not (deck.is_flow and deck.is_sequence)
             yield deck.number, None, error
 
 

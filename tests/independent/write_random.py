@@ -18,6 +18,7 @@ import random
 from random_ties import ties
 
 HEAT = 10.0   # temperatures, about zero: thermal strains up to the yield strain
+HARDENING = "HR"   # replaced by the hardening of a MATS1
 
 
 class Scene:
@@ -62,7 +63,7 @@ class Scene:
         self.add("MAT1", number, young, "", nu, rng.uniform(0.5, 2.0), *self.expansion())
         kind = rng.choice(3 * ["elastic", "bilinear", "curve", "curve"] + ["flat"])
         if kind in ("bilinear", "flat"):
-            self.add("MATS1", number, "", "PLASTIC", young * rng.uniform(0.01, 0.3) if kind == "bilinear" else 0.0, 1, 1, stress)
+            self.add("MATS1", number, "", "PLASTIC", young * rng.uniform(0.01, 0.3) if kind == "bilinear" else 0.0, 1, HARDENING, stress)
         elif kind == "curve":
             strain, points = stress / young, [(0.0, 0.0), (stress / young, stress)]
             for _ in range(3):
@@ -178,11 +179,39 @@ class Scene:
             statements += ["BCONTACT = NONE"] * (statements[-1] == "SPC = 2" and chance.random() < 0.5)
         return statements
 
-    def text(self):
+    def history(self, chance):
+        """A sequence of two to four SUBCASEs in one to four increments: loads up, down, and in other directions; prescribed
+        displacements and temperatures in some. Hardening is isotropic, kinematic or mixed. Returns the case control."""
+        self.supports(1, self.held)
+        if self.support:
+            self.add_long("SUPORT", *[field for pair in self.support for field in pair])
+        self.lines = [line.replace(f",{HARDENING},", f",{chance.randint(1, 3)},") if line.startswith("MATS1") else line for line in self.lines]
+        self.lines = [line.replace("PLASTIC", "NLELAST") if chance.random() < 0.1 else line for line in self.lines]
+        forces = [line.replace("FORCE,1,", "FORCE,2,") for line in self.lines if line.startswith("FORCE,1,")]
+        self.lines += forces
+        for digit in ("2", "6"):
+            for node in [node for node, own in self.held if own == digit][:1]:
+                self.add("SPCD", 3, node, digit, chance.uniform(-1e-4, 1e-4))
+        self.add("PARAM", "HRFRAC", chance.uniform(0.1, 1.0))
+        self.add("PARAM", "THEORY", "FLOW")
+        statements = [chance.choice(["SOL 106", "CNTNLSUB = YES"])]
+        for k, number in enumerate(chance.sample(range(1, 100), chance.randint(2, 4))):
+            factor = chance.uniform(*chance.choice([(0.05, 0.7), (0.3, 1.0), (0.9, 1.2)] if k % 2 else [(0.3, 1.0), (0.7, 1.2), (0.9, 1.2)]))
+            self.add("LOAD", 1000 + number, 1.0, factor, 1, *chance.choice([(), (chance.uniform(-1.0, 1.0) * factor, 2 if forces else 1),
+                                                                            (chance.uniform(-1.0, 1.0), 3)]))
+            self.add("NLPARM", number, chance.randint(1, 4))
+            statements += [f"SUBCASE {number}", f"LOAD = {1000 + number}", f"NLPARM = {number}"]
+            statements += ["TEMPERATURE(LOAD) = 7"] * (self.heated and chance.random() < 0.6)
+        return statements
+
+    def text(self, history=False):
         if self.heated:
             self.warm()
-        cases = self.cases(random.Random(self.chance.random()))
-        return "\n".join(["TEMPERATURE(LOAD) = 7"] * self.heated + self.control + cases + ["BEGIN BULK"] + self.lines + ["ENDDATA", ""])
+        chance = random.Random(self.chance.random())
+        heat = ["TEMPERATURE(LOAD) = 7"] * (self.heated and not history)
+        cases = self.history(chance) if history else self.cases(chance)
+        lines = [line.replace(f",{HARDENING},", ",1,") for line in self.lines]
+        return "\n".join(heat + self.control + cases + ["BEGIN BULK"] + lines + ["ENDDATA", ""])
 
 
 def places(rng, low, high, parts, uneven=0.4):
@@ -340,8 +369,8 @@ def nested(rng):
     return scene
 
 
-def write(directory, number, seed):
-    """Returns the paths."""
+def write(directory, number, seed, histories=False):
+    """Returns the paths. `histories`: sequences of SUBCASEs with flow theory."""
     directory.mkdir(parents=True, exist_ok=True)
     paths = [directory / f"model{k:03}.dat" for k in range(number)]
     for k, path in enumerate(paths):
@@ -349,7 +378,7 @@ def write(directory, number, seed):
         scene = (pressed if k % 2 else [stack, nested, tongue][k // 2 % 3])(rng)
         body_loads(rng, scene)
         ties(rng, scene)
-        path.write_text(scene.text(), encoding="ascii")
+        path.write_text(scene.text(histories), encoding="ascii")
     return paths
 
 
@@ -358,8 +387,9 @@ def main():
     parser.add_argument("directory", type=pathlib.Path)
     parser.add_argument("-n", "--number", type=int, default=40)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--histories", action="store_true", help="sequences of SUBCASEs with flow theory")
     options = parser.parse_args()
-    write(options.directory, options.number, options.seed)
+    write(options.directory, options.number, options.seed, options.histories)
 
 
 if __name__ == "__main__":

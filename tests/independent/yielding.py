@@ -11,8 +11,9 @@ HALVINGS = 70
 class Law:
     """Stress of points of one section at their strains xx, yy, zz, xy (engineering); in plane stress zz follows."""
 
-    def __init__(self, young, nu, plane_stress, curve=None, paper=False):
+    def __init__(self, young, nu, plane_stress, curve=None, paper=False, hardening=(0.0, False)):
         self.young, self.nu, self.plane_stress, self.curve, self.paper = young, nu, plane_stress, curve, paper
+        self.kinematic, self.remembers = hardening
 
     def curve_stress(self, total):
         strain, stress = self.curve

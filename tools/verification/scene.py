@@ -9,6 +9,10 @@ from lines import pairs_of_lines
 from ties import resolved, rigid_ties, sums
 
 
+#: Error of stresses after all increments of flow theory, over the tolerance of the iteration.
+DRIFT = 10.0
+
+
 class Section:
     """thickness: None if axisymmetric. points: of the uniaxial curve, or None. expansion: A and TREF."""
 
@@ -33,12 +37,13 @@ class Scene:
         self.x = {int(c[1]): (real(at(c, 3)), real(at(c, 4))) for c in deck.of("GRID")}
         self.parameter = parameter = {c[1]: c[2] for c in deck.of("PARAM")}
         self.paper = parameter.get("MUP") == "PAPER" or parameter.get("ORIGINAL") == "YES"
-        newton = parameter.get("METHOD", "AUTO") in ("NEWTON", "AUTO") and not self.paper
+        newton = parameter.get("METHOD", "AUTO") in ("NEWTON", "AUTO") and not self.paper or deck.is_flow
         wanted = real(parameter.get("ACCURACY", ""), 0.0) * (0.1 if newton else 0.002)
-        self.off_curve = real(parameter.get("TOL", ""), wanted or (1e-8 if newton else 0.01)) * (1 if newton else 10)
+        asked = deck.increments()[1] or real(parameter.get("TOL", ""))
+        self.off_curve = (asked or wanted or (1e-8 if newton else 0.01)) * (1 if newton else 10)
         self.off_curve *= bool(deck.of("MATS1"))
-        if parameter.get("THEORY") == "FLOW" and deck.of("MATS1"):
-            raise DeckError("PARAM THEORY FLOW: stresses depend on all load steps, but the tables hold only the last one")
+        # Flow theory: the last increment (history.py), and the relative difference of stresses by iteration errors of all.
+        self.end, self.drift = None, DRIFT * self.off_curve if deck.is_flow else 0.0
         self.sections()
         self.element = {}
         for name, kind in KINDS.items():
