@@ -51,6 +51,7 @@ module epcont_evaluation
     type(replayed_history), allocatable :: replayed(:)
   contains
     procedure :: evaluate
+    procedure :: find_results
     procedure :: is_unbalanced
     procedure :: refine
     procedure :: assess_answer
@@ -60,6 +61,20 @@ contains
 
   !> Find stresses, pressures and zones of the state found, and its certificate.
   subroutine evaluate(self, watch)
+    class(evaluated_model), intent(inout) :: self
+    class(observer), intent(inout) :: watch
+
+    call self%find_results(watch)
+    associate (model => self%model, answer => self%answer)
+      call certify(model, answer, self%iteration%off_curve, self%certificate, self%replayed)
+      if (answer%converged .and. self%certificate%valid) &
+        self%certificate%scene = look_through(model, answer%displacement, answer%contact%force)
+    end associate
+    call watch%lap(stage_certificate)
+  end subroutine evaluate
+
+  !> Find stresses, pressures and zones of the state found.
+  subroutine find_results(self, watch)
     class(evaluated_model), intent(inout) :: self
     class(observer), intent(inout) :: watch
     logical, allocatable :: touching(:)
@@ -80,14 +95,10 @@ contains
         answer%zones = find_zones(kept%line, touching, force, answer%pressure)
         call compare_sides(model, answer%contact%touching, force, answer%pressure, answer%lines, answer%apart)
         answer%bodies = find_body_forces(model, force)
-        call watch%lap(stage_stresses)
-        call certify(model, answer, self%iteration%off_curve, self%certificate, self%replayed)
-        if (answer%converged .and. self%certificate%valid) &
-          self%certificate%scene = look_through(model, answer%displacement, force)
       end associate
     end associate
-    call watch%lap(stage_certificate)
-  end subroutine evaluate
+    call watch%lap(stage_stresses)
+  end subroutine find_results
 
   !> Are forces, gaps or the energy out of balance, or has a pivot lost too many digits?
   pure logical function is_unbalanced(self)

@@ -6,22 +6,15 @@ module epcont_solution
     more_pairs, more_steps, other_rule, refinement
   use epcont_base_error, only: error_type, status_valid
   use epcont_base_kinds, only: wp
-  use epcont_certificate_certificate, only: certificate_type
-  use epcont_certificate_yielding, only: replayed_history
-  use epcont_evaluation, only: evaluated_model
+  use epcont_load_history, only: loaded_model
   use epcont_verdict, only: find_verdict, verdict_type
   use epcont_contact_geometry_nearness, only: find_nodes_that_came_near, pair_nodes_that_came_near
   use epcont_contact_problem, only: contact_solved, contact_stalled
   use epcont_model_contact_rows, only: line_contact
-  use epcont_model_load_set, only: load_set
   use epcont_plan_forecast, only: check_memory
-  use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_plan_planned_model, only: planned_model
   use epcont_plan_side_by_side, only: plan_threads
-  use epcont_plasticity_load_path, only: load_path, path_end
   use epcont_plasticity_observer, only: observer
-  use epcont_result_answer, only: answer_type
-  use epcont_system_stopwatch, only: stage_contact, stage_stiffness
   use epcont_system_threads, only: granted_threads
   implicit none
   private
@@ -30,33 +23,19 @@ module epcont_solution
   !> Factor of the number of load steps, if the planned number gives no answer.
   integer, parameter :: times_the_steps = 5
 
-  !> End of a load case, from which the next one of a sequence starts.
-  type, extends(path_end) :: case_end
-    type(replayed_history), allocatable :: replayed(:)   !! history of the certificate [points]
-  end type case_end
-
   !> A model with its answer, certificate and error estimates. There are no displacements if a body's
   !! stiffness could not be factored (`answer%failed_body`), or without contact equilibrium
   !! (`answer%contact%state`).
-  type, extends(evaluated_model) :: solution_type
+  type, extends(loaded_model) :: solution_type
     type(verdict_type) :: verdict
     !> The model before nodes that came near in this load case got pairs; not allocated if there were no such
     !! nodes
     type(planned_model), allocatable :: as_given
     type(attempt_list) :: attempts       !! after the first solve
-    type(load_set), private :: loads     !! of the load case; the model has those of the state found
-    !> Flow theory: end of the load case before, from which this one starts; not allocated: unloaded
-    type(case_end), allocatable, private :: start
-    logical, private :: unique = .true.  !! contact forces are unique, as far as the contact solver must know
   contains
     procedure :: solve
     procedure :: return_to_given
-    procedure :: can_start
-    procedure, private :: keep_end
-    procedure, private :: has_memory
     procedure, private :: solve_as_planned
-    procedure, private :: follow
-    procedure, private :: begin_replay
     procedure, private :: choose_attempt
     procedure, private :: make_attempt
     procedure, private :: why_more_steps
@@ -78,7 +57,7 @@ contains
     self%accuracy = none
     if (allocated(self%as_given)) deallocate (self%as_given)
     call self%attempts%begin()
-    self%loads = self%model%loads
+    call self%begin_case()
     call self%solve_as_planned(limit, watch, error)
     do
       if (allocated(error)) return
@@ -89,40 +68,10 @@ contains
     if (self%answer%failed_body == 0 .and. self%answer%contact%state == contact_solved) &
       call self%assess_answer(watch)
     self%verdict = find_verdict(self%answer, self%certificate, self%model%contact%contact_is_off)
-    call self%keep_end()
+    call self%end_case(self%verdict%status() == status_valid)
     if (.not. self%kept%another) call self%kept%forget()
     if (allocated(self%kept%virgin) .and. allocated(self%kept%linear)) deallocate (self%kept%linear)
   end subroutine solve
-
-  !> Keep the end of this load case for the next one of a sequence. Without plastic strain, equilibrium does
-  !! not depend on the loads before.
-  subroutine keep_end(self)
-    class(solution_type), intent(inout) :: self
-
-    if (allocated(self%start)) deallocate (self%start)
-    if (.not. (self%has_memory() .and. self%verdict%status() == status_valid)) return
-    allocate (self%start)
-    self%start%loads = self%model%loads
-    self%start%state = self%answer%solved_state
-    self%start%replayed = self%certificate%history
-    call self%kept%linear%materials%commit(self%answer%point)
-    call move_alloc(self%kept%linear%materials%committed, self%start%history)
-  end subroutine keep_end
-
-  !> Can a load case start where the one before has ended?
-  pure logical function can_start(self)
-    class(solution_type), intent(in) :: self
-
-    can_start = allocated(self%start) .or. .not. self%has_memory()
-  end function can_start
-
-  !> Does the answer of a load case depend on those before?
-  pure logical function has_memory(self)
-    class(solution_type), intent(in) :: self
-
-    has_memory = self%model%controls%sequence .and. self%model%controls%flow_theory .and. &
-                 self%iteration%yields
-  end function has_memory
 
   !> Choose the first attempt of the list that has a reason.
   subroutine choose_attempt(self, what, why)
@@ -178,7 +127,7 @@ contains
 
     associate (answer => self%answer, plan => self%iteration)
       why = merge(because_not_converged, 0, plan%chosen_here .and. plan%yields .and. &
-                  size(answer%history) > 1 .and. &
+                  .not. self%is_flow() .and. size(answer%history) > 1 .and. &
                   .not. (answer%converged .or. answer%runs_away .or. answer%lacks_memory))
     end associate
   end function why_more_steps
@@ -237,61 +186,9 @@ contains
     self%iteration%threads = plan_threads(self%numbering, self%expected%bytes, granted_threads())
     call self%iteration%set_tolerances(self%model%controls)
     call watch%expect(self%expected%operations)
+    if (self%is_flow()) call self%follow_others(watch)
     call self%follow(self%model%controls%load_steps, watch)
   end subroutine solve_as_planned
-
-  !> Follow the loads in this number of load steps, and evaluate the state found.
-  subroutine follow(self, load_steps, watch)
-    class(solution_type), intent(inout) :: self
-    integer, intent(in) :: load_steps    !! of this load case, if something can yield
-    class(observer), intent(inout) :: watch
-    type(iteration_plan) :: plan
-    type(answer_type) :: none
-    type(certificate_type) :: no_certificate
-    type(load_path) :: path
-    integer :: refinements
-
-    self%answer = none
-    self%certificate = no_certificate
-    plan = self%iteration
-    if (plan%yields) plan%load_steps = load_steps
-    self%model%loads = self%loads
-    call self%begin_replay()
-    associate (kept => self%kept, answer => self%answer)
-      plan%keeps = kept%another
-      call path%begin(self%planned_model, plan, kept%linear, kept%virgin, self%start)
-      call watch%lap(stage_stiffness)
-      do
-        call path%advance(self%planned_model, kept%linear, answer, watch)
-        if (.not. answer%converged .or. path%is_complete()) exit
-        if (.not. self%model%controls%flow_theory) cycle
-        call self%evaluate(watch)
-        if (self%is_unbalanced()) call self%refine(refinements, watch)
-        if (.not. self%certificate%valid) exit
-        call path%commit(kept%linear, answer)
-        self%replayed = self%certificate%history
-      end do
-      call path%finish(kept%linear, kept%virgin, answer)
-      if (kept%linear%rule%failed .or. answer%failed_body > 0 .or. &
-          answer%contact%state /= contact_solved) return
-      self%unique = kept%linear%rule%is_unique(self%planned_model, kept%linear%factored_bodies)
-    end associate
-    call watch%lap(stage_contact)
-    if (self%unique) call self%evaluate(watch)
-  end subroutine follow
-
-  !> Let the certificate begin at the start of the path.
-  subroutine begin_replay(self)
-    class(solution_type), intent(inout) :: self
-
-    if (allocated(self%replayed)) deallocate (self%replayed)
-    if (.not. (self%model%controls%flow_theory .and. self%iteration%yields)) return
-    if (allocated(self%start)) then
-      self%replayed = self%start%replayed
-    else
-      allocate (self%replayed(self%model%mesh%points))
-    end if
-  end subroutine begin_replay
 
   !> Return to the model without the pairs of nodes that came near in this load case, so that other load cases
   !! are solved independently.

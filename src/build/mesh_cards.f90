@@ -212,13 +212,18 @@ contains
     type(findings), intent(inout) :: found
 
     part = 0.0_wp
+    if (deck%card(card_mats1)%word(deck%card(card_mats1)%column('TYPE'), i) == 'NLELAST') then
+      if (nint(deck%card(card_mats1)%number('HR', i)) > 1) call refuse(deck, card_mats1, i, 'HR', &
+        ': field 7 (HR): NLELAST is elastic and does not harden', 'use HR 1, or TYPE PLASTIC', found)
+      return
+    end if
     select case (nint(deck%card(card_mats1)%number('HR', i)))
     case (2)
       part = 1.0_wp
     case (3)
       if (deck%parameter_row('HRFRAC') == 0) call refuse(deck, card_mats1, i, 'HR', &
         ': field 7 (HR) is 3, and the kinematic part of the hardening is missing', &
-        'PARAM HRFRAC, from 0 to 1; or HR 1 (isotropic) or 2 (kinematic)', found)
+        'add PARAM HRFRAC, from 0 to 1; or use HR 1 (isotropic) or 2 (kinematic)', found)
       part = deck%parameter_value('HRFRAC', 1.0_wp)
     end select
   end function kinematic_part

@@ -122,19 +122,19 @@ contains
       if (any(model%controls%method == [method_secant, method_modsec])) &
         call found%add_error(of_theory, 0, 2, &
         ': FLOW does not go with METHOD SECANT or MODSEC, which use the whole strain', &
-        'METHOD NEWTON, INISTR or AUTO, or THEORY TOTAL')
+        'use METHOD NEWTON, INISTR or AUTO, or THEORY TOTAL')
     end if
     do s = 1, size(model%sections%curve)
       associate (curve => model%sections%curve(s))
         if (curve%kinematic == 0.0_wp) cycle
         if (.not. model%controls%flow_theory) then
           call found%add_error(of_theory, 0, 2, ': TOTAL has no kinematic hardening (MATS1 HR 2 or 3)', &
-                               'THEORY FLOW, or HR 1')
+                               'use THEORY FLOW, or HR 1')
           exit
         end if
         if (size(curve%stress) > 3) call found%add_error(of_section, s, item_hardening, &
           ': field 7 (HR): kinematic hardening of a table with more than two slopes', &
-          'HR 1, or a table of three points')
+          'use HR 1, or a table of three points')
       end associate
     end do
     if (.not. model%controls%paper_ratio) return

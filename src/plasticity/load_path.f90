@@ -4,7 +4,7 @@
 module epcont_plasticity_load_path
   use epcont_assembly_bodies, only: weak_pivot
   use epcont_base_kinds, only: wp
-  use epcont_contact_problem, only: contact_solved, pivot_record
+  use epcont_contact_problem, only: contact_no_equilibrium, contact_solved, pivot_record
   use epcont_linear_linear_problem, only: linear_problem
   use epcont_linear_solved_state, only: solved_state
   use epcont_material_material_law, only: plastic_history
@@ -19,6 +19,9 @@ module epcont_plasticity_load_path
   private
   public :: followed_loads, load_path, path_end
 
+  !> Contact is lost if its last force was at most this part of the largest: an increment is small enough.
+  real(wp), parameter :: little = 0.05_wp
+
   !> Parts of a load step; an increment is at least one of them.
   integer, parameter :: parts = 64
 
@@ -28,6 +31,7 @@ module epcont_plasticity_load_path
     logical :: converged = .false.         !! for the whole path, to the tolerance of the iteration
     logical :: carried = .false.           !! for a part of it, to this tolerance
     logical :: runs_away = .false.         !! no equilibrium: the displacements grow without end
+    logical :: lost_contact = .false.      !! flow theory: no contact is left under more of the loads
     integer :: failed_body = 0             !! body that could not be factored
     logical :: lacks_memory = .false.      !! the reason was too little memory
     integer :: factorizations = 0          !! of bodies
@@ -35,6 +39,7 @@ module epcont_plasticity_load_path
     type(weak_pivot) :: weakest            !! of the stiffness
     type(iteration_record), allocatable :: history(:)   !! every solve
     type(pivot_record), allocatable :: pivot(:)         !! kept pivots of all solves
+    real(wp), private :: largest_force = 0.0_wp         !! largest sum of the contact forces on the path
     integer :: unloaded = 0                !! elements whose strain decreased after yielding, while the load
                                            !! grew
     integer :: first_unloaded = 0          !! one of them
@@ -61,6 +66,7 @@ module epcont_plasticity_load_path
     procedure :: advance
     procedure :: commit
     procedure :: is_complete
+    procedure :: iterations
     procedure :: finish
     procedure, private :: part_of_loads
   end type load_path
@@ -140,6 +146,13 @@ contains
     is_complete = self%place == parts*self%iteration%plan%load_steps
   end function is_complete
 
+  !> Number of solves so far.
+  pure integer function iterations(self)
+    class(load_path), intent(in) :: self
+
+    iterations = size(self%iteration%history)
+  end function iterations
+
   !> Part of the loads after some parts of load steps.
   pure real(wp) function part_of_loads(self, place)
     class(load_path), intent(in) :: self
@@ -175,7 +188,10 @@ contains
     self%lacks_memory = any(iteration%linear%body%lacks_memory)
     if (self%failed_body > 0) return
     associate (contact => iteration%state%contact)
-      if (.not. (iteration%converged .or. .not. self%carried .or. contact%state /= contact_solved)) then
+      if (self%carried .and. scene%model%controls%flow_theory .and. contact%state == contact_no_equilibrium) &
+        self%lost_contact = sum(self%contact%force) <= little*self%largest_force
+      if (self%lost_contact .or. &
+          .not. (iteration%converged .or. .not. self%carried .or. contact%state /= contact_solved)) then
         call iteration%return_to(scene, self%solved_state, self%load_factor, watch)
         if (iteration%failed_body > 0) self%condition = huge(1.0_wp)
         return
@@ -186,5 +202,6 @@ contains
     self%load_factor = iteration%load_factor
     self%weakest = iteration%linear%weakest()
     self%carried = iteration%converged
+    self%largest_force = max(self%largest_force, sum(self%contact%force))
   end subroutine keep_step
 end module epcont_plasticity_load_path

@@ -166,6 +166,7 @@ contains
     type(run_results), intent(in) :: run
 
     call put_table(run, 'history', listing)
+    if (run%is_flow()) call put_table(run, 'increments', listing)
     call listing%line('')
     if (any(run%answer%history%by_tangent)) call listing%say(&
       'the last step uses the tangent: its change is the error that the other steps have left')
@@ -223,7 +224,8 @@ contains
     type(run_results), intent(in) :: run
     type(figure_type), intent(in) :: figures(:)
 
-    call list_figures(listing, figures, [character(len=21) :: 'contact_amplification', 'mesh_error_'])
+    call list_figures(listing, figures, [character(len=21) :: 'contact_amplification', 'mesh_error_', &
+      'increment_error_'])
     if (size(run%accuracy%worst) > 0) &
       call listing%say('refine elements '//joined(run%model%mesh%element_id(run%accuracy%worst), ' ')// &
                ' first: '//percent(sum(run%accuracy%element(run%accuracy%worst)), &

@@ -20,7 +20,7 @@ module epcont_report_results
 
   !> A file of results: its suffix after the name of the deck, and its contents.
   type :: result_file
-    character(len=14) :: suffix
+    character(len=16) :: suffix
     character(len=76) :: text
   end type result_file
 
@@ -32,6 +32,7 @@ module epcont_report_results
     result_file('.zones.csv', 'the contact zones: runs of neighbouring pairs in contact'), &
     result_file('.bodies.csv', 'the contact resultant on each body'), &
     result_file('.history.csv', 'the iterations'), &
+    result_file('.increments.csv', 'the increments of flow theory: approach, pressure, half-width'), &
     result_file('.pivots.csv', 'the pivots of each iteration by RULE CONRY, with --tables all'), &
     result_file('.nodes.csv', 'the nodes, if the deck or --tables all asks for them'), &
     result_file('.elements.csv', 'the elements, if the deck or --tables all asks for them'), &
@@ -41,7 +42,7 @@ module epcont_report_results
     result_file('.pvd', 'for ParaView: index of DECK.caseN.vtu and .caseN.contact.vtu of load cases')]
 
   !> The first files are the listing, the summary, and tables with rows of each load case.
-  integer, parameter :: listing = 1, summary = 2, of_each_case = 9
+  integer, parameter :: listing = 1, summary = 2, of_each_case = 10
 
   !> Results of one load case. If there are several, its part of each file is held in memory.
   type :: case_results
@@ -141,6 +142,8 @@ contains
       is_wanted = .true.
     case ('.bodies.csv')
       is_wanted = is_wanted .and. run%model%contact%pairs > 0
+    case ('.increments.csv')
+      is_wanted = is_wanted .and. run%is_flow()
     case ('.pivots.csv')
       is_wanted = is_wanted .and. self%all_tables
       if (is_wanted) is_wanted = size(run%answer%pivot) > 0

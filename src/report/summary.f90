@@ -37,7 +37,7 @@ module epcont_report_summary
     type(figure_type), allocatable :: figure(:)   !! with free space
     integer :: count = 0
   contains
-    procedure, private :: put, list_as, put_word, put_error, append
+    procedure, private :: put, list_as, put_word, put_error, put_increment_error, append
   end type figure_list
 
 contains
@@ -57,6 +57,7 @@ contains
       call put_certificate(run, list)
       call put_iteration(run, list)
       call put_mesh_errors(run, list)
+      call put_increment_errors(run, list)
       call put_sensitivity(run, list)
     end if
     figures = list%figure(:list%count)
@@ -249,6 +250,31 @@ contains
         run%accuracy%total_force, sum(run%answer%contact%force), '')
   end subroutine put_mesh_errors
 
+  !> Add the errors by the size of the increments of flow theory.
+  subroutine put_increment_errors(run, figures)
+    type(run_results), intent(in) :: run
+    type(figure_list), intent(inout) :: figures
+    integer :: k
+
+    if (.not. run%is_flow() .or. size(run%increment) == 0) return
+    call figures%put_word('increments', text_of(size(run%increment)), '')
+    if (.not. allocated(run%increment_error)) return
+    associate (error => run%increment_error, found => run%increment(size(run%increment)))
+      if (run%model%contact%pairs > 0) then
+        call figures%put_increment_error('max_pressure', stress, 'largest pressure', error%pressure, &
+                                         found%pressure)
+        call figures%put_increment_error('half_width', length, 'half-width of its zone', &
+                                         error%half_width, found%half_width)
+      end if
+      do k = 1, run%motions%count
+        call figures%put_increment_error('approach_'//motion_key(run, k), motion_unit(run, k), &
+          'approach of '//motion_name(run, k), error%approach(k), abs(found%approach(k)))
+      end do
+      call figures%put_increment_error('stress', stress, 'stresses of elements', error%stress, &
+                                       maxval(run%answer%equivalent_stress))
+    end associate
+  end subroutine put_increment_errors
+
   !> Add the effects of rounding and stiffness errors on contact forces.
   subroutine put_sensitivity(run, figures)
     type(run_results), intent(in) :: run
@@ -327,6 +353,17 @@ contains
     self%count = self%count + 1
     self%figure(self%count) = figure
   end subroutine append
+
+  !> Add an error by the size of the increments; the listing shows it if it is known.
+  subroutine put_increment_error(self, key, unit, name, error, value)
+    class(figure_list), intent(inout) :: self
+    character(len=*), intent(in) :: key, unit, name   !! key and name are those of the value
+    real(wp), intent(in) :: error, value
+
+    call self%put('increment_error_'//key, unit, known, error, &
+                  when(error >= 0.0_wp, 'increments: '//name), '   '//percent(error, value))
+    call self%list_as(listed_number(estimate, error, value))
+  end subroutine put_increment_error
 
   !> Add a mesh error; the listing shows it if it is known, otherwise the reason.
   subroutine put_error(self, key, unit, name, error, value, limit)

@@ -10,7 +10,7 @@ import subprocess
 import sys
 
 LAYERS = ["base", "system", "deck", "element", "geometry", "model", "contact_geometry", "build", "material", "linalg", "plan",
-          "assembly", "flexibility", "contact", "linear", "plasticity", "result", "certificate", "accuracy", "verdict", "attempts", "evaluation", "solution",
+          "assembly", "flexibility", "contact", "linear", "plasticity", "result", "certificate", "accuracy", "verdict", "attempts", "evaluation", "load_history", "solution",
           "messages", "report", "epcont", "app"]   # from verdict to solution, and epcont: files of src itself
 # A certificate computed by the code it certifies is worth nothing.
 SHUNNED = {"certificate": {"linalg", "assembly", "flexibility", "contact", "linear", "plasticity"}}

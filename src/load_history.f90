@@ -1,0 +1,214 @@
+!> Loads of a load case, followed to their end: the result, checked and evaluated. In flow theory each
+!> increment is checked, the next load case of a sequence starts from the end of this one, and a second run
+!> with another number of increments shows their error.
+module epcont_load_history
+  use epcont_base_kinds, only: wp
+  use epcont_certificate_certificate, only: certificate_type
+  use epcont_certificate_yielding, only: replayed_history
+  use epcont_contact_problem, only: contact_solved
+  use epcont_evaluation, only: evaluated_model
+  use epcont_model_load_set, only: load_set
+  use epcont_plan_iteration_plan, only: iteration_plan
+  use epcont_plasticity_load_path, only: load_path, path_end
+  use epcont_plasticity_observer, only: observer
+  use epcont_result_answer, only: answer_type
+  use epcont_result_increment, only: errors_of_increments, increment_errors, increment_of, increment_record, &
+      other_number
+  use epcont_system_stopwatch, only: stage_contact, stage_stiffness
+  implicit none
+  private
+  public :: loaded_model
+
+  !> End of a load case, from which the next one of a sequence starts.
+  type, extends(path_end) :: case_end
+    type(replayed_history), allocatable :: replayed(:)   !! history of the certificate [points]
+  end type case_end
+
+  type, extends(evaluated_model) :: loaded_model
+    logical :: unique = .true.           !! contact forces are unique, as far as the contact solver must know
+    type(increment_record), allocatable :: increment(:)   !! flow theory: increments of this load case [any]
+    type(increment_errors), allocatable :: increment_error   !! not allocated: unknown
+    type(load_set), private :: loads     !! of the load case; the model has those of the state found
+    !> Ends of the load case before, in flow theory: of this run, and of that with other increments. Not
+    !! allocated: unloaded
+    type(case_end), allocatable, private :: start
+    type(path_end), allocatable, private :: other_start, other_end
+    type(increment_record), allocatable, private :: other   !! end of this load case with other increments
+  contains
+    procedure :: begin_case
+    procedure :: follow
+    procedure :: end_case
+    procedure :: can_start
+    procedure, private :: has_memory
+    procedure, private :: begin_replay
+    procedure :: follow_others
+    procedure :: is_flow
+    procedure, private :: end_of
+    procedure, private :: add_increment
+  end type loaded_model
+
+contains
+
+  !> Begin a load case, whose loads the model has.
+  pure subroutine begin_case(self)
+    class(loaded_model), intent(inout) :: self
+
+    self%loads = self%model%loads
+    if (allocated(self%increment_error)) deallocate (self%increment_error)
+  end subroutine begin_case
+
+  !> Follow the loads in this number of load steps, and evaluate the state found.
+  subroutine follow(self, load_steps, watch)
+    class(loaded_model), intent(inout) :: self
+    integer, intent(in) :: load_steps    !! of this load case, if something can yield
+    class(observer), intent(inout) :: watch
+    type(iteration_plan) :: plan
+    type(answer_type) :: none
+    type(certificate_type) :: no_certificate
+    type(load_path) :: path
+    integer :: refinements
+
+    if (allocated(self%increment)) deallocate (self%increment)
+    allocate (self%increment(0))
+    self%answer = none
+    self%certificate = no_certificate
+    plan = self%iteration
+    if (plan%yields) plan%load_steps = load_steps
+    self%model%loads = self%loads
+    call self%begin_replay()
+    associate (kept => self%kept, answer => self%answer)
+      plan%keeps = kept%another
+      call path%begin(self%planned_model, plan, kept%linear, kept%virgin, self%start)
+      call watch%lap(stage_stiffness)
+      do
+        call path%advance(self%planned_model, kept%linear, answer, watch)
+        if (.not. answer%converged .or. path%is_complete()) exit
+        if (.not. self%model%controls%flow_theory) cycle
+        call self%evaluate(watch)
+        if (self%is_unbalanced()) call self%refine(refinements, watch)
+        if (.not. self%certificate%valid) exit
+        call self%add_increment(path%iterations())
+        call path%commit(kept%linear, answer)
+        self%replayed = self%certificate%history
+      end do
+      call path%finish(kept%linear, kept%virgin, answer)
+      if (kept%linear%rule%failed .or. answer%failed_body > 0 .or. &
+          answer%contact%state /= contact_solved) return
+      self%unique = kept%linear%rule%is_unique(self%planned_model, kept%linear%factored_bodies)
+    end associate
+    call watch%lap(stage_contact)
+    if (self%unique) call self%evaluate(watch)
+    if (self%unique .and. self%is_flow()) call self%add_increment(size(self%answer%history))
+  end subroutine follow
+
+  !> Follow the loads in another number of increments, for their error.
+  subroutine follow_others(self, watch)
+    class(loaded_model), intent(inout) :: self
+    class(observer), intent(inout) :: watch
+    type(iteration_plan) :: plan
+    type(answer_type) :: none
+    type(load_path) :: path
+
+    if (allocated(self%other)) deallocate (self%other)
+    self%answer = none
+    plan = self%iteration
+    plan%load_steps = other_number(self%model%controls%load_steps)
+    plan%keeps = .true.
+    self%model%loads = self%loads
+    associate (kept => self%kept, answer => self%answer)
+      call path%begin(self%planned_model, plan, kept%linear, kept%virgin, self%other_start)
+      do
+        call path%advance(self%planned_model, kept%linear, answer, watch)
+        if (.not. answer%converged .or. path%is_complete()) exit
+        call path%commit(kept%linear, answer)
+      end do
+      call path%finish(kept%linear, kept%virgin, answer)
+      if (answer%converged .and. path%is_complete()) then
+        call self%find_results(watch)
+        self%other = increment_of(answer, size(answer%history))
+        self%other%stress = answer%stress
+        self%other_end = self%end_of()
+      end if
+      deallocate (kept%linear)   ! it has the tangent of the end
+    end associate
+  end subroutine follow_others
+
+  !> Add an increment to the list. gfortran 12 leaks an array constructor of such a type.
+  pure subroutine add_increment(self, iterations)
+    class(loaded_model), intent(inout) :: self
+    integer, intent(in) :: iterations   !! solves up to its end
+    type(increment_record), allocatable :: more(:)
+    integer :: n
+
+    n = size(self%increment)
+    allocate (more(n + 1))
+    more(:n) = self%increment
+    more(n + 1) = increment_of(self%answer, iterations)
+    call move_alloc(more, self%increment)
+  end subroutine add_increment
+
+  !> End of the loads that the model has.
+  type(path_end) function end_of(self) result(last)
+    class(loaded_model), intent(inout) :: self
+
+    last%loads = self%model%loads
+    last%state = self%answer%solved_state
+    call self%kept%linear%materials%commit(self%answer%point)
+    call move_alloc(self%kept%linear%materials%committed, last%history)
+  end function end_of
+
+  !> Let the certificate begin at the start of the path.
+  subroutine begin_replay(self)
+    class(loaded_model), intent(inout) :: self
+
+    if (allocated(self%replayed)) deallocate (self%replayed)
+    if (.not. self%is_flow()) return
+    if (allocated(self%start)) then
+      self%replayed = self%start%replayed
+    else
+      allocate (self%replayed(self%model%mesh%points))
+    end if
+  end subroutine begin_replay
+
+  !> End a load case: estimate the error of its increments, and keep its end for the next one of a sequence.
+  !! Without plastic strain, equilibrium does not depend on the loads before.
+  subroutine end_case(self, valid)
+    class(loaded_model), intent(inout) :: self
+    logical, intent(in) :: valid   !! the answer is valid
+    type(increment_record) :: found
+
+    if (valid .and. self%is_flow() .and. allocated(self%other)) then
+      found = self%increment(size(self%increment))
+      found%stress = self%answer%stress
+      self%increment_error = errors_of_increments(found, self%other, self%model%controls%load_steps)
+    end if
+    if (allocated(self%start)) deallocate (self%start)
+    if (allocated(self%other_start)) deallocate (self%other_start)
+    if (.not. (valid .and. self%has_memory())) return
+    allocate (self%start)
+    self%start%path_end = self%end_of()
+    self%start%replayed = self%certificate%history
+    if (allocated(self%other)) call move_alloc(self%other_end, self%other_start)
+  end subroutine end_case
+
+  !> Can a load case start where the one before has ended?
+  pure logical function can_start(self)
+    class(loaded_model), intent(in) :: self
+
+    can_start = allocated(self%start) .or. .not. self%has_memory()
+  end function can_start
+
+  !> Does the model yield by flow theory?
+  pure logical function is_flow(self)
+    class(loaded_model), intent(in) :: self
+
+    is_flow = self%model%controls%flow_theory .and. self%iteration%yields
+  end function is_flow
+
+  !> Does the answer of a load case depend on those before?
+  pure logical function has_memory(self)
+    class(loaded_model), intent(in) :: self
+
+    has_memory = self%model%controls%sequence .and. self%is_flow()
+  end function has_memory
+end module epcont_load_history

@@ -1,0 +1,79 @@
+!> Figures of an increment of flow theory, and the error that the size of the increments causes in those at
+!> the end of a load case.
+!>
+!> The error of backward Euler is proportional to the size of the increments. So the difference to a second
+!> run with another number of increments gives it.
+module epcont_result_increment
+  use epcont_base_kinds, only: wp
+  use epcont_result_answer, only: answer_type
+  implicit none
+  private
+  public :: errors_of_increments, increment_errors, increment_of, increment_record, other_number
+
+  !> Factor of the estimated error: differences of two runs are not exactly proportional to the size of the
+  !! increments.
+  real(wp), parameter :: safety = 1.5_wp
+
+  !> Figures at the end of an increment.
+  type :: increment_record
+    real(wp) :: load_factor = 0.0_wp    !! part of the loads of the load case
+    integer :: iterations = 0           !! solves up to here
+    integer :: touching = 0             !! pairs in contact
+    integer :: yielded = 0              !! elements with plastic strain
+    real(wp) :: pressure = -1.0_wp      !! the largest; negative if no boundary belongs to the pairs [stress]
+    real(wp) :: half_width = -1.0_wp    !! of the zone with this pressure; negative: unknown [length]
+    real(wp) :: force = 0.0_wp          !! sum of the contact forces [force]
+    real(wp), allocatable :: approach(:)    !! of each rigid-body mode [length] [modes]
+    real(wp), allocatable :: stress(:, :)   !! at the end of a load case only [stress] [4, elements]
+  end type increment_record
+
+  !> Errors by the size of the increments; negative: unknown.
+  type :: increment_errors
+    real(wp) :: pressure = -1.0_wp, half_width = -1.0_wp   !! [stress], [length]
+    real(wp), allocatable :: approach(:)                   !! [length] [modes]
+    real(wp) :: stress = -1.0_wp         !! largest error of a stress component of an element [stress]
+  end type increment_errors
+
+contains
+
+  !> Collect the figures of a state.
+  pure type(increment_record) function increment_of(answer, iterations) result(record)
+    class(answer_type), intent(in) :: answer
+    integer, intent(in) :: iterations
+    integer :: z
+
+    record%load_factor = answer%load_factor
+    record%iterations = iterations
+    record%touching = count(answer%contact%touching)
+    record%yielded = count(answer%plastic)
+    if (size(answer%contact%force) > 0) record%pressure = answer%largest_pressure()
+    record%force = sum(answer%contact%force)
+    record%approach = answer%contact%approach
+    if (size(answer%zones) == 0) return
+    z = maxloc(answer%zones%max_pressure, dim=1)
+    record%half_width = answer%zones(z)%half_width
+  end function increment_of
+
+  !> Number of increments of the run to compare with: half as many; two for one.
+  elemental integer function other_number(increments) result(other)
+    integer, intent(in) :: increments
+
+    other = merge(2, (increments + 1)/2, increments == 1)
+  end function other_number
+
+  !> Estimate the errors of the figures at the end of a load case.
+  pure type(increment_errors) function errors_of_increments(found, other, increments) result(errors)
+    type(increment_record), intent(in) :: found, other   !! of both runs
+    integer, intent(in) :: increments                    !! of the first one
+    real(wp) :: factor
+
+    associate (m => other_number(increments))
+      factor = safety*real(m, wp)/abs(increments - m)
+    end associate
+    errors%pressure = factor*abs(found%pressure - other%pressure)
+    if (min(found%half_width, other%half_width) > 0.0_wp) &
+      errors%half_width = factor*abs(found%half_width - other%half_width)
+    errors%approach = factor*abs(found%approach - other%approach)
+    errors%stress = factor*maxval(abs(found%stress - other%stress))
+  end function errors_of_increments
+end module epcont_result_increment
