@@ -82,7 +82,7 @@ contains
       call watch%lap(stage_stiffness)
       do
         call path%advance(self%planned_model, kept%linear, answer, watch)
-        if (.not. answer%converged .or. path%is_complete()) exit
+        if (.not. answer%converged .or. answer%lost_contact .or. path%is_complete()) exit
         if (.not. self%model%controls%flow_theory) cycle
         call self%evaluate(watch)
         if (self%is_unbalanced()) call self%refine(refinements, watch)
@@ -98,7 +98,8 @@ contains
     end associate
     call watch%lap(stage_contact)
     if (self%unique) call self%evaluate(watch)
-    if (self%unique .and. self%is_flow()) call self%add_increment(size(self%answer%history))
+    if (self%unique .and. self%is_flow() .and. path%is_complete()) &
+      call self%add_increment(size(self%answer%history))
   end subroutine follow
 
   !> Follow the loads in another number of increments, for their error.
@@ -119,7 +120,7 @@ contains
       call path%begin(self%planned_model, plan, kept%linear, kept%virgin, self%other_start)
       do
         call path%advance(self%planned_model, kept%linear, answer, watch)
-        if (.not. answer%converged .or. path%is_complete()) exit
+        if (.not. answer%converged .or. answer%lost_contact .or. path%is_complete()) exit
         call path%commit(kept%linear, answer)
       end do
       call path%finish(kept%linear, kept%virgin, answer)

@@ -4,10 +4,10 @@ module epcont_solution
   use epcont_attempts, only: attempt_list, attempts, because_near, because_no_contact, &
     because_not_converged, because_not_unique, because_refused, because_singular, because_unbalanced, &
     more_pairs, more_steps, other_rule, refinement
-  use epcont_base_error, only: error_type, status_valid
+  use epcont_base_error, only: error_type
   use epcont_base_kinds, only: wp
   use epcont_load_history, only: loaded_model
-  use epcont_verdict, only: find_verdict, verdict_type
+  use epcont_verdict, only: find_verdict, reason_none, verdict_type
   use epcont_contact_geometry_nearness, only: find_nodes_that_came_near, pair_nodes_that_came_near
   use epcont_contact_problem, only: contact_solved, contact_stalled
   use epcont_model_contact_rows, only: line_contact
@@ -68,7 +68,7 @@ contains
     if (self%answer%failed_body == 0 .and. self%answer%contact%state == contact_solved) &
       call self%assess_answer(watch)
     self%verdict = find_verdict(self%answer, self%certificate, self%model%contact%contact_is_off)
-    call self%end_case(self%verdict%status() == status_valid)
+    call self%end_case(self%verdict%reason == reason_none)
     if (.not. self%kept%another) call self%kept%forget()
     if (allocated(self%kept%virgin) .and. allocated(self%kept%linear)) deallocate (self%kept%linear)
   end subroutine solve

@@ -22,13 +22,16 @@ module epcont_verdict
     reason_limit_load = 8, &       !! the loads exceed the limit load
     reason_doubtful = 9, &         !! the certificate rejects the answer
     reason_ill_conditioned = 10, & !! rounding takes too many digits
-    reason_none = 11               !! valid
-  integer, parameter :: status_of(11) = [ &
+    reason_lost_contact = 11, &    !! flow theory: valid up to the loss of the last contact
+    reason_none = 12               !! valid
+  integer, parameter :: status_of(12) = [ &
     status_usage, status_numerical, status_no_answer, status_no_answer, status_numerical, &
-    status_numerical, status_no_answer, status_no_answer, status_numerical, status_numerical, status_valid]
-  character(len=*), parameter :: word_of(11) = [character(len=18) :: &
+    status_numerical, status_no_answer, status_no_answer, status_numerical, status_numerical, &
+    status_valid, status_valid]
+  character(len=*), parameter :: word_of(12) = [character(len=18) :: &
     'out of memory', 'singular stiffness', 'no equilibrium', 'overlap', 'contact not found', &
-    'not certified', 'not converged', 'limit load', 'not certified', 'ill-conditioned', 'valid']
+    'not certified', 'not converged', 'limit load', 'not certified', 'ill-conditioned', &
+    'contact lost', 'valid']
 
   type :: verdict_type
     integer :: reason = reason_none
@@ -58,6 +61,8 @@ contains
       verdict%reason = reason_overlap
     else if (answer%contact%state /= contact_solved) then
       verdict%reason = reason_rounding
+    else if (answer%lost_contact .and. certificate%valid .and. is_exact) then
+      verdict%reason = reason_lost_contact
     else if (answer%converged .and. certificate%valid .and. is_exact) then
       verdict%reason = merge(reason_none, reason_unsound, certificate%scene%sound() .or. contact_is_off)
     else if (.not. answer%converged .and. &

@@ -62,6 +62,8 @@ contains
     if (run%model%contact%contact_is_off .and. .not. run%certificate%scene%sound()) call warn(found,  &
       'contact is off (BCONTACT): '//scene_sentence(run%model, run%certificate%scene, unsound))
     call warn_of_contact(run, found)
+    if (run%answer%lost_contact) call warn(found, 'no contact is left after load factor '// &
+      short_real(run%answer%load_factor)//' of the load case: the results are those at this load factor')
     call warn_of_forces(run, found)
     do k = 1, scene_warnings
       if (k == side_changed .and. run%answer%gradient%part > 0.0_wp) then

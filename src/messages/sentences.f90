@@ -4,8 +4,9 @@ module epcont_messages_sentences
   use epcont_base_text, only: plural, short_real
   use epcont_base_tolerances, only: valid_to
   use epcont_certificate_certificate, only: figure_name
-  use epcont_verdict, only: reason_limit_load, reason_memory, reason_no_equilibrium, reason_none, &
-      reason_not_converged, reason_overlap, reason_rounding, reason_singular, reason_unsound
+  use epcont_verdict, only: reason_limit_load, reason_lost_contact, reason_memory, &
+      reason_no_equilibrium, reason_none, reason_not_converged, reason_overlap, &
+      reason_rounding, reason_singular, reason_unsound
   use epcont_element_kinematics, only: directions
   use epcont_messages_names, only: first_grid, joined, motion_name, when
   use epcont_messages_scene_text, only: scene_sentence, unsound
@@ -31,7 +32,7 @@ contains
     character(len=:), allocatable :: text
 
     select case (run%verdict%reason)
-    case (reason_none)
+    case (reason_none, reason_lost_contact)
       text = ''
     case (reason_memory)
       text = 'there is not enough memory to factor '//body_name(run, run%answer%failed_body)
@@ -140,6 +141,8 @@ contains
     character(len=:), allocatable :: text
 
     text = ''
+    if (run%verdict%reason == reason_lost_contact) text = ' after load factor '// &
+      short_real(run%answer%load_factor)
     if (run%verdict%reason /= reason_limit_load) return
     text = ' at load factor '//short_real(run%answer%history(size(run%answer%history))%load_factor)
     if (run%answer%carried) text = text//'; last converged '//short_real(run%answer%load_factor)//':'

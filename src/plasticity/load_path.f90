@@ -116,7 +116,7 @@ contains
         call iteration%go_back()
       end do
       call answer%keep_step(scene, iteration, watch)
-      answer%converged = iteration%converged
+      answer%converged = iteration%converged .or. answer%lost_contact
       if (iteration%converged) then
         self%place = self%place + self%stride
         if (mod(self%place, 2*self%stride) == 0) self%stride = min(parts, 2*self%stride)

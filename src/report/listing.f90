@@ -166,7 +166,12 @@ contains
     type(run_results), intent(in) :: run
 
     call put_table(run, 'history', listing)
-    if (run%is_flow()) call put_table(run, 'increments', listing)
+    if (run%is_flow()) then
+      call put_table(run, 'increments', listing)
+      if (size(run%increment) > run%model%controls%load_steps) call listing%say( &
+        text_of(size(run%increment))//' increments instead of '//text_of(run%model%controls%load_steps)// &
+        ': one that does not converge is halved')
+    end if
     call listing%line('')
     if (any(run%answer%history%by_tangent)) call listing%say(&
       'the last step uses the tangent: its change is the error that the other steps have left')

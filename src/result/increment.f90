@@ -1,8 +1,8 @@
 !> Figures of an increment of flow theory, and the error that the size of the increments causes in those at
 !> the end of a load case.
 !>
-!> The error of backward Euler is proportional to the size of the increments. So the difference to a second
-!> run with another number of increments gives it.
+!> The error of backward Euler is proportional to the size of the increments, if these are small. So the
+!> difference to a second run with another number of increments gives it.
 module epcont_result_increment
   use epcont_base_kinds, only: wp
   use epcont_result_answer, only: answer_type
@@ -12,7 +12,10 @@ module epcont_result_increment
 
   !> Factor of the estimated error: differences of two runs are not exactly proportional to the size of the
   !! increments.
-  real(wp), parameter :: safety = 1.5_wp
+  real(wp), parameter :: safety = 2.0_wp
+
+  !> Fewer increments than `few` are compared with so many more.
+  integer, parameter :: few = 8, more = 5
 
   !> Figures at the end of an increment.
   type :: increment_record
@@ -54,11 +57,12 @@ contains
     record%half_width = answer%zones(z)%half_width
   end function increment_of
 
-  !> Number of increments of the run to compare with: half as many; two for one.
+  !> Number of increments of the run to compare with: half as many. Errors of few increments decrease more
+  !! slowly than their size, so they are compared with more.
   elemental integer function other_number(increments) result(other)
     integer, intent(in) :: increments
 
-    other = merge(2, (increments + 1)/2, increments == 1)
+    other = merge(increments + more, (increments + 1)/2, increments < few)
   end function other_number
 
   !> Estimate the errors of the figures at the end of a load case.
