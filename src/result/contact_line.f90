@@ -363,6 +363,12 @@ contains
       if (present(normal)) seen = abs(cross_product(point(p)%tangent, normal))
       share = share + model%depth(element, point(p)%x(1))*point(p)%values*seen
     end do
+    if (side(3) == 0 .or. .not. model%has_rings()) return
+    ! On a curved edge, a corner on the axis has a small area, which is no measure of its force.
+    associate (on_axis => model%mesh%x(1, side(:2)) == 0.0_wp)
+      share(3) = share(3) + sum(share(:2), mask=on_axis)
+      where (on_axis) share(:2) = 0.0_wp
+    end associate
   end function shares_of_nodes
 
   !> Distance of two pairs [length].

@@ -27,6 +27,10 @@ def share(side, x, n):
     for values, place, tangent, _ in side_points([x[node] for node in side.nodes]):
         size = side.depth(place[0]) * abs(tangent[0] * n[1] - tangent[1] * n[0])
         found = [total + size * value for total, value in zip(found, values)]
+    if side.thickness is None and len(side.nodes) == 3:   # the small area of a corner on the axis is that of the mid-side node
+        small = [total if x[node][0] == 0.0 else 0.0 for node, total in zip(side.nodes[:2], found)] + [0.0]
+        found = [total - part for total, part in zip(found, small)]
+        found[2] += sum(small)
     return [total if abs(total) > NO_AREA * sum(found) else 0.0 for total in found]
 
 
