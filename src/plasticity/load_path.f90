@@ -194,6 +194,8 @@ contains
           .not. (iteration%converged .or. .not. self%carried .or. contact%state /= contact_solved)) then
         call iteration%return_to(scene, self%solved_state, self%load_factor, watch)
         if (iteration%failed_body > 0) self%condition = huge(1.0_wp)
+        ! Its plastic strains are committed.
+        if (scene%model%controls%flow_theory) self%point = iteration%linear%materials%states(self%strain)
         return
       end if
     end associate

@@ -102,6 +102,7 @@ contains
     if (run%model%contact%pairs > 0) call list_contact(listing, run)
     if (run%wants_nodes(all_tables)) call put_table(run, 'nodes', listing)
     if (run%wants_elements(all_tables)) call put_table(run, 'elements', listing)
+    if (run%wants_elements(all_tables) .and. run%is_flow()) call put_table(run, 'plastic', listing)
     call list_summary()
     if (run%certificate%scene%looked_through) call list_scene_found(listing, run)
     call listing%heading('ACCURACY')

@@ -36,13 +36,14 @@ module epcont_report_results
     result_file('.pivots.csv', 'the pivots of each iteration by RULE CONRY, with --tables all'), &
     result_file('.nodes.csv', 'the nodes, if the deck or --tables all asks for them'), &
     result_file('.elements.csv', 'the elements, if the deck or --tables all asks for them'), &
+    result_file('.plastic.csv', 'plastic strains of flow theory, with the table of elements'), &
     result_file('.cases.csv', 'the load cases, if there are several'), &
     result_file('.vtu', 'the bodies, for ParaView, with --vtk: displacements, stresses, states'), &
     result_file('.contact.vtu', 'the boundary in contact, for ParaView, with --vtk: pressures, gaps'), &
     result_file('.pvd', 'for ParaView: index of DECK.caseN.vtu and .caseN.contact.vtu of load cases')]
 
   !> The first files are the listing, the summary, and tables with rows of each load case.
-  integer, parameter :: listing = 1, summary = 2, of_each_case = 10
+  integer, parameter :: listing = 1, summary = 2, of_each_case = 11
 
   !> Results of one load case. If there are several, its part of each file is held in memory.
   type :: case_results
@@ -149,6 +150,8 @@ contains
       if (is_wanted) is_wanted = size(run%answer%pivot) > 0
     case ('.nodes.csv')
       is_wanted = is_wanted .and. run%wants_nodes(self%all_tables)
+    case ('.plastic.csv')
+      is_wanted = is_wanted .and. run%is_flow() .and. run%wants_elements(self%all_tables)
     case ('.elements.csv')
       is_wanted = is_wanted .and. run%wants_elements(self%all_tables)
     end select

@@ -82,6 +82,14 @@ module epcont_report_tables
     column(number, 'secant_modulus', stress, 'of the curve at that strain', 'secant'), &
     column(state, 'state', '', 'plastic if it has yielded at any of its integration points', width=9)]
 
+  type(column), parameter :: plastic_columns(*) = [ &
+    column(whole, 'element', '', 'its id', width=10), &
+    column(number, 'plastic_x', '', 'plastic strains, means over the element'), &
+    column(number, 'plastic_y'), &
+    column(number, 'plastic_z'), &
+    column(number, 'plastic_xy', '', 'engineering shear strain'), &
+    column(number, 'accumulated', '', 'equivalent plastic strain, which never decreases')]
+
   type(column), parameter :: history_columns(*) = [ &
     column(whole, 'iteration', '', 'counted through all load steps', width=0), &
     column(whole, head='iteration', width=10), column(number, head='load factor'), &
@@ -129,6 +137,7 @@ contains
     if (suffix == '.pivots.csv') columns = pivot_columns
     if (suffix == '.nodes.csv') columns = node_columns
     if (suffix == '.elements.csv') columns = element_columns
+    if (suffix == '.plastic.csv') columns = plastic_columns
     if (suffix == '.cases.csv') columns = case_columns
     text = ''
     if (allocated(columns)) text = 'Columns: '//columns_text(columns)//'.'
@@ -154,6 +163,8 @@ contains
       call put_nodes()
     case ('elements')
       call put_elements(run, table)
+    case ('plastic')
+      call put_plastic(run, table)
     case ('history')
       call put_history()
     case ('increments')
@@ -250,6 +261,21 @@ contains
       end do
     end subroutine put_history
   end subroutine put_table
+
+  !> Plastic strains of flow theory: one row for each element.
+  subroutine put_plastic(run, table)
+    type(run_results), intent(in) :: run
+    type(table_type), intent(inout) :: table
+    integer :: k
+
+    associate (strain => run%answer%plastic_strain)
+      call table%begin('PLASTIC STRAINS  (means over the element)', plastic_columns, &
+                       [spread(maxval(abs(strain(:4, :))), 1, 4), maxval(strain(5, :))])
+      do k = 1, size(strain, 2)
+        call table%row([run%model%mesh%element_id(k)], strain(:, k))
+      end do
+    end associate
+  end subroutine put_plastic
 
   !> Increments of flow theory: one row for each.
   subroutine put_increments(run, table)

@@ -90,6 +90,10 @@ contains
       call file%put('equivalent_strain', answer%equivalent_strain)
       call file%put('secant_modulus', answer%secant_modulus)
       call file%put('yielded', merge(1, 0, answer%plastic))
+      if (allocated(answer%plastic_strain)) then
+        call file%put('plastic_strain', answer%plastic_strain(:4, :))
+        call file%put('accumulated_plastic_strain', answer%plastic_strain(5, :))
+      end if
     end associate
     call file%end_grid(error)
   end subroutine write_bodies

@@ -23,6 +23,9 @@ module epcont_result_answer
     real(wp), allocatable :: equivalent_stress(:)    !! von Mises [stress] [elements]
     real(wp), allocatable :: equivalent_strain(:)    !! (2-2) [elements]
     real(wp), allocatable :: secant_modulus(:)       !! E' of the curve at this strain [stress] [elements]
+    !> Plastic strain xx, yy, zz, xy (engineering), and accumulated; not allocated in total theory [5,
+    !! elements]
+    real(wp), allocatable :: plastic_strain(:, :)
     ! At the integration point of each element with the largest von Mises stress.
     real(wp), allocatable :: largest_stress(:)       !! von Mises [stress] [elements]
     integer, allocatable :: largest_at(:)            !! this point [elements]

@@ -38,6 +38,9 @@ contains
                   answer%plastic(n), answer%beyond(n))
     end associate
     shortfall = 0.0_wp
+    if (allocated(answer%plastic_strain)) deallocate (answer%plastic_strain)
+    if (model%controls%flow_theory .and. linear%materials%yields) &
+      allocate (answer%plastic_strain(5, model%mesh%elements), source=0.0_wp)
     !$omp parallel do num_threads(threads_over(model%mesh%elements)) reduction(max:shortfall)
     do e = 1, model%mesh%elements
       call recover_element(model, linear, e, answer, shortfall)
@@ -120,6 +123,12 @@ contains
         answer%equivalent_stress(e) = answer%equivalent_stress(e) + share*mises(p - first + 1)
         answer%equivalent_strain(e) = answer%equivalent_strain(e) + share*point%total
         answer%secant_modulus(e) = answer%secant_modulus(e) + share*modulus
+        if (allocated(answer%plastic_strain)) then
+          associate (history => law%history_after(linear%materials%history(p), point))
+            answer%plastic_strain(:, e) = answer%plastic_strain(:, e) + &
+                                          share*[history%strain, history%accumulated]
+          end associate
+        end if
         answer%plastic(e) = answer%plastic(e) .or. point%plastic
         answer%beyond(e) = answer%beyond(e) .or. point%beyond
         if (model%controls%paper_ratio) &
