@@ -45,7 +45,7 @@ def read(path, case):
 def compare(found, directory, stem, case):
     """(quantity, relative difference, position) of every number, and the faults of structure."""
     worst, faults, pieces = {}, [], {}
-    for name, kinds in KINDS.items():
+    for name, kinds in [(name, kinds) for name, kinds in KINDS.items() if name in found]:
         header, rows = found[name]
         theirs = {row[header[0]]: row for row in read(directory / f"{stem}.{name}.csv", case)}
         if {str(row[0]) for row in rows} != set(theirs):
@@ -56,12 +56,15 @@ def compare(found, directory, stem, case):
                 at = header.index(column)
                 for row in rows:
                     told = theirs[str(row[0])][column]
-                    if told:
+                    if told and row[at] is not None:
                         pieces.setdefault(kind, []).append((row[at], float(told), f"{name} {row[0]} {column}"))
         if name == "contact":
             for row in rows:
                 if theirs[str(row[0])]["status"] != row[11] and max(abs(row[8]), abs(row[10])) > 0:
                     faults.append(f"pair {row[0]}: {row[11]} here, {theirs[str(row[0])]['status']} there")
+        if name == "increments":
+            faults += [f"increment {row[0]}: {column} {row[header.index(column)]} here, {theirs[str(row[0])][column]} there"
+                       for row in rows for column in ("pairs_in_contact", "plastic_elements") if str(row[header.index(column)]) != theirs[str(row[0])][column]]
         if name == "elements":
             off = [row[0] for row in rows if theirs[str(row[0])]["state"] != row[10]]
             faults += [f"element {element}: elastic in one, plastic in the other" for element in off]
@@ -126,11 +129,7 @@ def pairs_of_lines(path, place):
 
 def increments(path, place, case):
     """The parts of the loads at the ends of a load case's increments; those that did not converge are halved. None without an answer."""
-    found = []
-    for row in read(place / f"{path.stem}.history.csv", case):
-        while found and found[-1] >= float(row["load_factor"]):
-            found.pop()
-        found.append(float(row["load_factor"]))
+    found = [float(row["load_factor"]) for row in read(place / f"{path.stem}.increments.csv", case)]
     return found if found and found[-1] == 1.0 else None
 
 

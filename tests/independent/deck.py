@@ -16,7 +16,8 @@ KINDS = {"contact": {"force": ["force"], "length": ["initial_gap", "gap"], "pres
                      "place": ["x", "y"]},
          "nodes": {"length": ["ux", "uy"], "force": ["rx", "ry"], "place": ["x", "y"]},
          "elements": {"stress": ["sx", "sy", "sz", "txy", "equivalent_stress"], "strain": ["equivalent_strain"],
-                      "modulus": ["secant_modulus"], "place": ["x", "y"]}}
+                      "modulus": ["secant_modulus"], "place": ["x", "y"]},
+         "increments": {"force": ["total_contact_force"], "pressure": ["max_pressure"], "approach": ["approach"], "part": ["load_factor"]}}
 
 LONGEST = 1000000   # range of ids
 SEQUENTIAL = "66", "106", "NLSTATIC"   # values of SOL whose SUBCASEs follow each other

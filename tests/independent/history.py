@@ -35,6 +35,7 @@ class History:
                 self.memory.commit(self.strain)
             found = self.increment(problem)
             self.strain = model.strains(problem.move(found))
+            problem.record(part, found)
         return found
 
     def finish(self, model):

@@ -51,6 +51,7 @@ class Problem:
         nothing = np.zeros((len(model.volume), 4))
         self.elastic = model.of_points("secant_matrix", nothing, 4, 4)
         self.memory = model   # or plastic strains (history.py)
+        self.increments = []  # rows of their table
         self.linearise(self.elastic, nothing)
         self.stiff = abs(self.k.diagonal()).max()
 
@@ -126,6 +127,13 @@ class Problem:
             pivots = np.zeros(1)
         if len(pivots) and pivots.min() <= 1e-11 * abs(self.k.diagonal()).min():
             raise DeckError("a body is free to move and has no SUPORT")
+
+    def record(self, part, found):
+        """Keep the figures of an increment that ends at this part of the loads."""
+        figures = {key: value for key, value, _ in tables(self, *found)["summary"][1]}
+        approach = next((value for key, value in figures.items() if key.startswith("approach")), None)
+        self.increments.append([len(self.increments) + 1, part, figures.get("max_pressure"), approach,
+                                *(figures[key] for key in ("total_contact_force", "pairs_in_contact", "plastic_elements"))])
 
     def answer(self, history=None, parts=()):
         """`history`: the loads before, with flow theory; `parts` of the loads at the ends of increments."""
@@ -257,7 +265,9 @@ def tables(problem, v, force, gap, touching):
         if model.dof_held[k]:
             summary.append([f"moment_{node}", moments[k - len(model.is_held)], ""])
     summary += [[f"spring_{number}", pull, ""] for (number, *_), pull in zip(model.springs, pulls)]
+    increments = "increment load_factor max_pressure approach total_contact_force pairs_in_contact plastic_elements".split()
     return {"summary": (["key", "value", "unit"], summary),
+            **({"increments": (increments, problem.increments)} if problem.increments else {}),
             "contact": ("pair ga gb x y nx ny initial_gap force pressure gap status".split(), contact),
             "nodes": ("node x y ux uy rx ry".split(), nodes),
             "elements": ("element x y sx sy sz txy equivalent_stress equivalent_strain secant_modulus state".split(), elements)}

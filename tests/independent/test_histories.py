@@ -55,15 +55,15 @@ class Histories(unittest.TestCase):
                 self.assertAlmostEqual(expected, other, delta=1e-12)
 
     def test_random_histories(self):
-        words = [(deck, *found) for deck in write(self.folder, 5, 16, histories=True) for found in run(PROGRAM, deck, 1e-8)]
+        words = [(deck, *found) for deck in write(self.folder, 5, 18, histories=True) for found in run(PROGRAM, deck, 1e-8)]
         for deck, case, word, said in words:
             self.assertIn(word, (AGREE, REFUSED, COARSE), f"{deck.name} SUBCASE {case}: {said}")
         self.assertGreater(sum(word == AGREE for _, _, word, _ in words), 10)
 
     def test_verify_finds_wrong_cells(self):
-        deck = self.solved(write(self.folder, 4, 16, histories=True)[3].read_text())
+        deck = self.solved(write(self.folder, 4, 18, histories=True)[3].read_text())
         self.assertEqual(0, self.verified(deck))
-        for table, column in (("elements", "sx"), ("nodes", "ux")):
+        for table, column in (("elements", "sx"), ("increments", "max_pressure")):
             path = self.folder / f"deck.{table}.csv"
             text = path.read_text()
             rows = list(csv.DictReader(text.splitlines()))

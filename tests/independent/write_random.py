@@ -185,8 +185,9 @@ class Scene:
         self.supports(1, self.held)
         if self.support:
             self.add_long("SUPORT", *[field for pair in self.support for field in pair])
-        self.lines = [line.replace(f",{HARDENING},", f",{chance.randint(1, 3)},") if line.startswith("MATS1") else line for line in self.lines]
-        self.lines = [line.replace("PLASTIC", "NLELAST") if chance.random() < 0.1 else line for line in self.lines]
+        for k, line in enumerate(self.lines):
+            if line.startswith("MATS1"):   # NLELAST has no HR
+                self.lines[k] = line.replace("PLASTIC", "NLELAST") if chance.random() < 0.1 else line.replace(f",{HARDENING},", f",{chance.randint(1, 3)},")
         forces = [line.replace("FORCE,1,", "FORCE,2,") for line in self.lines if line.startswith("FORCE,1,")]
         self.lines += forces
         for digit in ("2", "6"):

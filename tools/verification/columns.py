@@ -294,8 +294,10 @@ def not_read(tables):
     """Lines that name the unread columns and keys, and those compared with a bound only."""
     keys = [key for key in tables.summary if unit_of(key) is None]
     files = sorted(path.name for path in tables.directory.glob(f"{glob_safe(tables.stem)}.*")
-                   if path.name not in {tables.path(name).name for name in ("summary", "nodes", "elements", "contact", "zones", "bodies", "history", "cases")})
+                   if path.name not in {tables.path(name).name for name in ("summary", "nodes", "elements", "contact", "zones", "bodies", "history", "cases", "increments")})
     lines = [f"not read: {name}.csv {', '.join(columns)}" for name, columns in (("summary", keys), *tables.unread.items()) if columns]
+    if tables.path("increments").exists():
+        lines.append("not read: increments.csv half_width, iterations")
     if len(tables.history) > 1:
         lines.append("not read: history.csv pairs_in_contact, plastic_elements, load_factor, but of its last row")
     lines += [f"not read: {', '.join(files)}"] if files else []
