@@ -6,9 +6,13 @@ module epcont_evaluation
   use epcont_certificate_certificate, only: certificate_type, certify
   use epcont_certificate_scene, only: look_through
   use epcont_certificate_yielding, only: replayed_history
+  use epcont_contact_problem, only: contact_solved
   use epcont_flexibility_flexibility, only: pair_forces
   use epcont_linear_linear_problem, only: linear_problem
+  use epcont_linear_solved_state, only: solved_state
   use epcont_model_controls, only: method_newton
+  use epcont_model_expansion, only: find_free_strains
+  use epcont_model_load_set, only: load_set
   use epcont_plan_planned_model, only: planned_model
   use epcont_plasticity_law_of_state, only: factor_law, linearise
   use epcont_plasticity_newton, only: newton_method
@@ -20,6 +24,7 @@ module epcont_evaluation
   use epcont_result_line_pressure, only: compare_sides
   use epcont_result_locking, only: find_locking
   use epcont_result_pressures, only: pair_pressures
+  use epcont_result_stress_path, only: find_stress_path, stress_path
   use epcont_result_stresses, only: recover_stresses
   use epcont_result_zones, only: find_zones
   use epcont_system_stopwatch, only: stage_accuracy, stage_certificate, stage_stresses
@@ -30,6 +35,9 @@ module epcont_evaluation
   !> Largest number of steps of refinement, used if forces, gaps or the energy have a residual, or if rounding
   !! has taken too much of a pivot. Each step gains as many digits as the factors have.
   integer, parameter :: most_refinements = 3
+
+  !> Growth of the loads with which the loading is tested.
+  real(wp), parameter :: growth = 0.01_wp
 
   !> Data that the next load case reuses.
   type :: kept_factors
@@ -49,12 +57,14 @@ module epcont_evaluation
     type(kept_factors) :: kept           !! from load case to load case
     !> Flow theory: plastic history before the increment, for the certificate [points]
     type(replayed_history), allocatable :: replayed(:)
+    type(stress_path), allocatable :: stress_path        !! total theory; not allocated: unknown
   contains
     procedure :: evaluate
     procedure :: find_results
     procedure :: is_unbalanced
     procedure :: refine
     procedure :: assess_answer
+    procedure, private :: test_loading
   end type evaluated_model
 
 contains
@@ -155,7 +165,31 @@ contains
       where (.not. answer%contact%touching .and. answer%pressure > 0.0_wp) answer%pressure = -1.0_wp
     end associate
     call watch%lap(stage_accuracy)
+    call self%test_loading(watch)
   end subroutine assess_answer
+
+  !> Test the assumptions of total theory on the loading. The stresses under slightly more load follow from
+  !! the tangent.
+  subroutine test_loading(self, watch)
+    class(evaluated_model), intent(inout) :: self
+    class(observer), intent(inout) :: watch
+    type(load_set) :: loads, none
+    type(solved_state) :: later
+
+    if (allocated(self%stress_path)) deallocate (self%stress_path)
+    associate (answer => self%answer, controls => self%model%controls, linear => self%kept%linear)
+      if (controls%flow_theory .or. controls%paper_ratio .or. .not. (answer%converged .and. &
+          any(answer%plastic) .and. answer%condition < huge(1.0_wp))) return
+      loads = self%model%loads
+      call self%model%loads%set_between(none, loads, 1.0_wp + growth)
+      call find_free_strains(self%model)
+      call linear%take_case(self%planned_model)
+      call linear%solve(self%planned_model, answer%contact%touching, later, watch)
+      self%model%loads = loads
+      if (later%contact%state == contact_solved) self%stress_path = &
+        find_stress_path(self%model, answer, answer%elastic_stress, later%point_stress, growth)
+    end associate
+  end subroutine test_loading
 
   !> Discard the factors: they are made again for the next solve, or are not needed.
   subroutine forget(self)

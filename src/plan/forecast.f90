@@ -105,7 +105,8 @@ contains
     end do
     expected%apart_bytes = expected%bytes + int(pair_matrices*real(model%contact%pairs, wp)**2, i8)*real_bytes
     ! The factors of the unloaded state are kept beside those of the last state.
-    if (cases > 1 .and. plan%yields) expected%bytes = 2*expected%bytes - of_process
+    if ((cases > 1 .or. model%controls%flow_theory) .and. plan%yields) &
+      expected%bytes = 2*expected%bytes - of_process
   end function forecast
 
   !> Joined bodies have one factor. A part of it is made again with each active set. Solves wait for memory.

@@ -40,6 +40,8 @@ module epcont_plasticity_load_path
     type(iteration_record), allocatable :: history(:)   !! every solve
     type(pivot_record), allocatable :: pivot(:)         !! kept pivots of all solves
     real(wp), private :: largest_force = 0.0_wp         !! largest sum of the contact forces on the path
+    real(wp), allocatable :: elastic_stress(:, :)       !! of elastic bodies under the loads of the first load
+                                                        !! step [stress] [components, points]
     integer :: unloaded = 0                !! elements whose strain decreased after yielding, while the load
                                            !! grew
     integer :: first_unloaded = 0          !! one of them
@@ -169,6 +171,7 @@ contains
 
     call move_alloc(self%iteration%history, answer%history)
     call move_alloc(self%iteration%pivot, answer%pivot)
+    call move_alloc(self%iteration%first_stress, answer%elastic_stress)
     call move_alloc(self%iteration%virgin, virgin)
     ! The last active set belongs to an equilibrium state.
     if (answer%failed_body == 0 .and. answer%contact%state == contact_solved) &

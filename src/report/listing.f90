@@ -178,6 +178,14 @@ contains
       'the last step uses the tangent: its change is the error that the other steps have left')
     call listing%say(text_of(count(run%answer%plastic))//' of '// &
              plural(run%model%mesh%elements, 'element')//' yielded')
+    if (.not. allocated(run%stress_path)) return
+    associate (path => run%stress_path)
+      call listing%say('loading: '//when(path%falling == 0, 'no stress component falls with the load', &
+        'in '//plural(path%falling, 'yielded element')//' a stress component falls with the load')// &
+        '; stress deviators turned by '//plural(nint(path%mean_turn), 'degree')// &
+        ' on average, at most '//text_of(nint(path%turn))//' in element '// &
+        text_of(run%model%mesh%element_id(path%worst)))
+    end associate
   end subroutine list_iterations
 
   !> Pairs, contact zones, contact lines, and contact forces on bodies.

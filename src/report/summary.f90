@@ -95,6 +95,11 @@ contains
                           when(run%model%contact%pairs > 0, 'pairs in contact'))
     call figures%put_word('plastic_elements', text_of(count(run%answer%plastic)), &
                           when(any(run%answer%plastic), 'yielded elements'))
+    if (allocated(run%stress_path)) then
+      call figures%put_word('falling_elements', text_of(run%stress_path%falling), '')
+      call figures%put('mean_turn', 'degree', number, run%stress_path%mean_turn)
+      call figures%put('largest_turn', 'degree', number, run%stress_path%turn)
+    end if
     call figures%put_word('iterations', text_of(size(run%answer%history)), '')
     call figures%put_word('factorizations', text_of(run%answer%factorizations), '')
     call figures%put_word('pivots', text_of(sum(run%answer%history%pivots)), '')
