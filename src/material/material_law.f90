@@ -152,7 +152,7 @@ contains
     real(wp) :: elastic
 
     history = committed
-    if (.not. state%yielded) return
+    if (.not. (self%remembers .and. state%yielded)) return
     elastic = state%modulus/(3.0_wp*self%shear)   ! elastic part of the deviator
     history%strain = committed%strain + (1.0_wp - elastic)*state%deviator*[1.0_wp, 1.0_wp, 1.0_wp, 2.0_wp]
     history%accumulated = committed%accumulated + (1.0_wp - elastic)*state%deviatoric

@@ -66,7 +66,7 @@ contains
     !$omp parallel do num_threads(threads_over(size(state)))
     do p = 1, size(state)
       associate (law => self%section(self%of_point(p)))
-        if (law%remembers) self%committed(p) = law%history_after(self%committed(p), state(p))
+        self%committed(p) = law%history_after(self%committed(p), state(p))
       end associate
     end do
     !$omp end parallel do

@@ -17,6 +17,7 @@ KINDS = {"contact": {"force": ["force"], "length": ["initial_gap", "gap"], "pres
          "nodes": {"length": ["ux", "uy"], "force": ["rx", "ry"], "place": ["x", "y"]},
          "elements": {"stress": ["sx", "sy", "sz", "txy", "equivalent_stress"], "strain": ["equivalent_strain"],
                       "modulus": ["secant_modulus"], "place": ["x", "y"]},
+         "plastic": {"plastic strain": ["plastic_x", "plastic_y", "plastic_z", "plastic_xy", "accumulated"]},
          "increments": {"force": ["total_contact_force"], "pressure": ["max_pressure"], "approach": ["approach"], "part": ["load_factor"]}}
 
 LONGEST = 1000000   # range of ids

@@ -134,11 +134,16 @@ class Memory:
         secant[plastic] = np.sqrt(1.5 * squared(deviator(stress[plastic]))) / total[plastic]
         return stress, total, secant, plastic
 
-    def commit(self, strain):
+    def after(self, strain):
+        """Plastic strain and its equivalent that remain at the end of an increment."""
         _, plastic, grown, _, _ = self.increment(strain)
         for _, at, remembers in self.laws:
-            if remembers:
-                self.plastic[at], self.grown[at] = plastic[at], grown[at]
+            if not remembers:
+                plastic[at], grown[at] = 0.0, 0.0
+        return plastic, grown
+
+    def commit(self, strain):
+        self.plastic, self.grown = self.after(strain)
 
     def tangent(self, strain):
         """d stress/d strain by central differences."""

@@ -230,7 +230,8 @@ def product(matrix, z):
 def tables(problem, v, force, gap, touching):
     model = problem.model
     u = model.tie @ v + model.held
-    stress, total, secant, plastic = problem.memory.respond(model.strains(u))
+    strain = model.strains(u)
+    stress, total, secant, plastic = problem.memory.respond(strain)
     reaction = np.where(model.dof_held, model.lead.T @ model.unbalanced(u, stress, force) - model.twist, 0.0)
     reaction, moments = reaction[:len(u)].reshape(-1, 2), reaction[len(u):]
     masters, pulls = model.masters(v), model.pull @ u
@@ -265,9 +266,14 @@ def tables(problem, v, force, gap, touching):
         if model.dof_held[k]:
             summary.append([f"moment_{node}", moments[k - len(model.is_held)], ""])
     summary += [[f"spring_{number}", pull, ""] for (number, *_), pull in zip(model.springs, pulls)]
+    if problem.increments:
+        remaining = np.column_stack(problem.memory.after(strain))
+        plastic_strains = np.array([model.mean(values) for values in remaining.T]).T
     increments = "increment load_factor max_pressure approach total_contact_force pairs_in_contact plastic_elements".split()
     return {"summary": (["key", "value", "unit"], summary),
-            **({"increments": (increments, problem.increments)} if problem.increments else {}),
+            **({"increments": (increments, problem.increments),
+                "plastic": ("element plastic_x plastic_y plastic_z plastic_xy accumulated".split(),
+                            [[element, *row] for element, row in zip(model.element, plastic_strains.tolist())])} if problem.increments else {}),
             "contact": ("pair ga gb x y nx ny initial_gap force pressure gap status".split(), contact),
             "nodes": ("node x y ux uy rx ry".split(), nodes),
             "elements": ("element x y sx sy sz txy equivalent_stress equivalent_strain secant_modulus state".split(), elements)}

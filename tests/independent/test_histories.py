@@ -61,9 +61,9 @@ class Histories(unittest.TestCase):
         self.assertGreater(sum(word == AGREE for _, _, word, _ in words), 10)
 
     def test_verify_finds_wrong_cells(self):
-        deck = self.solved(write(self.folder, 4, 18, histories=True)[3].read_text())
+        deck = self.solved(write(self.folder, 5, 18, histories=True)[4].read_text())
         self.assertEqual(0, self.verified(deck))
-        for table, column in (("elements", "sx"), ("increments", "max_pressure")):
+        for table, column in (("elements", "sx"), ("increments", "max_pressure"), ("plastic", "accumulated")):
             path = self.folder / f"deck.{table}.csv"
             text = path.read_text()
             rows = list(csv.DictReader(text.splitlines()))

@@ -294,7 +294,7 @@ def not_read(tables):
     """Lines that name the unread columns and keys, and those compared with a bound only."""
     keys = [key for key in tables.summary if unit_of(key) is None]
     files = sorted(path.name for path in tables.directory.glob(f"{glob_safe(tables.stem)}.*")
-                   if path.name not in {tables.path(name).name for name in ("summary", "nodes", "elements", "contact", "zones", "bodies", "history", "cases", "increments")})
+                   if path.name not in {tables.path(name).name for name in ("summary", "nodes", "elements", "contact", "zones", "bodies", "history", "cases", "increments", "plastic")})
     lines = [f"not read: {name}.csv {', '.join(columns)}" for name, columns in (("summary", keys), *tables.unread.items()) if columns]
     if tables.path("increments").exists():
         lines.append("not read: increments.csv half_width, iterations")

@@ -15,7 +15,7 @@ class End:
         u = np.array([[float(tables.nodes[node][key]) for key in ("ux", "uy")] for node in model.node]).ravel()
         strain = model.strains(u)
         stress, total, secant, _ = problem.memory.respond(strain)
-        plastic, beyond = problem.memory.increment(strain)[1], problem.memory.beyond_yield(strain)
+        plastic, beyond = problem.memory.after(strain)[0], problem.memory.beyond_yield(strain)
         self.yielding = [len(set(model.owner[beyond > least])) for least in (drift, -drift)]
         self.points, self.plastic = {element: [] for element in model.element}, {element: [] for element in model.element}
         for k, owner in enumerate(model.owner):
