@@ -19,6 +19,9 @@ module epcont_load_history
   private
   public :: loaded_model
 
+  !> If PARAM ACCURACY chooses the number of increments: the first and the largest number.
+  integer, parameter :: first_steps = 8, most_steps = 256
+
   !> End of a load case, from which the next one of a sequence starts.
   type, extends(path_end) :: case_end
     type(replayed_history), allocatable :: replayed(:)   !! history of the certificate [points]
@@ -28,6 +31,8 @@ module epcont_load_history
     logical :: unique = .true.           !! contact forces are unique, as far as the contact solver must know
     type(increment_record), allocatable :: increment(:)   !! flow theory: increments of this load case [any]
     type(increment_errors), allocatable :: increment_error   !! not allocated: unknown
+    integer :: steps = 1                 !! flow theory: increments of this run
+    integer, private :: other_steps = 1  !! of the run to compare with
     type(load_set), private :: loads     !! of the load case; the model has those of the state found
     !> Ends of the load case before, in flow theory: of this run, and of that with other increments. Not
     !! allocated: unloaded
@@ -37,11 +42,15 @@ module epcont_load_history
   contains
     procedure :: begin_case
     procedure :: follow
+    procedure :: follow_increments
     procedure :: end_case
     procedure :: can_start
     procedure, private :: has_memory
     procedure, private :: begin_replay
-    procedure :: follow_others
+    procedure, private :: follow_others
+    procedure, private :: is_fine_enough
+    procedure, private :: take_as_other
+    procedure, private :: errors
     procedure :: is_flow
     procedure, private :: end_of
     procedure, private :: add_increment
@@ -102,6 +111,66 @@ contains
       call self%add_increment(size(self%answer%history))
   end subroutine follow
 
+  !> Follow the loads by flow theory, in another number of increments for their error, then in that of the
+  !! load case. If PARAM ACCURACY chooses the number, it is doubled until the error is small enough.
+  subroutine follow_increments(self, watch)
+    class(loaded_model), intent(inout) :: self
+    class(observer), intent(inout) :: watch
+
+    associate (controls => self%model%controls)
+      self%steps = controls%load_steps
+      if (controls%steps_by_accuracy) self%steps = first_steps
+      self%other_steps = other_number(self%steps)
+      call self%follow_others(watch)
+      do
+        call self%follow(self%steps, watch)
+        if (.not. controls%steps_by_accuracy .or. self%steps >= most_steps) exit
+        if (self%is_fine_enough()) exit
+        call self%take_as_other()
+        self%steps = 2*self%steps
+      end do
+    end associate
+  end subroutine follow_increments
+
+  !> Is the error by the size of the increments within PARAM ACCURACY, or do more increments not help?
+  pure logical function is_fine_enough(self)
+    class(loaded_model), intent(in) :: self
+    type(increment_errors) :: found
+
+    is_fine_enough = .true.
+    if (.not. (self%answer%converged .and. self%certificate%valid .and. allocated(self%other))) return
+    if (size(self%increment) == 0 .or. self%answer%lost_contact) return
+    found = self%errors()
+    associate (wanted => self%model%controls%accuracy)
+      if (size(self%answer%contact%force) > 0) then
+        is_fine_enough = found%pressure <= wanted*self%answer%largest_pressure()
+      else
+        is_fine_enough = found%stress <= wanted*maxval(self%answer%equivalent_stress)
+      end if
+    end associate
+  end function is_fine_enough
+
+  !> Compare the next run with this one.
+  subroutine take_as_other(self)
+    class(loaded_model), intent(inout) :: self
+
+    self%other = self%increment(size(self%increment))
+    self%other%stress = self%answer%stress
+    self%other_steps = self%steps
+    self%other_end = self%end_of()
+    deallocate (self%kept%linear)   ! it has the tangent of the end
+  end subroutine take_as_other
+
+  !> Errors by the size of the increments, from both runs.
+  pure type(increment_errors) function errors(self)
+    class(loaded_model), intent(in) :: self
+    type(increment_record) :: found
+
+    found = self%increment(size(self%increment))
+    found%stress = self%answer%stress
+    errors = errors_of_increments(found, self%other, self%steps, self%other_steps)
+  end function errors
+
   !> Follow the loads in another number of increments, for their error.
   subroutine follow_others(self, watch)
     class(loaded_model), intent(inout) :: self
@@ -113,7 +182,7 @@ contains
     if (allocated(self%other)) deallocate (self%other)
     self%answer = none
     plan = self%iteration
-    plan%load_steps = other_number(self%model%controls%load_steps)
+    plan%load_steps = self%other_steps
     plan%keeps = .true.
     self%model%loads = self%loads
     associate (kept => self%kept, answer => self%answer)
@@ -176,13 +245,8 @@ contains
   subroutine end_case(self, valid)
     class(loaded_model), intent(inout) :: self
     logical, intent(in) :: valid   !! the answer is valid
-    type(increment_record) :: found
 
-    if (valid .and. self%is_flow() .and. allocated(self%other)) then
-      found = self%increment(size(self%increment))
-      found%stress = self%answer%stress
-      self%increment_error = errors_of_increments(found, self%other, self%model%controls%load_steps)
-    end if
+    if (valid .and. self%is_flow() .and. allocated(self%other)) self%increment_error = self%errors()
     if (allocated(self%start)) deallocate (self%start)
     if (allocated(self%other_start)) deallocate (self%other_start)
     if (.not. (valid .and. self%has_memory())) return

@@ -186,8 +186,11 @@ contains
     self%iteration%threads = plan_threads(self%numbering, self%expected%bytes, granted_threads())
     call self%iteration%set_tolerances(self%model%controls)
     call watch%expect(self%expected%operations)
-    if (self%is_flow()) call self%follow_others(watch)
-    call self%follow(self%model%controls%load_steps, watch)
+    if (self%is_flow()) then
+      call self%follow_increments(watch)
+    else
+      call self%follow(self%model%controls%load_steps, watch)
+    end if
   end subroutine solve_as_planned
 
   !> Return to the model without the pairs of nodes that came near in this load case, so that other load cases

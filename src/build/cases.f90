@@ -105,12 +105,15 @@ contains
       cases%case%load_steps = data%controls%load_steps
       cases%case%most_iterations = data%controls%most_iterations
       cases%case%tolerance = data%controls%tolerance
+      cases%case%steps_by_accuracy = data%controls%flow_theory .and. data%controls%accuracy > 0.0_wp .and. &
+                                     deck%parameter_row('NLOAD') == 0
       associate (nlparm => deck%card(card_nlparm), choice => deck%subcase%nlparm)
         do k = 1, size(choice)
           row = findloc(nint(nlparm%value(1, :)), choice(k)%id, dim=1)
           if (choice(k)%id == 0 .or. row == 0) cycle
           associate (case => cases%case(k))
             case%load_steps = nint(nlparm%number('NINC', row))
+            if (nlparm%has('NINC', row)) case%steps_by_accuracy = .false.
             if (nlparm%has('MAXITER', row)) case%most_iterations = nint(nlparm%number('MAXITER', row))
             if (nlparm%has('EPSU', row)) case%tolerance = nlparm%number('EPSU', row)
           end associate

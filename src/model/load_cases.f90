@@ -67,6 +67,7 @@ module epcont_model_load_cases
     integer :: temperatures = 0                 !! id of its set of temperatures, 0 if absent
     integer :: contact = 0                      !! its single BCONP; contact_all or contact_none
     integer :: load_steps = 1                   !! in which its loads are applied
+    logical :: steps_by_accuracy = .false.      !! PARAM ACCURACY chooses their number
     integer :: most_iterations = 100            !! of a load step
     real(wp) :: tolerance = 0.0_wp              !! of the iteration; 0: default of the method
     integer :: pattern = 1                      !! group of cases with the same supports and contacts
@@ -162,6 +163,7 @@ contains
     end associate
     model%controls%sequence = cases%sequence
     model%controls%load_steps = cases%case(k)%load_steps
+    model%controls%steps_by_accuracy = cases%case(k)%steps_by_accuracy
     model%controls%most_iterations = cases%case(k)%most_iterations
     model%controls%tolerance = cases%case(k)%tolerance
     call put_displacements(cases, cases%case(k), model)

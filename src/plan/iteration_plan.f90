@@ -71,7 +71,7 @@ contains
     tight = self%method == method_newton .or. asked%flow_theory
     if (asked%tolerance /= 0.0_wp) then
       self%tolerance = asked%tolerance
-    else if (asked%accuracy > 0.0_wp) then
+    else if (asked%accuracy > 0.0_wp .and. .not. asked%flow_theory) then
       self%tolerance = asked%accuracy*merge(newton_part, secant_part, tight)
     else
       self%tolerance = merge(newton_tolerance, secant_tolerance, tight)

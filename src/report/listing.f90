@@ -169,8 +169,10 @@ contains
     call put_table(run, 'history', listing)
     if (run%is_flow()) then
       call put_table(run, 'increments', listing)
-      if (size(run%increment) > run%model%controls%load_steps) call listing%say( &
-        text_of(size(run%increment))//' increments instead of '//text_of(run%model%controls%load_steps)// &
+      if (run%model%controls%steps_by_accuracy) &
+        call listing%say(plural(run%steps, 'increment')//' chosen for PARAM ACCURACY')
+      if (size(run%increment) > run%steps) call listing%say( &
+        text_of(size(run%increment))//' increments instead of '//text_of(run%steps)// &
         ': one that does not converge is halved')
     end if
     call listing%line('')

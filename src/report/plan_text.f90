@@ -162,6 +162,8 @@ contains
              short_real(scene%iteration%tolerance)//' of the largest,')
     call plan%say('  and the stress error is at most '//short_real(scene%iteration%off_curve)// &
              '; at most '//plural(scene%model%controls%most_iterations, 'iteration'))
+    if (scene%model%controls%steps_by_accuracy) &
+      call plan%say('increments: as many as PARAM ACCURACY needs, each from the end of the one before')
     if (scene%iteration%load_steps > 1) &
       call plan%say(plural(scene%iteration%load_steps, 'load step')//when(scene%model%controls%flow_theory, &
         ', each from the end of the one before', '; elastic unloading is not modelled'))

@@ -66,14 +66,12 @@ contains
   end function other_number
 
   !> Estimate the errors of the figures at the end of a load case.
-  pure type(increment_errors) function errors_of_increments(found, other, increments) result(errors)
+  pure type(increment_errors) function errors_of_increments(found, other, increments, others) result(errors)
     type(increment_record), intent(in) :: found, other   !! of both runs
-    integer, intent(in) :: increments                    !! of the first one
+    integer, intent(in) :: increments, others            !! their number of increments
     real(wp) :: factor
 
-    associate (m => other_number(increments))
-      factor = safety*real(m, wp)/abs(increments - m)
-    end associate
+    factor = safety*real(others, wp)/abs(increments - others)
     errors%pressure = factor*abs(found%pressure - other%pressure)
     if (min(found%half_width, other%half_width) > 0.0_wp) &
       errors%half_width = factor*abs(found%half_width - other%half_width)

@@ -40,6 +40,17 @@ class Increments(unittest.TestCase):
                 self.assertLessEqual(stated, 6 * error, f"{key}, {many}")
             self.assertEqual([(k + 1) / many for k in range(many)], [float(row["load_factor"]) for row in tables["increments"]])
 
+    def test_accuracy_chooses_their_number(self):
+        """PARAM ACCURACY doubles the increments until the stated error is within it, unless NINC says their number."""
+        for wanted, many in (0.02, 16), (0.005, 32):
+            tables, _, status = run("LOAD = 1\n", f"PARAM,THEORY,FLOW\nPARAM,ACCURACY,{wanted}\n")
+            self.assertEqual(0, status)
+            summary = {row["key"]: row["value"] for row in tables["summary"]}
+            self.assertLessEqual(float(summary["increment_error_max_pressure"]), wanted * float(summary["max_pressure"]))
+            self.assertEqual(many, len(tables["increments"]))
+        tables = run("LOAD = 1\nNLPARM = 1\n", "PARAM,THEORY,FLOW\nPARAM,ACCURACY,.005\nNLPARM,1,3\n")[0]
+        self.assertEqual(3, len(tables["increments"]))
+
     def test_contact_is_lost(self):
         """Up to P, then to -P/10: contact is lost where the load changes its sign, at 1/1.1 of the second SUBCASE."""
         tables, said, status = run("SUBCASE 1\nLOAD = 1\nNLPARM = 1\nSUBCASE 2\nLOAD = 2\nNLPARM = 1\nSUBCASE 3\nLOAD = 1\n",
