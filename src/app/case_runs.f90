@@ -114,6 +114,7 @@ contains
       limit = limit_of_pressure(run)
       if (len(reason_of(limit)) > 0) text = text//' ('//limit//')'
     end if
+    if (text(len(text):) == ':') text = text(:len(text) - 1)   ! without a pressure
     if (run%motions%count > 0) &
       text = text//'  approach'//right(listed_number(number, run%answer%contact%approach(1), 0.0_wp), 13)
   end function line_of

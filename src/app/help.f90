@@ -28,7 +28,7 @@ module epcont_app_help
     '.SH DESCRIPTION', &
     'For each deck of NASTRAN bulk data, epcont finds the pairs in contact, their forces and pressures, '// &
     'the approach of the bodies, and the yielded elements.', &
-    'Contact is exact to rounding. Yielding follows total (deformation) theory. Separate code checks '// &
+    'Contact is exact to rounding. Yielding follows total theory or flow theory. Separate code checks '// &
     'every answer (certificate): exit status and listing say whether it holds.', &
     'A deck is named DECK.dat. The same deck gives the same files, byte for byte.', &
     'Errors and warnings go to standard error, one line of outcome for each deck to standard output.', &

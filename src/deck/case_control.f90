@@ -43,6 +43,10 @@ module epcont_deck_case_control
     'SOL', 'CEND', 'TITLE', 'ECHO', 'CNTNLSUB', 'SUBCASE', 'SUBTITLE', 'LABEL', 'SPC', 'LOAD', 'MPC', &
     'BCONTACT', 'DISPLACEMENT', 'STRESS', 'SPCFORCES', 'NLPARM', 'TEMPERATURE']
   integer, parameter :: first_own = 7
+  !> Statements without effect: requests for output, and limits of a run.
+  character(len=*), parameter :: idle(*) = [character(len=9) :: &
+    'ANALYSIS', 'BCRESULTS', 'BOUTPUT', 'ELFORCE', 'ESE', 'FORCE', 'GPFORCE', 'GPSTRESS', 'ID', 'LINE', &
+    'MAXLINES', 'MPCFORCES', 'NLSTRESS', 'OLOAD', 'OUTPUT', 'SET', 'STRAIN', 'TIME', 'VECTOR']
   !> Values of SOL that are static, linear or not.
   character(len=*), parameter :: static = &
     '  1 24 66 101 106 400 401 402 600 601 SESTATIC NLSTATIC '
@@ -70,6 +74,7 @@ contains
     type(statement) :: parts
     type(subcase_control) :: common, now   ! statements before the first SUBCASE, and of the current load case
     integer :: cases, line
+    logical :: goes_on   ! the list of a statement without effect goes on in the next line
 
     bulk = behind_begin_bulk(lines)
     allocate (control%subcase(max(1, count([(is_subcase(lines, line), line=1, bulk - 2)]))))
@@ -78,10 +83,14 @@ contains
     now%label = ''
     cases = 0
     stated = .false.
+    goes_on = .false.
     do line = 1, bulk - 2
       if (lines%blank(line)) cycle
       parts = cut(lines%text_of_line(line), line)
-      call check_word(now, faults, stated, parts)
+      if (.not. goes_on) call check_word(now, faults, stated, parts)
+      goes_on = (goes_on .or. parts%word == '') .and. &
+                scan(trim(lines%text_of_line(line)), ',', back=.true.) == len_trim(lines%text_of_line(line))
+      if (goes_on .or. parts%word == '') cycle
       call take_statement()
     end do
     control%subcase(max(1, cases)) = now
@@ -246,6 +255,11 @@ contains
 
     k = findloc(keyword == parts%word, .true., dim=1)
     if (k == 0 .and. len(parts%word) > 3) k = findloc(index(keyword, parts%word) == 1, .true., dim=1)
+    if (k == 0 .and. is_idle(parts%word)) then
+      call faults%add_note(parts%word_place, parts%word//' has no effect')
+      parts%word = ''
+      return
+    end if
     if (k == 0) then
       call faults%add_error(parts%word_place, 'unknown case control statement '//parts%word, &
         suggestion(parts%word, keyword, listed(all_keywords())))
@@ -259,6 +273,14 @@ contains
     if (parts%option_place%line > 0 .and. parts%word /= 'TEMPERATURE') &
       call faults%add_note(parts%option_place, parts%word//': options have no effect')
   end subroutine check_word
+
+  !> Has a statement no effect? Words may be cut to four letters.
+  pure logical function is_idle(word)
+    character(len=*), intent(in) :: word
+
+    is_idle = any(idle == word)
+    if (len(word) > 3) is_idle = is_idle .or. any(index(idle, word) == 1)
+  end function is_idle
 
   !> Does a load case begin on a line?
   logical function is_subcase(lines, line)

@@ -24,7 +24,7 @@ module epcont_deck_entry
   type :: field_entry
     character(len=8) :: name = ''
     integer :: kind = kind_blank       !! default: must be blank
-    character(len=120) :: meaning = ''
+    character(len=180) :: meaning = ''
     character(len=8) :: unit = ''
     logical :: used = .true.           !! false: ignored, that is, accepted without effect
     real(wp) :: heard_to = huge(1.0_wp)   !! larger values are ignored too

@@ -12,6 +12,8 @@ module epcont_material_elasticity
     real(wp) :: bulk = 1.0_wp    !! K [stress]
     real(wp) :: shear = 1.0_wp   !! G [stress]
     real(wp) :: shift = 0.0_wp   !! (1 - 2 nu)/(3E): eps_i = e + shift*sigma_i [1/stress]
+  contains
+    procedure :: elastic_work
   end type elasticity
 
 contains
@@ -52,6 +54,14 @@ contains
     end do
     d(components, components) = shear
   end function isotropic_matrix
+
+  !> Work of a stress in its elastic strains: twice the strain energy density [stress].
+  pure real(wp) function elastic_work(self, stress)
+    class(elasticity), intent(in) :: self
+    real(wp), intent(in) :: stress(components)  !! xx, yy, zz, xy
+
+    elastic_work = equivalent_stress(stress)**2/(3.0_wp*self%shear) + sum(stress(:3))**2/(9.0_wp*self%bulk)
+  end function elastic_work
 
   !> Von Mises stress (2-1).
   pure real(wp) function equivalent_stress(stress)

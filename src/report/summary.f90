@@ -273,7 +273,7 @@ contains
       end if
       do k = 1, run%motions%count
         call figures%put_increment_error('approach_'//motion_key(run, k), motion_unit(run, k), &
-          'approach of '//motion_name(run, k), error%approach(k), abs(found%approach(k)))
+          motion_name(run, k), error%approach(k), abs(found%approach(k)))
       end do
       call figures%put_increment_error('stress', stress, 'stresses of elements', error%stress, &
                                        maxval(run%answer%equivalent_stress))
@@ -287,7 +287,8 @@ contains
 
     if (.not. run%accuracy%sensitivity%known) return
     call figures%put('contact_amplification', none, factor, run%accuracy%sensitivity%amplification, &
-                     'contact forces amplify stiffness errors', '   times at most')
+                     when(run%accuracy%sensitivity%amplification > 0.0_wp, &
+                          'contact forces amplify stiffness errors'), '   times at most')
     call figures%put('rounding_error_force', none, known, run%accuracy%sensitivity%rounding)
     call figures%put_word('weak_pairs', text_of(count(run%accuracy%weak)), '')
   end subroutine put_sensitivity
