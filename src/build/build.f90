@@ -204,8 +204,9 @@ contains
         if (card(3) > 0) card(3) = deck%card(card(1))%column(body_load_field(card(3)))
       case (of_theory)
         card(:2) = [card_param, deck%parameter_row('THEORY')]
-        ! The deck may have chosen flow theory otherwise.
-        if (card(2) == 0) card(2) = max(deck%parameter_row('METHOD'), deck%parameter_row('MUP'))
+        ! The deck may have chosen the theory otherwise.
+        if (card(2) == 0) card(2) = max(deck%parameter_row('METHOD'), deck%parameter_row('MUP'), &
+                                        deck%parameter_row('ORIGINAL'))
       case (of_paper_ratio)
         card(:2) = [card_param, max(deck%parameter_row('MUP'), deck%parameter_row('ORIGINAL'))]
       end select
