@@ -98,6 +98,7 @@ contains
     real(wp) :: largest, farthest, rounding, strain(components)   ! strain by `u`, and rigid-body displacement
                                                                   ! with `motion`
     real(wp) :: on_curve(components)   ! stress of the material
+    real(wp) :: reached                ! largest stress; at least the yield stress if the point has yielded
     integer :: k, n, node, p
     logical :: moves, ring
 
@@ -119,15 +120,19 @@ contains
         part%work(point) = points%volume(p)*dot_product(answer%point_stress(:, point), strain)
         part%strained = part%strained + points%volume(p)*maxval(abs(strain))
         strain(:3) = strain(:3) - points%free(p)
+        reached = largest_stress
         associate (section => model%mesh%section(e))
           if (allocated(part%history) .and. allocated(model%sections%curve(section)%strain) .and. &
               .not. model%sections%curve(section)%elastic) then
-            call return_to_curve(model, section, strain, &
-                                 part%history(point - lbound(part%work, 1) + 1), on_curve)
+            associate (history => part%history(point - lbound(part%work, 1) + 1))
+              call return_to_curve(model, section, strain, history, on_curve)
+              if (history%hardened > 0.0_wp) &
+                reached = max(reached, model%sections%curve(section)%stress(2))
+            end associate
           else
             on_curve = stress_on_curve(model, section, strain)
           end if
-          call check_stress(model, largest_stress, section, on_curve, answer%point_stress(:, point), &
+          call check_stress(model, reached, section, on_curve, answer%point_stress(:, point), &
                             rounding*largest, part)
         end associate
       end associate
@@ -140,12 +145,12 @@ contains
 
   !> Find the stress error, relative. If the material yields, it is the larger of two: the von Mises stress of
   !! the difference over the stress on the curve (at least the yield stress, if stresses reach it), and the
-  !! difference of the mean stresses, which are elastic, over the largest stress. If the material is elastic,
-  !! it is the largest difference over the largest stress. Stress errors by rounding of strains have the same
-  !! references.
+  !! difference of the mean stresses, which are elastic, over the largest stress. (In plane stress they are
+  !! not, and the first one contains them.) If the material is elastic, it is the largest difference over the
+  !! largest stress. Stress errors by rounding of strains have the same references.
   subroutine check_stress(model, largest_stress, section, on_curve, stress, rounding, part)
     type(model_type), intent(in) :: model
-    real(wp), intent(in) :: largest_stress
+    real(wp), intent(in) :: largest_stress   !! reference [stress]
     integer, intent(in) :: section
     real(wp), intent(in) :: on_curve(components), stress(components)   !! of the material; of the answer
     real(wp), intent(in) :: rounding         !! rounding error of the strain
@@ -157,7 +162,9 @@ contains
     off = ratio(maxval(abs(apart)), largest_stress)
     if (allocated(model%sections%curve(section)%strain)) then
       scale = max(von_mises_stress(on_curve), min(model%sections%curve(section)%stress(2), largest_stress))
-      off = max(ratio(von_mises_stress(apart), scale), ratio(abs(sum(apart(:3)))/3.0_wp, largest_stress))
+      off = ratio(von_mises_stress(apart), scale)
+      if (model%sections%kinematics(section) /= plane_stress) &
+        off = max(off, ratio(abs(sum(apart(:3)))/3.0_wp, largest_stress))
     end if
     part%off_curve = max(part%off_curve, off)
     ! Stress over strain along one axis if lateral strain is fixed: far above E if Poisson's ratio is close to

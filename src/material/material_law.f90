@@ -224,14 +224,16 @@ contains
     d(:, 3) = 0.0_wp
   end function tangent_matrix
 
-  !> Find the stress error: von Mises stress of the difference from the material's stress, over the stress on
-  !! the curve, or over the yield stress below yield. (The mean parts are elastic.)
+  !> Find the stress error: von Mises stress of the difference from the material's stress, over that of the
+  !! material's stress, or over the yield stress if this is larger. (The mean parts are elastic.)
   pure real(wp) function distance(self, state, stress)
     class(material_law), intent(in) :: self      !! of a material that can yield
     type(point_state), intent(in) :: state       !! from `update`
     real(wp), intent(in) :: stress(components)   !! [stress]
+    real(wp) :: of_material
 
-    distance = equivalent_stress((stress - state%stress)/max(state%modulus*state%deviatoric, &
-        self%yield_stress))
+    of_material = state%modulus*state%deviatoric   ! relative to the back stress
+    if (self%kinematic > 0.0_wp) of_material = equivalent_stress(state%stress)
+    distance = equivalent_stress((stress - state%stress)/max(of_material, self%yield_stress))
   end function distance
 end module epcont_material_material_law
