@@ -63,7 +63,7 @@ module epcont_plasticity_equilibrium_iteration
     real(wp), allocatable, private :: force(:)      !! the last contact forces [force] [pairs]
     type(error_estimate), private :: estimate
     integer, private :: factored_before = 0         !! bodies, for load cases before
-    integer, private :: yielded = 0                 !! elements that yield in the state that the law is about
+    integer, private :: yielded = 0                 !! points that yield in the state that the law is about
     logical, private :: stiff = .false.             !! the model has been factored
     logical, private :: elastic = .false.           !! with the law of a state that has not yielded
   contains
@@ -188,7 +188,6 @@ contains
       if (self%runs_away) return
       if (.not. self%plan%from_first_pivot) self%touching = found%contact%touching
       self%force = found%contact%force
-      self%yielded = self%now%yielded
       ! After the last load step no linearisation is needed.
       if (self%linear%materials%yields .and. .not. (self%converged .and. self%load_factor >= 1.0_wp)) &
         call method%advance(scene%model, self%linear, found, self%about)
@@ -208,8 +207,6 @@ contains
     class(equilibrium_iteration), intent(inout) :: self
 
     self%about = self%committed
-    self%yielded = 0
-    if (allocated(self%about%point)) self%yielded = count(self%about%point%yielded)
     if (.not. allocated(self%about%contact%force)) return
     if (size(self%about%contact%force) /= size(self%force)) return
     self%force = self%about%contact%force
@@ -248,6 +245,8 @@ contains
 
     self%failed_body = 0
     method%blend = 0.0_wp
+    self%yielded = 0
+    if (allocated(self%about%point)) self%yielded = count(self%about%point%yielded)
     call linearise(scene, method, self%about, self%linear, watch)
     if (self%stiff .and. (self%plan%method == method_inistr .or. self%elastic .and. self%yielded == 0)) return
     self%elastic = self%yielded == 0
@@ -356,7 +355,6 @@ contains
     last = self%now
     self%about = found
     self%force = found%contact%force
-    self%yielded = self%now%yielded
     self%now%iteration = self%now%iteration + 1
     self%now%change = huge(1.0_wp)
     allocate (next)
