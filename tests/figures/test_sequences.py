@@ -86,6 +86,10 @@ def von_mises(sx, sy, sz):
     return math.sqrt(0.5 * ((sx - sy)**2 + (sy - sz)**2 + (sz - sx)**2))
 
 
+def with_param(text, *params):
+    return text.replace("BEGIN BULK\n", "BEGIN BULK\n" + "".join(f"PARAM,{one}\n" for one in params))
+
+
 def yields_again(sx, ex, sz, kind):
     """Stress sx at which this square yields after unloading from sx (plane strain, sy = 0), by bisection."""
     young, nu, y, h = STEEL.values()
@@ -151,6 +155,32 @@ def hertz900(factors, increments):
     return sequence(loads, increments) + "".join(f"LOAD,{load},1.,{factor!r},1\n" for load, factor in zip(loads, factors)) + bulk
 
 
+def blocks(cases, kind="PLASTIC"):
+    """A block that a platen presses on a harder one, with temperatures, springs, equations and weight. Each case: lines of case control."""
+    text = "SOL 106\nCEND\nSPC = 1\nMPC = 1\n" + "".join(f"SUBCASE {k}\nNLPARM = 1\n" + "".join(f"{line}\n" for line in lines)
+                                                       for k, lines in enumerate(cases, 1))
+    text += "BEGIN BULK\nNLPARM,1,4\nPARAM,PLANE,STRAIN\nPSHELL,1,1,1.\nPSHELL,2,2,1.\nMAT1,1,1000.,,.3,1.,1.-3,20.\nMAT1,2,2000.,,.3,1.,1.-3,20.\n"
+    if kind:
+        text += f"MATS1,1,,{kind},20.,1,1,2.\n"
+    for first, x0, y0, across, up in (1, 0.0, 0.0, 8, 2), (101, -1.0, -2.0, 12, 4):
+        for j in range(up + 1):
+            for i in range(across + 1):
+                n = first + i + j * (across + 1)
+                text += f"GRID,{n},,{x0 + 0.5 * i},{y0 + 0.5 * j}\n"
+                if i < across and j < up:
+                    text += f"CQUAD4,{n},{1 if first == 1 else 2},{n},{n + 1},{n + across + 2},{n + across + 1}\n"
+    text += "SPC1,1,12,101,THRU,113\nSPC1,1,1,1,10,19\nSPC1,1,2,19,THRU,22\nBLSEG,1,1,THRU,9\nBLSEG,2,153,THRU,165\nBCONP,1,1,2\n"
+    text += "CELAS2,501,50.,27,1\nMPC,1,26,2,1.,25,2,-1.\nMPC,1,24,1,1.,23,1,-1.\nFORCE,2,27,,1.,.5,0.\nGRAV,3,,.05,0.,-1.\nFORCE,1,9,,.3,1.,0.\n"
+    for k, down in (1, -0.02), (2, -0.005), (3, -0.03):
+        text += "".join(f"SPCD,{k},{node},2,{down}\n" for node in range(19, 23))
+    return text + "TEMPD,7,20.\nTEMP,7,20,70.,21,70.,22,60.\nTEMP,7,12,40.,13,45.\nTEMPD,8,30.\nENDDATA\n"
+
+
+#: Contact is off in the fourth case; temperatures come and go; the last case has no loads.
+CASES = [["LOAD = 1"], ["LOAD = 2", "TEMPERATURE = 7"], ["LOAD = 3"], ["BCONTACT = NONE", "LOAD = 2"], ["LOAD = 3", "TEMPERATURE = 8"],
+         ["LOAD = 1"], []]
+
+
 class OneElement(unittest.TestCase):
     """A square in a homogeneous state; the references have eight digits."""
 
@@ -202,6 +232,39 @@ class OneElement(unittest.TestCase):
         bar = [(s, 0.0, 0.0) for s in (600.0, 100.0)]
         h = STEEL["hardening"]
         self.check(strains(square(bar, [1, 1], KINEMATIC, "STRESS")), [(600.0 / 210000.0 + 360.0 / h,), (100.0 / 210000.0 + 340.0 / h,)])
+
+    def test_mixed_hardening(self):
+        """Half of the hardening is kinematic: from 300 to -300 the bar yields by as much plastic strain as before, so none is left."""
+        bar = square([(300.0, 0.0, 0.0), (-300.0, 0.0, 0.0)], [1, 1], 3, "STRESS")
+        self.check(strains(with_param(bar, "HRFRAC,0.5")), [(0.004,), (-300.0 / 210000.0,)])
+
+    def test_temperature_that_goes(self):
+        """A plate that is fixed all round yields when it is warmed by 1.5 times what it can bear; back at TREF, half the yield stress is left."""
+        text = sequence([0, 0], [3, 2]).replace("SUBCASE 1\n", "SUBCASE 1\nTEMPERATURE = 5\n")
+        text += "GRID,1,,0.,0.\nGRID,2,,1.,0.\nGRID,3,,1.,1.\nGRID,4,,0.,1.\nCQUAD4,1,1,1,2,3,4\nPSHELL,1,1,1.\nSPC1,1,12,1,2,3,4\n"
+        text += f"PARAM,PLANE,STRESS\nMAT1,1,210000.,,.3,,1.-5,20.\nMATS1,1,,PLASTIC,0.,1,1,240.\nTEMPD,5,{20.0 + 1.5 * 240.0 * 0.7 / 2.1!r}\nENDDATA\n"
+        sx = [float(row["sx"]) for row in run(text)[0]["elements"]]
+        self.assertAlmostEqual(sx[0], -240.0, delta=1e-9)
+        self.assertAlmostEqual(sx[1], 120.0, delta=1e-9)
+
+    def test_same_loads_again(self):
+        """Nothing changes in a SUBCASE with the loads of the one before, whatever the increments."""
+        for steel in STEEL, {**STEEL, "hardening": 0.0}:
+            found = strains(square([(275.0, 10.0, 5.0)] * 4, [7, 1, 3, 64], steel=steel))
+            for row in found[1:]:
+                for value, expected in zip(row, found[0]):
+                    self.assertAlmostEqual(value, expected, delta=1e-11 * max(1.0, abs(expected)))
+
+    def test_initial_stress_method(self):
+        """INISTR gives the results of NEWTON after loads of other directions, if no increment is halved. Its errors are about TOL, 1e-8."""
+        for hardening, path in ((20000.0, [(470.0, -400.0, -380.0), (180.0, 210.0, -70.0)]),
+                                (5000.0, [(-210.0, 260.0, -200.0), (310.0, 290.0, -110.0)])):
+            for plane in "STRAIN", "STRESS":
+                steel = {**STEEL, "hardening": hardening}
+                newton = square(path, [1, 1], KINEMATIC, plane, steel).replace("PARAM,TOL,1.-12\n", "")
+                for row, expected in zip(strains(with_param(newton, "METHOD,INISTR", "MAXIT,5000")), strains(newton), strict=True):
+                    for value, reference in zip(row[:3], expected):
+                        self.assertAlmostEqual(value, reference, delta=1e-7 * max(map(abs, expected[:3])))
 
     def test_nafems_nl1(self):
         """The von Mises stress after each step. Yielding begins within steps, so the error left is a few (1/200)**2 of a step."""
@@ -269,6 +332,54 @@ class Cylinders(unittest.TestCase):
             yielded = [row for row in of_case(tables["history"], case) if int(row["plastic_elements"]) > 0]
             self.assertLessEqual(len({row["load_factor"] for row in yielded}), 1)
             self.assertTrue(all(float(row["stress_error"]) < 3e-4 for row in yielded))
+
+
+class Blocks(unittest.TestCase):
+    """Contact, temperatures, springs, equations and weight in one sequence."""
+
+    def compare(self, expected, found, within):
+        """Tables agree, relative to the largest number of a column. Points and estimates of errors may differ if elements are equal."""
+        for name in "nodes", "elements", "contact":
+            self.assertEqual(len(expected[name]), len(found[name]))
+            for column in expected[name][0]:
+                if column in ("max_x", "max_y", "state", "status", "pressure") or column.startswith("mesh_error"):
+                    continue
+                numbers = [[float(row[column]) for row in tables[name]] for tables in (expected, found)]
+                largest = max(map(abs, numbers[0]))
+                for a, b in zip(*numbers):
+                    self.assertLessEqual(abs(a - b), within * largest, f"{name} {column}")
+
+    def test_methods_and_contact_solvers(self):
+        """Each way leads to the same states, within TOL (1e-8) times the number of increments."""
+        expected = run(blocks(CASES))[0]
+        touching = [len([row for row in of_case(expected["contact"], k) if row["status"] == "touching"]) for k in range(1, 8)]
+        self.assertEqual([count > 0 for count in touching], [True, True, True, False, True, False, False])
+        self.assertGreater(max(float(row["equivalent_stress"]) for row in of_case(expected["elements"], 7)), 0.5, "residual stresses")
+        for rule in "CONRY", "JOINED":
+            for method in "NEWTON", "INISTR":
+                self.compare(expected, run(with_param(blocks(CASES), f"RULE,{rule}", f"METHOD,{method}"))[0], 3e-7)
+
+    def test_elastic_cases_are_independent(self):
+        """Without plastic strain the end of a SUBCASE does not depend on the ones before."""
+        for kind in None, "NLELAST":
+            for rule in "CONRY", "JOINED":
+                text = with_param(blocks(CASES, kind), f"RULE,{rule}")
+                self.compare(run(text)[0], run(text.replace("SOL 106", "SOL 101"))[0], 1e-9)
+
+    def test_threads(self):
+        """The same bytes on any number of threads."""
+        outputs = set()
+        for threads in "1", "2", "3":
+            with tempfile.TemporaryDirectory() as folder:
+                deck = pathlib.Path(folder) / "deck.dat"
+                deck.write_text(blocks(CASES))
+                done = subprocess.run([PROGRAM, "--tables", "all", "--vtk", deck.name], cwd=folder, capture_output=True, check=True,
+                                      env={**os.environ, "OMP_NUM_THREADS": threads})
+                files = tuple((path.name, path.read_bytes()) for path in sorted(deck.parent.iterdir()))
+            outputs.add((done.stdout, done.stderr, files))
+        self.assertEqual(len(outputs), 1)
+        self.assertEqual([name for name, _ in files if name.startswith("deck.case") and name.endswith(".vtu") and "contact" not in name],
+                         [f"deck.case{k}.vtu" for k in range(1, 8)])
 
 
 if __name__ == "__main__":
