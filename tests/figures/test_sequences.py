@@ -239,7 +239,7 @@ class OneElement(unittest.TestCase):
         self.check(strains(with_param(bar, "HRFRAC,0.5")), [(0.004,), (-300.0 / 210000.0,)])
 
     def test_temperature_that_goes(self):
-        """A plate that is fixed all round yields when it is warmed by 1.5 times what it can bear; back at TREF, half the yield stress is left."""
+        """A plate that is fixed all round yields when it is warmed to 1.5 times its yield point; back at TREF, half the yield stress is left."""
         text = sequence([0, 0], [3, 2]).replace("SUBCASE 1\n", "SUBCASE 1\nTEMPERATURE = 5\n")
         text += "GRID,1,,0.,0.\nGRID,2,,1.,0.\nGRID,3,,1.,1.\nGRID,4,,0.,1.\nCQUAD4,1,1,1,2,3,4\nPSHELL,1,1,1.\nSPC1,1,12,1,2,3,4\n"
         text += f"PARAM,PLANE,STRESS\nMAT1,1,210000.,,.3,,1.-5,20.\nMATS1,1,,PLASTIC,0.,1,1,240.\nTEMPD,5,{20.0 + 1.5 * 240.0 * 0.7 / 2.1!r}\nENDDATA\n"
