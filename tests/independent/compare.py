@@ -45,6 +45,7 @@ def read(path, case):
 def compare(found, directory, stem, case):
     """(quantity, relative difference, position) of every number, and the faults of structure."""
     worst, faults, pieces = {}, [], {}
+    summary = {row["key"]: row["value"] for row in read(directory / f"{stem}.summary.csv", case)}
     for name, kinds in [(name, kinds) for name, kinds in KINDS.items() if name in found]:
         header, rows = found[name]
         theirs = {row[header[0]]: row for row in read(directory / f"{stem}.{name}.csv", case)}
@@ -63,12 +64,14 @@ def compare(found, directory, stem, case):
                 if theirs[str(row[0])]["status"] != row[11] and max(abs(row[8]), abs(row[10])) > 0:
                     faults.append(f"pair {row[0]}: {row[11]} here, {theirs[str(row[0])]['status']} there")
         if name == "increments":
+            first = next((key for key in summary if key.startswith("approach")), None)   # that of the column
+            if first:
+                pieces["approach"] = [(row[header.index(first)], float(theirs[str(row[0])]["approach"]), f"increments {row[0]} approach") for row in rows]
             faults += [f"increment {row[0]}: {column} {row[header.index(column)]} here, {theirs[str(row[0])][column]} there"
                        for row in rows for column in ("pairs_in_contact", "plastic_elements") if str(row[header.index(column)]) != theirs[str(row[0])][column]]
         if name == "elements":
             off = [row[0] for row in rows if theirs[str(row[0])]["state"] != row[10]]
             faults += [f"element {element}: elastic in one, plastic in the other" for element in off]
-    summary = {row["key"]: row["value"] for row in read(directory / f"{stem}.summary.csv", case)}
     for key, value, _ in found["summary"][1]:
         kind = {"max_pressure": "pressure", "total_contact_force": "force", "max_equivalent_stress": "stress", "max_displacement": "length",
                 "angle": "angle", "moment": "moment", "spring": "force", "approach": "angle" if key.endswith("_6") else "length"}

@@ -18,7 +18,7 @@ KINDS = {"contact": {"force": ["force"], "length": ["initial_gap", "gap"], "pres
          "elements": {"stress": ["sx", "sy", "sz", "txy", "equivalent_stress"], "strain": ["equivalent_strain"],
                       "modulus": ["secant_modulus"], "place": ["x", "y"]},
          "plastic": {"plastic strain": ["plastic_x", "plastic_y", "plastic_z", "plastic_xy", "accumulated"]},
-         "increments": {"force": ["total_contact_force"], "pressure": ["max_pressure"], "approach": ["approach"], "part": ["load_factor"]}}
+         "increments": {"force": ["total_contact_force"], "pressure": ["max_pressure"], "part": ["load_factor"]}}
 
 LONGEST = 1000000   # range of ids
 SEQUENTIAL = "66", "106", "NLSTATIC"   # values of SOL whose SUBCASEs follow each other

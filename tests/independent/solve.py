@@ -51,7 +51,7 @@ class Problem:
         nothing = np.zeros((len(model.volume), 4))
         self.elastic = model.of_points("secant_matrix", nothing, 4, 4)
         self.memory = model   # or plastic strains (history.py)
-        self.increments = []  # rows of their table
+        self.increments = []  # rows of their table, by columns
         self.linearise(self.elastic, nothing)
         self.stiff = abs(self.k.diagonal()).max()
 
@@ -131,9 +131,9 @@ class Problem:
     def record(self, part, found):
         """Keep the figures of an increment that ends at this part of the loads."""
         figures = {key: value for key, value, _ in tables(self, *found)["summary"][1]}
-        approach = next((value for key, value in figures.items() if key.startswith("approach")), None)
-        self.increments.append([len(self.increments) + 1, part, figures.get("max_pressure"), approach,
-                                *(figures[key] for key in ("total_contact_force", "pairs_in_contact", "plastic_elements"))])
+        self.increments.append({"increment": len(self.increments) + 1, "load_factor": part, "max_pressure": figures.get("max_pressure"),
+                                **{key: value for key, value in figures.items()
+                                   if key in ("total_contact_force", "pairs_in_contact", "plastic_elements") or key.startswith("approach")}})
 
     def answer(self, history=None, parts=()):
         """`history`: the loads before, with flow theory; `parts` of the loads at the ends of increments."""
@@ -269,9 +269,8 @@ def tables(problem, v, force, gap, touching):
     if problem.increments:
         remaining = np.column_stack(problem.memory.after(strain))
         plastic_strains = np.array([model.mean(values) for values in remaining.T]).T
-    increments = "increment load_factor max_pressure approach total_contact_force pairs_in_contact plastic_elements".split()
     return {"summary": (["key", "value", "unit"], summary),
-            **({"increments": (increments, problem.increments),
+            **({"increments": (list(problem.increments[0]), [list(row.values()) for row in problem.increments]),
                 "plastic": ("element plastic_x plastic_y plastic_z plastic_xy accumulated".split(),
                             [[element, *row] for element, row in zip(model.element, plastic_strains.tolist())])} if problem.increments else {}),
             "contact": ("pair ga gb x y nx ny initial_gap force pressure gap status".split(), contact),

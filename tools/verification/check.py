@@ -229,7 +229,7 @@ def check(scene, tables, tolerance, found=None):
     figures, force, length, lost = found.figures, found.force, found.length, found.lost
     # The points of an element with several are known only to the stress error of the element's mean.
     sure = all(len(KINDS[name].points) == 1 for name, _, _ in scene.element.values())
-    loose = tolerance if sure else max(tolerance, 10 * max(1.0, found.most) * float(tables.summary.get(KEYS["off_curve"], 0.0)))
+    loose = tolerance if sure else max(tolerance, max(1.0, found.most) * (10 * float(tables.summary.get(KEYS["off_curve"], 0.0)) + scene.drift))
     scale = {"smallest_force": force, "smallest_gap": length, "product": force * length}
     bounds = {name: tolerance * scale.get(name, 1.0) for name in KEYS}
     bounds["equilibrium"] = bounds["energy"] = max(loose, lost)

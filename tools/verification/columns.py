@@ -257,7 +257,7 @@ def check_summary(report, scene, tables, found, tolerance):
     residual, ours = float(summary.get("equilibrium_residual", "nan")), found.figures["equilibrium"]
     # The stress errors of yielded points differ from that of their mean, and the tables hold only the mean.
     several = any(own.points > 1 and own.plastic for own in found.elements.values())
-    loose = 10 * max(1.0, found.most) * float(summary.get("stress_off_curve", 0.0)) if several else 0.0
+    loose = max(1.0, found.most) * (10 * float(summary.get("stress_off_curve", 0.0)) + scene.drift) if several else 0.0
     report.line("residual, of the program's", ours, f"{residual:.16E}", ours <= LIKE * residual + report.rounding + found.lost + loose)
     for key in sorted(summary):
         unit = unit_of(key)
