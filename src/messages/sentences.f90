@@ -125,7 +125,7 @@ contains
 
     associate (last => run%answer%history(size(run%answer%history)))
       text = when(run%answer%runs_away, 'limit load exceeded ')//'at load factor '// &
-             short_real(last%load_factor)// &
+             short_real(last%load_factor)//when(run%model%controls%sequence, ' of the load case')// &
              when(run%answer%runs_away, ': displacements grow without bound (perfectly plastic material)', &
                   ' after '//plural(last%iteration, 'iteration')//' displacements still change by '// &
                   short_real(last%change)//' of the largest (increase PARAM MAXIT, or '// &
