@@ -60,6 +60,10 @@ class Histories(unittest.TestCase):
             self.assertIn(word, (AGREE, REFUSED, COARSE), f"{deck.name} SUBCASE {case}: {said}")
         self.assertGreater(sum(word == AGREE for _, _, word, _ in words), 10)
 
+    def test_deck_of_input(self):
+        deck = self.solved((ROOT / "input/hertz/hertz330_unloaded.dat").read_text())
+        self.assertEqual(0, self.verified(deck))
+
     def test_verify_finds_wrong_cells(self):
         deck = self.solved(write(self.folder, 5, 18, histories=True)[4].read_text())
         self.assertEqual(0, self.verified(deck))

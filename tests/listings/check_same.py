@@ -49,9 +49,13 @@ def real(word):
 
 
 def scale(name, column, row, rows):
-    """Scale of a number: the largest magnitude of its column; a row of the summary has its own, approaches a common one."""
+    """Scale of a number: the largest magnitude of its column; a row of the summary has its own, approaches a common one, and an error
+    of increments also that of its quantity, because it is a difference of two values."""
     if name == "summary":   # one that is far below the others has their rounding
-        alike = [other for other in rows[1:] if other[0].startswith("approach_")] if row[0].startswith("approach_") else [row]
+        key = rows[0].index("key")   # load cases precede it
+        figure = row[key].removeprefix("increment_error_")
+        alike = [row] + [other for other in rows[1:] if other[:key] == row[:key] and
+                         (other[key] == figure or figure.startswith("approach_") and other[key].startswith("approach_"))]
         return max(abs(real(other[column]) or 0.0) for other in alike)
     kind = next((kind for kind in KINDS if rows[0][column] in kind), {rows[0][column]})
     members = [k for k, title in enumerate(rows[0]) if title in kind]

@@ -75,6 +75,8 @@ class Calls(Case):
 
     def test_decks(self):
         for arguments, words in (("hertz x", "x: give a whole number of at least 90"), ("hertz 0 -o h.dat", "0: give a whole number of at least 90"),
+                                 ("hertz --plastic --increments 1", "1: give a whole number of at least 2"),
+                                 ("hertz --increments 8", "--increments: elastic bodies have no memory: add --plastic"),
                                  ("hertz --spacing 0 -o h.dat", "0: give a number above 0"), ("hertz --spacing nan -o h.dat", "nan: give a number above 0"),
                                  ("hertz --spacing 100 -o h.dat", "hertz: these parameters give no mesh"),
                                  ("hertz 330 -o folder", "folder: cannot be written: Is a directory"),

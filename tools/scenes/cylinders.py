@@ -52,18 +52,21 @@ def touching(mesh, reach, line="arc"):
     return near if near[-1] in corners else near[:-1]
 
 
-def hertz(mesh, plastic=False, b=0.0239):
-    """Two equal cylinders as in hertz44, on a mesh that resolves the contact."""
+def hertz(mesh, plastic=False, b=0.0239, increments=None):
+    """Two equal cylinders as in hertz44, on a mesh that resolves the contact. `increments`: a load history, with so many until full load."""
     kind = "ELASTOPLASTIC" if plastic else "ELASTIC"
     words = ["Two equal steel cylinders, R = 1 mm, P = 10 kgf a mm of length; "
              f"{'bilinear steel' if plastic else 'elastic'}. Units kgf, mm. One quarter: x = 0 is a line "
              "of symmetry, y = 0 the plane of symmetry between the cylinders (fixed nodes), y = 1 a platen with half of P."]
-    if plastic:
+    if increments:
+        words.append(f"Flow theory in a sequence: loaded in {increments} increments, unloaded to a thousandth in {increments // 2}, and loaded "
+                     f"again in {increments // 2}. The second loading ends in the state of the first.")
+    elif plastic:
         words.append("Known answer (converged, total theory): p_max 198.6, half-width 0.030, approach 0.00142 (half of 0.00284).")
     else:
         words.append("Known answer (Hertz): p_max 266.4, b 0.0239; approach 0.00132 (half of Johnson's 0.00264).")
     element = {3: "", 4: "CQUAD4, ", 6: "CTRIA6, "}[len(mesh.element[0])]
-    deck = Deck(f"TWO EQUAL STEEL CYLINDERS, {len(mesh.point)} NODES, {element}{kind}", words, units="KGF-MM")
+    deck = Deck(f"TWO EQUAL STEEL CYLINDERS, {len(mesh.point)} NODES, {element}{kind}" + (", UNLOADED" if increments else ""), words, units="KGF-MM")
     touch = touching(mesh, (1.9 if plastic else 1.5) * b)
     first = first_free(mesh)
     deck.body(mesh, 1)
@@ -73,6 +76,8 @@ def hertz(mesh, plastic=False, b=0.0239):
     deck.hold(1, mesh.line["axis"])
     deck.platen(10 * first, 2, mesh.line["top"])
     deck.push(mesh.line["top"][0] + 1, 5.0)
+    if increments:
+        deck.sequence(("LOADED", 1.0, increments), ("UNLOADED", 0.001, increments // 2), ("LOADED AGAIN", 1.0, increments // 2))
     deck.remark("Plane between the cylinders, and the pairs")
     deck.ground([(mesh.point[node][0], 0.0) for node in touch], first + 1)
     deck.upward()

@@ -22,6 +22,7 @@ class Deck:
 
     def __init__(self, title, words, units="N-MM", strain=True, from_geometry=True, rings=False, load_steps=None):
         self.title, self.words, self.lines, self.rings, self.load_steps = title, words, [], rings, load_steps
+        self.cases = []
         if load_steps:
             self.card("NLPARM", "1", str(load_steps))
         self.card("PARAM", "UNITS", units)
@@ -119,6 +120,13 @@ class Deck:
             element = mesh.side(a, b)
             self.card("PLOADX1", 1, first + element, value, value, first + a, first + b, *([theta] if theta else []))
 
+    def sequence(self, *parts):
+        """Load cases in sequence, each (title, factor of the loads, number of increments)."""
+        for case, (title, part, increments) in enumerate(parts, 1):
+            self.cases += [f"SUBCASE {case}", f"  SUBTITLE = {title}", f"  LOAD = {case + 10}", f"  NLPARM = {case}"]
+            self.card("LOAD", case + 10, 1.0, part, 1)
+            self.card("NLPARM", case, increments)
+
     def hold(self, digits, nodes, first=1):
         nodes = sorted(first + n for n in nodes)
         for i in range(0, len(nodes), 6):
@@ -148,7 +156,7 @@ class Deck:
     def text(self):
         head = [f"$ {line}".rstrip() for words in self.words for line in textwrap.wrap(words, 76) or [""]]
         head += ["SOL 106", "CEND", f"TITLE = {self.title}", "SPC = 1"]
-        head += ["LOAD = 1"] if any(line.startswith(("FORCE", "PLOADX1", "GRAV", "RFORCE")) for line in self.lines) else []
+        head += self.cases or ["LOAD = 1"] * any(line.startswith(("FORCE", "PLOADX1", "GRAV", "RFORCE")) for line in self.lines)
         head += ["NLPARM = 1"] if self.load_steps else []
         head.append("BEGIN BULK")
         return "\n".join(head + self.lines + ["ENDDATA", ""])

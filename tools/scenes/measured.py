@@ -6,6 +6,10 @@ They hold for these meshes only, so only the kept decks have them.
 MEASURED = {
     "hertz/hertz330.dat": "p_max 200.35, approach -0.00139709, half-width 0.0298, 6 of 9 pairs touch, 109 elements yield.",
     "hertz/hertz900.dat": "p_max 199.11, approach -0.00141228, half-width 0.0297, 10 of 14 pairs touch, 316 elements yield.",
+    "hertz/hertz330_unloaded.dat": "p_max 197.32, approach -0.00139110; unloaded: approach -0.00016802, sx from -31.5 to 46.1; loaded again: the "
+                                   "same as at first.",
+    "hertz/hertz900_unloaded.dat": "p_max 193.320, approach -0.00140571; unloaded: approach -0.00017830, sx from -29.33 to 65.34; loaded again: "
+                                   "p_max 193.320. An independent program has the same with these increments.",
     "tube/tube12.dat": "u(a) 0.111022, u(b) 0.0703737 (means), 72 elements yield, their centres within 106.6.",
     "tube/tube16.dat": "u(a) 0.183360, u(b) 0.111540 (means), 360 elements yield, their centres within 136.6.",
     "tube/tube_limit.dat": "u(a) 0.361949, u(b) 0.204948 (means), 840 elements yield, their centres within 186.6; 8 iterations.",
