@@ -4,6 +4,9 @@
 
 One figure of any deck, with all its panels: the deformed shape, enlarged to be visible, with equivalent stress, and
 details of small contacts; the yielded zone; the pressure along each contact line; the iteration. The default NAME is DECK's, in the current folder.
+With flow theory and contact, history panels show the increments of all load cases instead of the iteration: contact force against approach, largest
+pressure and half-width against force. If a load case ends with less than half of an earlier force, further panels show the plastic strain and,
+along the normal below the largest pressure, the element stresses sx and sy at its end.
 A formula in the abscissa `s` of a pressure panel is drawn into the panels in which it has real values, for example
 "3585.36*sqrt(1-(s/6.21463)**2)". With several load cases one is drawn: --case, or the one with the largest pressure. The exit status is that of epcont: a rejected deck has no picture.
 
@@ -43,7 +46,7 @@ def one_figure(arguments):
     parser.add_argument("-o", "--output", type=pathlib.Path, help="name of the picture, with .png")
     parser.add_argument("--only", choices=figure.KINDS, help="panels of this kind only")
     parser.add_argument("--known", metavar="FORMULA", action="append", default=[], help="formula to draw with the pressures")
-    parser.add_argument("--case", metavar="N", type=int, help="SUBCASE to draw; default: the one with the largest pressure")
+    parser.add_argument("--case", metavar="N", type=int, help="SUBCASE to draw; default: the one with the largest pressure. History panels show all")
     parser.add_argument("--all", action="store_true", help="draw the pictures kept beside the decks of input")
     options = parser.parse_args(arguments)
     if options.all:

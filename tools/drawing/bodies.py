@@ -69,23 +69,23 @@ def proportion(run, window=None):
     return wide / high
 
 
-def draw(figure, run, heading, scale=1, window=None, yielded=False):
-    """Equivalent stress on the displaced bodies; yielded elements outlined; undeformed outlines if enlarged."""
+def draw(figure, run, heading, scale=1, window=None, yielded=None, strain=None):
+    """Equivalent stress, or plastic strain, on the displaced bodies; yielded elements outlined; undeformed outlines if enlarged."""
     axes = figure.subplots()
     place = run.x + scale * run.u
     limits = frame(place if window else np.concatenate([place, run.x]), window)
     shapes = [place[nodes] for nodes in run.around]
     seen = np.array([bool((shape.max(axis=0) > limits[:, 0]).all() and (shape.min(axis=0) < limits[:, 1]).all()) for shape in shapes])
-    stress = run.stress["equivalent_stress"]
+    value, name = (run.stress["equivalent_stress"], f"equivalent stress, {run.stress_unit()}") if strain is None else (strain, "accumulated plastic strain")
     wide, high = np.ptp(limits, axis=1)
     if run.solved:
-        drawn = PolyCollection(shapes, array=stress, cmap="viridis", clim=(0.0, np.quantile(stress[seen], 0.99) or 1.0), edgecolors="face",
+        drawn = PolyCollection(shapes, array=value, cmap="viridis", clim=(0.0, np.quantile(value[seen], 0.99) or 1.0), edgecolors="face",
                                linewidths=0.2)
         axes.add_collection(drawn)
         beside = wide < 2 * high
         bar = [1.04, 0.0, 0.05 * high / wide, 1.0] if beside else [0.0, -0.25 - 0.03 * wide / high, 1.0, 0.02 * wide / high]
         figure.colorbar(drawn, cax=axes.inset_axes(bar), extend="max", orientation="vertical" if beside else "horizontal",
-                        label=f"equivalent stress, {run.stress_unit()}")
+                        label=name)
     # Edges of very small elements would hide the colours: they are drawn fainter.
     sizes = np.array([np.ptp(shape, axis=0).min() for shape in shapes]) / max(wide, high)
     faint = np.clip((sizes / FAINT)**2, 0.0, 1.0)
@@ -96,8 +96,8 @@ def draw(figure, run, heading, scale=1, window=None, yielded=False):
     if scale != 1:
         axes.add_collection(LineCollection([run.x[list(ends)] for ends in outline], colors=GREY, linewidths=0.6))
     axes.add_collection(LineCollection([place[list(ends)] for ends in outline], colors="black", linewidths=0.6))
-    if yielded:
-        axes.add_collection(LineCollection([place[list(ends)] for ends in run.sides(run.plastic)], colors=RED, linewidths=1.1))
+    if yielded is not None:
+        axes.add_collection(LineCollection([place[list(ends)] for ends in run.sides(yielded)], colors=RED, linewidths=1.1))
     axes.plot(*place[run.bare].T, "s", ms=2, color=DARK)
     axes.set(xlim=limits[0], ylim=limits[1], aspect="equal")
     axes.locator_params(axis="x", nbins=int(np.clip(5 * wide / high, 1, 5)))

@@ -2,7 +2,7 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
-from drawing import bodies, history, pressures
+from drawing import bodies, history, loading, pressures
 from drawing.run import Refused
 from drawing.style import SMALL
 
@@ -19,14 +19,21 @@ def panels(run, formulas):
     if run.plastic.any():
         window = bodies.yielded_window(run)
         found.append(("yielded", width(bodies.proportion(run, window)),
-                      lambda figure: bodies.draw(figure, run, f"yielded (red): {run.plastic.sum()} of {len(run.plastic)} elements", 1, window, True)))
+                      lambda figure: bodies.draw(figure, run, f"yielded (red): {run.plastic.sum()} of {len(run.plastic)} elements", 1, window, run.plastic)))
+        if run.unloaded:
+            found.append(("yielded", width(bodies.proportion(run, window)),
+                          lambda figure: bodies.draw(figure, run, f"plastic strain, {run.unloaded}", 1, window, run.accumulated > 0.0, run.accumulated)))
         near = [view for view in near if view[1] < window[1] / 4]
     for view in near:
         found.append(("shape", width(bodies.proportion(run, view)),
                       lambda figure, view=view: bodies.draw(figure, run, "at the contact, x 1", 1, view)))
     for curves in pressures.curves_together(run):
         found.append(("contact", 1.0, lambda figure, curves=curves: pressures.draw(figure, run, curves, formulas)))
-    if len(run.history.get("iteration", ())) > 1:
+    if run.pressed:
+        found += [("history", 1.0, lambda figure: loading.draw(figure, run)), ("history", 1.0, lambda figure: loading.draw_pressures(figure, run))]
+        if run.unloaded:
+            found.append(("history", 1.0, lambda figure: loading.draw_residual(figure, run)))
+    elif len(run.history.get("iteration", ())) > 1:
         found.append(("history", 1.0, lambda figure: history.draw(figure, run)))
     return found
 

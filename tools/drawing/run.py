@@ -10,6 +10,7 @@ import tables
 TOP = pathlib.Path(__file__).resolve().parent.parent.parent
 PROGRAM = TOP / "build/release/epcont"
 sys.path.insert(0, str(TOP / "tests" / "independent"))
+from drawing import loading  # noqa: E402
 from deck import DeckError, at, ids, read, real  # noqa: E402
 
 #: Nodes of each element type in order around it, as positions among the nodes of its card.
@@ -41,9 +42,10 @@ class Run:
                 case = tables.case_of(pathlib.Path(place), self.path.stem, case)
             except ValueError as error:
                 raise Refused(f"{self.path}: {error}") from None
-            found = {name: tables.of_case(table(pathlib.Path(place) / f"{self.path.stem}.{name}.csv"), case)
-                     for name in ("nodes", "elements", "contact", "zones", "history")}
-            summary = tables.of_case(tables.rows(pathlib.Path(place) / f"{self.path.stem}.summary.csv"), case)
+            every = {name: table(pathlib.Path(place) / f"{self.path.stem}.{name}.csv")
+                     for name in ("nodes", "elements", "contact", "zones", "history", "summary", "increments", "plastic")}
+            found = {name: tables.of_case(rows, case) for name, rows in every.items()}
+            summary = found["summary"]
             self.status = next(row["value"] for row in summary if row["key"] == "status")
             self.title = title(pathlib.Path(place) / f"{self.path.stem}.lst") + (f"  SUBCASE {case}" if case is not None else "")
         try:
@@ -53,6 +55,7 @@ class Run:
         self.exit_status = run.returncode
         self.take_mesh(deck, found["nodes"], found["elements"])
         self.take_contact(deck, found["contact"], found["zones"])
+        self.take_history(every)
         self.history = {key: np.array([float(row[key]) for row in found["history"]]) for key in (found["history"] or [{}])[0]}
         self.young, self.nu = next((real(at(card, 2)), real(at(card, 4))) for card in deck.of("MAT1"))
         self.unit = {at(card, 1): at(card, 2) for card in deck.of("PARAM")}.get("UNITS", "")
@@ -69,21 +72,36 @@ class Run:
         for node in nodes:
             if int(node["node"]) not in axes:
                 self.u[self.row[int(node["node"])]] = float(node["ux"]), float(node["uy"])
-        self.around, number = [], {}
+        self.around, self.number = [], {}
         for kind, order in ROUND.items():
             for card in deck.of(kind):
-                number[int(card[1])] = len(self.around)
+                self.number[int(card[1])] = len(self.around)
                 self.around.append([self.row[int(card[3 + i])] for i in order])
         keys = ("sx", "sy", "sz", "equivalent_stress")
-        self.stress = {key: np.zeros(len(self.around)) for key in keys}
+        self.stress = {key: self.by_element(elements, key) for key in keys}
         self.plastic = np.zeros(len(self.around), bool)
         for element in elements:
-            e = number[int(element["element"])]
-            self.plastic[e] = element["state"] == "plastic"
-            for key in keys:
-                self.stress[key][e] = float(element[key])
+            self.plastic[self.number[int(element["element"])]] = element["state"] == "plastic"
         self.solved = bool(elements)
         self.bare = sorted(set(range(len(self.x))) - {node for nodes in self.around for node in nodes})
+
+    def take_history(self, every):
+        """Flow theory with contact: increments, pairs of all load cases, and the state after unloading."""
+        self.increments = every["increments"]
+        self.pressed = [row for row in every["contact"] if self.increments and float(row["pressure"] or 0.0) > 0.0]
+        found = loading.unloaded_case(self.increments) if self.pressed and self.solved else None
+        self.unloaded = f"SUBCASE {found[0]} ({100 * found[1]:.2g} % of the force)" if found else None
+        if found:
+            rows = tables.of_case(every["elements"], found[0])
+            self.residual = {key: self.by_element(rows, key) for key in ("sx", "sy")}
+            self.accumulated = self.by_element(tables.of_case(every["plastic"], found[0]), "accumulated")
+
+    def by_element(self, rows, key):
+        """A column of a table of elements, in their order; 0 for elements without a row."""
+        value = np.zeros(len(self.around))
+        for row in rows:
+            value[self.number[int(row["element"])]] = float(row[key])
+        return value
 
     def take_contact(self, deck, pairs, zones):
         """Contact lines: the pairs of each BCONP, and CGAPs whose nodes are neighbours on a boundary."""
