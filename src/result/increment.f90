@@ -72,7 +72,8 @@ contains
     real(wp) :: factor
 
     factor = safety*real(others, wp)/abs(increments - others)
-    errors%pressure = factor*abs(found%pressure - other%pressure)
+    if (min(found%pressure, other%pressure) >= 0.0_wp) &
+      errors%pressure = factor*abs(found%pressure - other%pressure)
     if (min(found%half_width, other%half_width) > 0.0_wp) &
       errors%half_width = factor*abs(found%half_width - other%half_width)
     errors%approach = factor*abs(found%approach - other%approach)

@@ -2,6 +2,7 @@
 !> component falls while the loads grow, and if stress deviators hardly turn (paper, introduction).
 module epcont_result_stress_path
   use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: rounded_off
   use epcont_element_kinematics, only: components
   use epcont_material_elasticity, only: equivalent_stress
   use epcont_result_answer, only: answer_type
@@ -57,12 +58,14 @@ contains
     real(wp), parameter :: degree = acos(-1.0_wp)/180.0_wp, &
       twice(components) = [1.0_wp, 1.0_wp, 1.0_wp, 2.0_wp]
     real(wp), dimension(components) :: u, v
-    real(wp) :: size_of_both
+    real(wp) :: cosine, size_of_both
 
     u = [a(:3) - sum(a(:3))/3.0_wp, a(4)]
     v = [b(:3) - sum(b(:3))/3.0_wp, b(4)]
     size_of_both = sqrt(sum(twice*u*u))*sqrt(sum(twice*v*v))
     angle = 0.0_wp
-    if (size_of_both > 0.0_wp) angle = acos(max(-1.0_wp, min(1.0_wp, sum(twice*u*v)/size_of_both)))/degree
+    if (size_of_both <= 0.0_wp) return
+    cosine = sum(twice*u*v)/size_of_both
+    if (1.0_wp - cosine > rounded_off) angle = acos(max(-1.0_wp, cosine))/degree
   end function angle_between
 end module epcont_result_stress_path

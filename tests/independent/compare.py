@@ -78,7 +78,7 @@ def compare(found, directory, stem, case):
         kind = kind.get(key) or kind.get(key.partition("_")[0])
         if kind and key not in summary:
             faults.append(f"summary: no {key}")
-        elif kind:
+        elif kind and summary[key]:   # empty: no boundary belongs to the pairs in contact
             pieces.setdefault(kind, []).append((value, float(summary[key]), f"summary {key}"))
     for kind, values in pieces.items():
         ours, told = np.array([v[0] for v in values]), np.array([v[1] for v in values])
