@@ -14,7 +14,7 @@ from verification.check import check, recompute  # noqa: E402
 from verification.run import Tables  # noqa: E402
 from verification.scene import Scene  # noqa: E402
 
-WORDS = {"valid": 0, "no equilibrium": 1, "overlap": 1, "not converged": 1, "limit load": 1, "rejected": 2, "out of memory": 3, "singular stiffness": 4,
+WORDS = {"valid": 0, "no equilibrium": 1, "overlap": 1, "not converged": 1, "limit load": 1, "contact lost": 0, "not solved": 1, "rejected": 2, "out of memory": 3, "singular stiffness": 4,
          "contact not found": 4, "not certified": 4, "ill-conditioned": 4}
 ANSWERS = {"valid", "not converged", "limit load", "not certified", "ill-conditioned"}
 BAD_OUTPUT = re.compile(r"Sanitizer|runtime error|Backtrace|Error termination|Fortran runtime|SIG[A-Z]{3,4}\b|glibc|corrupt|IEEE_|internal error")
@@ -85,12 +85,12 @@ class Run:
             return max(cases, key=WORDS.get)
         if len(lines) != 1:
             return None
-        return re.sub(r" at load factor .*", "", lines[0].split("  ")[0])
+        return re.sub(r" (?:at|after) load factor .*", "", lines[0].split("  ")[0])
 
     def words_of_cases(self, name):
         """Lines for each of several load cases."""
         found = [re.match(re.escape(name) + r" SUBCASE \d+  (.*?)(?:  |$)", line) for line in self.said]
-        return [re.sub(r" at load factor .*", "", one[1]) for one in found if one]
+        return [re.sub(r" (?:at|after) load factor .*", "", one[1]) for one in found if one]
 
     def told(self, name):
         """Lines of standard error for a deck: from the first line that names it to the next deck."""
@@ -122,7 +122,13 @@ def fault_of_deck(run, name, tolerance):
     cases = run.words_of_cases(name)
     if cases:   # tools/verify checks the content of their tables
         said = re.findall(rb"^\d+,status,(.*?),", files.get(".summary.csv", b""), re.M)
-        return None if sorted(text.decode() for text in said) == sorted(cases) else "the summary says other words of its cases"
+        if sorted(text.decode() for text in said) != sorted(case for case in cases if case != "not solved"):
+            return "the summary says other words of its cases"
+        if sorted(rows[0]["status"] for rows in cases_of(run, name, "cases").values()) != sorted(cases):
+            return "the table of cases says other words"
+        return fault_of_sequence(run, name) or next(filter(None, (
+            fault_of_certificate(run, name, tolerance, case) for case, values in cases_of(run, name, "summary").items()
+            if {row["key"]: row["value"] for row in values}["status"] == "valid")), None)
     for suffix in (".lst", ".summary.csv") + (".contact.csv", ".nodes.csv", ".history.csv") * (word in ANSWERS):
         if suffix not in files:
             return f"{word} without {suffix}"
@@ -162,19 +168,47 @@ def rows_of(run, name, table):
     return tables.rows(run.out / f"{name}.{table}.csv")
 
 
-def summary_of(run, name):
-    return tables.summary(run.out / f"{name}.summary.csv")
+def cases_of(run, name, table):
+    """Rows of each load case; none if there is no such table."""
+    found = {}
+    for row in rows_of(run, name, table) if (run.out / f"{name}.{table}.csv").exists() else []:
+        found.setdefault(row["subcase"], []).append(row)
+    return found
 
 
-def fault_of_certificate(run, name, tolerance):
+def summary_of(run, name, case=None):
+    if case is None:
+        return tables.summary(run.out / f"{name}.summary.csv")
+    return {row["key"]: row["value"] for row in cases_of(run, name, "summary")[case]}
+
+
+def fault_of_sequence(run, name):
+    """The increments of each load case follow each other, up to 1 if it is valid, and no accumulated plastic strain becomes smaller."""
+    for case, rows in cases_of(run, name, "increments").items():
+        factors = [number(row["load_factor"]) for row in rows]
+        if any(not a < b for a, b in zip([0.0] + factors, factors)):
+            return f"SUBCASE {case}: load factors do not grow"
+        if summary_of(run, name, case)["status"] == "valid" and factors[-1] != 1.0:
+            return f"SUBCASE {case}: valid, with a load factor of {factors[-1]}"
+    before = {}
+    for case, rows in cases_of(run, name, "plastic").items():
+        now = {row["element"]: number(row["accumulated"]) for row in rows}
+        largest = max(now.values(), default=0.0)
+        if any(now.get(element, 0.0) < value - 1e-12 * largest for element, value in before.items()):
+            return f"SUBCASE {case}: accumulated plastic strain has become smaller"
+        before = now
+    return None
+
+
+def fault_of_certificate(run, name, tolerance, case=None):
     """Compare the values of the certificate with its tolerance."""
-    summary = summary_of(run, name)
+    summary = summary_of(run, name, case)
     for key in RELATIVE:
         if not number(summary.get(key)) <= tolerance:
             return f"valid with {key} = {summary.get(key)}"
     if not number(summary.get("stress_off_curve")) <= max(tolerance, number(summary.get("stress_off_curve_limit"))):
         return f"valid with stress_off_curve = {summary.get('stress_off_curve')}"
-    rows = rows_of(run, name, "contact")
+    rows = tables.of_case(rows_of(run, name, "contact"), case)
     if rows:
         force = max(abs(number(row["force"])) for row in rows) or 1.0
         length = max([abs(number(row["initial_gap"])) for row in rows] + [abs(number(summary.get("max_displacement")))]) or 1.0

@@ -26,6 +26,7 @@ class Scene:
         self.six = pick.random() < 0.3
         self.four = not self.rings and not self.six and pick.random() < 0.4
         self.plane = pick.choice(["STRAIN", "STRESS"])
+        self.sequence = pick.random() < 0.3
         self.nodes = self.elements = 0
         self.step = pick.choice([1, 1, 1, 7, 1000])
         self.first = pick.choice([0, 0, 0, 100, 90000000])
@@ -74,17 +75,18 @@ class Scene:
         else:
             self.add("PSHELL", name, name, pick.choice([1.0, 0.1, 20.0]), *pick.choice([[], [], [-1] if self.plane == "STRAIN" or pick.random() < 0.1 else []]))
         self.add("MAT1", name, young, *pick.choice([("", nu), (young / 2 / (1 + nu), ""), ("", nu, 7.8e-9, 1.2e-5)]))
-        if pick.random() < 0.4:
+        if pick.random() < (0.7 if self.sequence else 0.4):
+            hardening = pick.choice([1, 1, 2, 2, 3]) if self.sequence or pick.random() < 0.2 else 1
             stress = young * 10.0 ** pick.uniform(-4, -2)
             if pick.random() < 0.6:
-                self.add("MATS1", name, "", pick.choice(["PLASTIC", "NLELAST"]), young * pick.choice([0.0, 0.001, 0.1, 1.0]),
-                         1, 1, stress)
+                kind = "PLASTIC" if hardening > 1 and pick.random() < 0.95 else pick.choice(["PLASTIC", "NLELAST"])
+                self.add("MATS1", name, "", kind, young * pick.choice([0.0, 0.001, 0.1, 1.0]), 1, hardening, stress)
             else:
                 points = [0.0, 0.0, stress / young, stress]
                 for _ in range(pick.randint(1, 4)):
                     points += [points[-2] + stress / young * pick.uniform(0.5, 5.0),
                                points[-1] + stress * pick.choice([0.0, 0.1, 0.4])]
-                self.add("MATS1", name, name, "PLASTIC", "", 1, 1, stress)
+                self.add("MATS1", name, name, "PLASTIC", "", 1, pick.choice([1] * 8 + [hardening]), stress)
                 self.add("TABLES1", name, *[""] * 7, *points, "ENDT")
         return young
 
@@ -102,7 +104,7 @@ def small_scene(pick):
                          ("TOL", ["1.-3", "1.-6", "0.5"]), ("MAXIT", ["1", "5", "60"]), ("NLOAD", ["1", "2", "5"]),
                          ("MUP", ["EXACT", "PAPER"]), ("SOLVER", ["AUTO", "BAND", "FRONTAL"]), ("UNITS", ["N-MM"]),
                          ("FLEXIB", ["AUTO", "INVERT"]), ("ORIGINAL", ["NO", "YES"])):
-        if pick.random() < 0.12:
+        if pick.random() < (0.02 if scene.sequence and name in ("NLOAD", "MUP", "ORIGINAL", "METHOD") else 0.12):
             scene.add("PARAM", name, pick.choice(values))
     columns = pick.randint(1, 4)
     left = pick.choice([0.0, 1.0, 1.0, 1.0, 30.0]) if scene.rings else pick.choice([0.0, -1.0])
@@ -126,6 +128,7 @@ def small_scene(pick):
         below = [at[i, rows] for i in range(own + 1)]
         y += size * (1.0 + pick.choice([0.0, 0.0, 1e-4, -1e-4, 0.1]))
     load(scene, below, young * size * 10.0 ** pick.uniform(-5, -1))
+    flow_theory(scene)
     return scene.deck
 
 
@@ -165,6 +168,34 @@ def load(scene, top, total):
         body_load(scene, total)
     if pick.random() < 0.3:
         ties(scene, top, total)
+
+
+def flow_theory(scene):
+    """PARAM HRFRAC and THEORY, NLPARM, and a sequence of load cases: parts of the loads, of both signs, and prescribed displacements."""
+    pick, deck = scene.pick, scene.deck
+    if any(card.data[5] == "3" for card in deck.of("MATS1")) != (pick.random() < 0.05):
+        scene.add("PARAM", "HRFRAC", pick.choice([0.0, 0.3, 0.3, 0.5, 0.5, 1.0, 1.5]))
+    if pick.random() < 0.05:
+        scene.add("PARAM", "THEORY", pick.choice(["FLOW", "FLOW", "TOTAL"]))
+    if not scene.sequence:
+        return
+    sets = [""] + [str(name) for name in range(11, 14)] * bool(deck.of("FORCE", "PLOADX1", "GRAV", "RFORCE", "MOMENT"))
+    for name, part in zip(sets[1:], (1.0, pick.choice([0.001, 0.3, 0.5, 1.0]), pick.choice([-1.0, -0.1, 0.0, 2.0]))):
+        scene.add("LOAD", name, 1.0, part, 1)
+    moved = deck.of("SPC")
+    if moved:
+        sets.append("14")
+        for card in moved:
+            for k in range(1, len(card.data), 3):
+                scene.add("SPCD", 14, *card.data[k:k + 2], pick.choice([-2.0, -0.5, 0.0, 1.0]) * float(card.data[k + 2] or 0.0))
+    for name in 1, 2:
+        scene.add("NLPARM", name, *pick.choice([(pick.randint(1, 6),), (pick.randint(1, 6), "", "", "", pick.choice([1, 3, 50]), "", "", pick.choice(["", 1e-3, 1e-6]))]))
+    head = [*pick.choice([("SOL 106", "CEND"), ("SOL 106", "CEND"), ("SOL 101", "CEND", "CNTNLSUB = YES")]), "SPC = 1"]
+    head += [line for line in deck.head if line.startswith("MPC")]
+    for case in range(1, pick.randint(1, 4) + 1):
+        chosen = pick.choice(sets if case > 1 else sets[1:] or sets)
+        head += [f"SUBCASE {case}", *[f"LOAD = {chosen}"] * bool(chosen), f"NLPARM = {pick.choice('12')}", *["BCONTACT = NONE"] * (pick.random() < 0.05)]
+    deck.head = [*head, "BEGIN BULK"]
 
 
 def ties(scene, top, total):
