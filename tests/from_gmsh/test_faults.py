@@ -52,8 +52,9 @@ top.pressure = 10.0
 """
 LINES = "its lines: floor, face, under, top, wall"
 POINTS = LINES + "; its points: corner"
-TOP = "use one of: material, body, support, load, platen, free, contact, case, PARAM, mesh, kind, title, units, gravity, spin, temperature, axis"
+TOP = "use one of: material, body, support, load, platen, free, contact, case, PARAM, mesh, kind, title, units, sequence, gravity, spin, temperature, increments, axis"
 CURVE = "give points of total strain and stress, the yield point first: curve = [[0.00114286, 240.0], [0.01, 260.0]]"
+HARDENING = 'give "isotropic", "kinematic", or the kinematic part from 0 to 1, such as hardening = 0.5'
 FORM = 'write key = 1.5, key = "text" or [table]; quote names with blanks or dots; give each key only once'
 
 #: A text of the model, its replacement, and the expected errors.
@@ -79,7 +80,7 @@ SCENE = [
     ("NU = 0.3", "NU = 0.3\nexpansion = 0.0\n[[case]]\ntemperature = { abov = 80.0 }",
      ["[case.1.temperature] abov: there is no body 'abov'", "use one of: below, above"]),
     ("[load]", "[[case]]\nspeed = 3.0\n[load]", ["[[case]] 1 speed: is not a key of this table",
-                                                "use one of: title, gravity, spin, temperature, factor, contact, load, support"]),
+                                                "use one of: title, gravity, spin, temperature, increments, factor, contact, load, support"]),
     ("[load]", "[[case]]\ncontact = 1\n[load]", ["[[case]] 1 contact: is 1", "write contact = false to switch contact off, or remove it"]),
     ("[load]", "[[case]]\nload.top = {}\n[load]", ["[case.1.load.top]: has no load", "add pressure = 10.0 or force = [0.0, -100.0]"]),
     ("[load]", "[[case]]\nsupport.floor.x = 0.1\n[load]",
@@ -97,6 +98,21 @@ SCENE = [
     ("NU = 0.3", "NU = 0.3\ncurve = [[0.002, 210.0]]",
      ["[material.steel] curve: its first point, [0.002, 210], is not on the elastic line", "give strain 0.001, which is 210 over E"]),
     ("NU = 0.3", "NU = 0.3\ncurve = [[0.001, 210.0], [0.01, 200.0]]", ["[material.steel] curve: does not rise at the point [0.01, 200]", CURVE]),
+    ("NU = 0.3", "NU = 0.3\nyield = 210.0\nhardening = 1.5", ["[material.steel] hardening: is 1.5", HARDENING]),
+    ("NU = 0.3", 'NU = 0.3\nyield = 210.0\nhardening = "prager"', ['[material.steel] hardening: is the text "prager"', HARDENING]),
+    ("NU = 0.3", 'NU = 0.3\nhardening = "kinematic"',
+     ["[material.steel] hardening: is hardening without a yield stress", "add a yield stress and H, such as yield = 240.0 and H = 4000.0"]),
+    ("NU = 0.3", "NU = 0.3\nhardening = 0.5\ncurve = [[0.001, 210.0], [0.01, 240.0], [0.02, 250.0]]",
+     ["[material.steel] hardening: is kinematic, but the curve has more than one slope beyond the yield point", "give yield and H instead of the curve"]),
+    ('NU = 0.3\n[body.below]\nmaterial = "steel"',
+     'NU = 0.3\nyield = 200.0\nhardening = 0.5\n[material.iron]\nE = 2e5\nNU = 0.3\nyield = 100.0\nhardening = 0.4\n[body.below]\nmaterial = "iron"',
+     ["[material.iron] hardening: is 0.4, but that of [material.steel] is 0.5",
+      "give the same part to all materials with mixed hardening: PARAM HRFRAC holds for all"]),
+    ("NU = 0.3", "NU = 0.3\nyield = 210.0\nhardening = 0.5\n[PARAM]\nHRFRAC = 0.5",
+     ["[PARAM] HRFRAC: is given together with the hardening of a material", "remove it"]),
+    ("units =", "sequence = true\nunits =", ["sequence: there are no load cases", "add a table [[case]] for each, or remove it"]),
+    ("units =", "sequence = 1\nunits =", ["sequence: is 1", "write sequence = true if each load case starts from the end of the one before, or remove it"]),
+    ("[load]", "[[case]]\nincrements = 0\n[load]", ["[[case]] 1 increments: is 0", "give a whole number from 1 to 10000, such as increments = 20"]),
     ("NU = 0.3", "NU = 0.3\ncurve = 210.0", ["[material.steel] curve: is not a list of points", CURVE]),
     ('[body.below]\nmaterial = "steel"', '[body.below]\nmaterial = "stele"',
      ["[body.below] material: there is no material 'stele'", "use one of: steel; did you mean 'steel'?; or add a table [material.stele]"]),

@@ -249,6 +249,28 @@ contact = [{ slave = "rim", master = "bed" }, { slave = "rim", master = "under" 
             for row in (row for row in rows if row["subcase"] == case):
                 self.near(row["pressure"], pressure, 1e-9)
 
+    def test_sequence(self):
+        """The lower block yields, is unloaded and loaded again. In plane stress it has the stress of the load; its plastic strain stays."""
+        text = (SCENES / "blocks.toml").read_text()
+        text = re.sub(r"(?m)^curve = .*", 'yield = 200.0\nH = 10000.0\nhardening = "kinematic"', text)
+        (self.place / "blocks.geo").write_text((SCENES / "blocks.geo").read_text())
+        for part, words in (('"kinematic"', "PLASTIC 10000.  1       2       200."), ("0.25", "PLASTIC 10000.  1       3       200.")):
+            (self.place / "history.toml").write_text("sequence = true\nincrements = 4\n" + text.replace('"kinematic"', part) +
+                                                     "\n[[case]]\n[[case]]\nfactor = 0.01\nincrements = 2\n[[case]]\n")
+            made = make(self.place / "history.toml", self.place / "history.dat")
+            self.assertEqual(made.returncode, 0, made.stderr)
+            deck = (self.place / "history.dat").read_text()
+            self.assertIn("CNTNLSUB = YES\nSUBCASE 1\nSUBTITLE = case 1\nLOAD = 1\nNLPARM = 1\nSUBCASE 2\nSUBTITLE = case 2\nLOAD = 2\nNLPARM = 2\n", deck)
+            self.assertIn(words, deck)
+            self.assertEqual("PARAM   HRFRAC  .25" in deck, part == "0.25")
+            run = subprocess.run([PROGRAM, self.place / "history.dat", "--quiet"], capture_output=True, text=True, cwd=self.place)
+            self.assertEqual(run.returncode, 0, run.stderr)
+            rows = list(csv.DictReader((self.place / "history.increments.csv").read_text().splitlines()))
+            self.assertEqual([sum(row["subcase"] == case for row in rows) for case in "123"], [4, 2, 4])
+            first, left, again = (float([row["approach"] for row in rows if row["subcase"] == case][-1]) for case in "123")
+            self.near(again, first, 1e-9)
+            self.assertGreater(abs(left), 0.1 * abs(first))
+
     def test_dovetail(self):
         """The flanks carry the centrifugal load, whatever their angle; the transverse force is the load over the tangent of the angle. It grows as the square
         of the angular velocity."""
@@ -311,9 +333,9 @@ contact = [{ slave = "rim", master = "bed" }, { slave = "rim", master = "under" 
         faults = Faults("wheel.toml")
         scene = read_scene(self.place / "wheel.toml", faults)
         self.assertEqual(faults.errors + faults.notes, [])
-        for name in ("title", "mesh", "kind", "units", "materials", "bodies", "supports", "cases", "platens", "free", "contacts", "parameters"):
+        for name in ("title", "mesh", "kind", "units", "materials", "bodies", "supports", "cases", "sequence", "platens", "free", "contacts", "parameters"):
             self.assertTrue(getattr(scene, name), name)
-        for name in ("title", "gravity", "spin", "temperature", "loads", "moved"):
+        for name in ("title", "gravity", "spin", "temperature", "increments", "loads", "moved"):
             self.assertTrue(any(getattr(case, name) for case in scene.cases), name)
 
     def test_parameters(self):

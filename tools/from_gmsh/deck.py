@@ -183,12 +183,13 @@ class Maker:
 
     def case_control(self):
         """Cards of each load case; a single one has no SUBCASE."""
-        lines = ["CNTNLSUB = NO"] if len(self.scene.cases) > 1 else []
+        lines = [f"CNTNLSUB = {'YES' if self.scene.sequence else 'NO'}"] if len(self.scene.cases) > 1 else []
         for k, case in enumerate(self.scene.cases, 1):
             if len(self.scene.cases) > 1:
                 lines += [f"SUBCASE {k}", f"SUBTITLE = {case.title}"]
             lines += [f"LOAD = {k}"] if case.has_loads else []
             lines += [f"TEMPERATURE(LOAD) = {k}"] if case.temperature is not None else []
+            lines += [f"NLPARM = {k}"] if case.increments else []
             lines += [] if case.contact else ["BCONTACT = NONE"]
         return lines
 
@@ -204,12 +205,13 @@ class Maker:
             material = self.scene.materials[name]
             lines += [f"$ material {name}"] + card("MAT1", number, material.young, None, material.poisson, material.density,
                                                        material.expansion, material.reference)
+            rule = {0.0: 1, 1.0: 2}.get(material.kinematic, 3)   # isotropic, kinematic, both
             if material.curve:
                 points = [0.0, 0.0] + [value for point in material.curve for value in point]
-                lines += card("MATS1", number, number, "PLASTIC", None, 1, 1, material.stress)
+                lines += card("MATS1", number, number, "PLASTIC", None, 1, rule, material.stress)
                 lines += card("TABLES1", number, *[None] * 7, *points, "ENDT")
             elif material.stress:
-                lines += card("MATS1", number, None, "PLASTIC", material.hardening, 1, 1, material.stress)
+                lines += card("MATS1", number, None, "PLASTIC", material.hardening, 1, rule, material.stress)
         return lines
 
     def supports(self):
@@ -241,6 +243,7 @@ class Maker:
             lines += ["$ axis"] + card("GRID", axis, None, *self.scene.axis, 0.0) + card("SPC1", 1, 12, axis)
         for k, case in enumerate(self.scene.cases, 1):
             lines += [f"$ {case.where} {case.title}"] if case.where else []
+            lines += card("NLPARM", k, case.increments) if case.increments else []
             lines += self.loads_of_case(k, case) + self.body_loads(k, case, axis) + self.temperatures(k, case)
         return lines
 

@@ -17,6 +17,7 @@ PARAMETERS = {"RULE": str, "METHOD": str, "MUP": str, "SOLVER": str, "TOL": floa
               "MAXIT": int, "NLOAD": int, "THEORY": str, "HRFRAC": float, "FLEXIB": str, "ORIGINAL": str, "WTMASS": float}
 #: N/mm2 of one unit of stress, for units whose moduli can be checked.
 STRESS_UNITS = {"N-MM": 1.0, "MPA": 1.0, "N-M": 1e-6, "SI": 1e-6, "KN-M": 1e-3, "KN-MM": 1e3, "KGF-MM": 9.80665}
+MOST_INCREMENTS = 10000   # of an NLPARM
 SOFTEST, STIFFEST = 1e-3, 2e6   # N/mm2: softer than gels, stiffer than diamond
 
 
@@ -27,6 +28,7 @@ class Material:
     stress: float = None   # yield stress; None if elastic
     hardening: float = 0.0
     curve: list = None
+    kinematic: float = 0.0    # kinematic part of the hardening; 0: isotropic
     density: float = None
     expansion: float = None   # thermal strain per degree
     reference: float = None   # temperature of zero thermal strain
@@ -45,6 +47,7 @@ class Case:
     factor: float = 1.0                             # table of these loads
     moved: dict = field(default_factory=dict)       # line or point: {"1": value}, for displacements that the model fixes
     contact: bool = True
+    increments: int = None                          # of its loads; None: as PARAM says
 
     @property
     def has_loads(self):
@@ -62,6 +65,7 @@ class Scene:
     supports: dict = field(default_factory=dict)    # line or point: {"1": value}
     axis: list = None                               # points of the axes of rotation; None: the origin
     cases: list = field(default_factory=list)       # the model's own one, or those of its [[case]] tables
+    sequence: bool = False                          # each case starts from the end of the one before
     platens: dict = field(default_factory=dict)     # line: directions
     free: dict = field(default_factory=dict)        # platen or point: directions
     contacts: list = field(default_factory=list)    # (slave, master)
@@ -187,6 +191,7 @@ def read_scene(path, faults: Faults):
     scene.title = top.word("title", "Two cylinders", "a line of text", str.isprintable) or path.stem
     scene.units = top.word("units", "N-MM", "a word of at most 8 characters that begins with a letter; values are not converted",
                            lambda word: re.fullmatch(r"[A-Za-z][!-+\--~]{0,7}", word))
+    scene.sequence = read_sequence(top, tables["case"], faults)
     own = Case(title=scene.title)
     read_actions(top, own, faults)
     scene.axis = read_pair(top, "axis", "x and y of the axis of rotation", "[0.0, -250.0]", faults)
@@ -210,6 +215,15 @@ def read_scene(path, faults: Faults):
     return scene
 
 
+def read_sequence(top, cases, faults):
+    value = top.take("sequence")
+    if value is not None and not isinstance(value, bool):
+        faults.add("sequence", f"is {said(value)}", "write sequence = true if each load case starts from the end of the one before, or remove it")
+    elif value and cases is None:
+        faults.add("sequence", "there are no load cases", "add a table [[case]] for each, or remove it")
+    return value is True
+
+
 def each(table, faults):
     """The tables in a table."""
     return [(key, Table(value, f"{table.name[:-1]}.{key}]", faults)) for key, value in table.left.items()]
@@ -222,6 +236,7 @@ def read_materials(table, scene, faults):
         stress = own.number("yield", "240.0", "the yield stress, above zero", positive)
         hardening = own.number("H", "4000.0", "the stress over plastic strain, 0 or above", lambda value: value >= 0.0)
         curve = own.take("curve")
+        kinematic = read_hardening(own, faults)
         density = own.number("density", "7.85e-9", "the mass per unit of volume, above zero", positive)
         expansion = own.number("expansion", "1.2e-5", "the thermal strain per degree")
         reference = own.number("reference", "20.0", "the temperature without thermal strain")
@@ -237,8 +252,28 @@ def read_materials(table, scene, faults):
             if stress is not None or hardening is not None:
                 faults.add(own.where("curve"), "is given together with yield or H", "give either yield and H, or a curve that begins with the yield point")
             stress = curve[0][1] if curve else None
+            if kinematic and curve and len(curve) > 2:
+                faults.add(own.where("hardening"), "is kinematic, but the curve has more than one slope beyond the yield point",
+                           "give yield and H instead of the curve")
+        elif kinematic and stress is None:
+            faults.add(own.where("hardening"), "is hardening without a yield stress", "add a yield stress and H, such as yield = 240.0 and H = 4000.0")
         check_units(own, young, stress, scene, faults)
-        scene.materials[name] = Material(young, poisson, stress, hardening or 0.0, curve, density, expansion, reference)
+        scene.materials[name] = Material(young, poisson, stress, hardening or 0.0, curve, kinematic, density, expansion, reference)
+    mixed = {name: own.kinematic for name, own in scene.materials.items() if 0.0 < own.kinematic < 1.0}
+    if len(set(mixed.values())) > 1:
+        first, *_, last = mixed
+        faults.add(f"[material.{last}] hardening", f"is {mixed[last]:g}, but that of [material.{first}] is {mixed[first]:g}",
+                   "give the same part to all materials with mixed hardening: PARAM HRFRAC holds for all")
+
+
+def read_hardening(own, faults):
+    """Kinematic part of the hardening."""
+    value = own.take("hardening")
+    part = {"isotropic": 0.0, "kinematic": 1.0}.get(value) if isinstance(value, str) else real(value)
+    if value is not None and (part is None or not 0.0 <= part <= 1.0):
+        faults.add(own.where("hardening"), f"is {said(value)}", 'give "isotropic", "kinematic", or the kinematic part from 0 to 1, such as hardening = 0.5')
+        return 0.0
+    return part or 0.0
 
 
 def read_curve(curve, own, young, faults):
@@ -328,7 +363,11 @@ def read_actions(table, case, faults):
         case.temperature = {name: bodies.number(name, "80.0", "the temperature of a body") for name in list(bodies.left)}
     elif "temperature" in given:
         case.temperature = table.number("temperature", "80.0", "the temperature of all bodies, or a table: temperature.BODY = 80.0")
-    table.known += [key for key in ("gravity", "spin", "temperature") if key not in table.known]
+    if "increments" in given:
+        case.increments = table.take("increments")
+        if not isinstance(case.increments, int) or isinstance(case.increments, bool) or not 1 <= case.increments <= MOST_INCREMENTS:
+            faults.add(table.where("increments"), f"is {said(case.increments)}", f"give a whole number from 1 to {MOST_INCREMENTS}, such as increments = 20")
+    table.known += [key for key in ("gravity", "spin", "temperature", "increments") if key not in table.known]
 
 
 def read_cases(tables, own, faults):
@@ -339,7 +378,7 @@ def read_cases(tables, own, faults):
     for k, given in enumerate(tables if isinstance(tables, list) else [tables], 1):
         where = f"[[case]] {k}"
         table = Table(given, where, faults)
-        case = Case(where, f"case.{k}.", f"case {k}", own.gravity, own.spin, own.temperature, own.loads)
+        case = Case(where, f"case.{k}.", f"case {k}", own.gravity, own.spin, own.temperature, own.loads, increments=own.increments)
         case.title = table.word("title", f"case {k}", "a line of text", str.isprintable) or case.title
         read_actions(table, case, faults)
         case.factor = table.number("factor", "0.5", "a factor of the loads")
@@ -403,6 +442,11 @@ def read_parameters(table, scene, faults):
         scene.parameters[name] = float(value) if fits and kind is float else value
     table.left = {name: value for name, value in table.left.items() if name not in PARAMETERS}
     table.known = list(PARAMETERS)
+    mixed = [own.kinematic for own in scene.materials.values() if 0.0 < own.kinematic < 1.0]
+    if mixed and "HRFRAC" in scene.parameters:
+        faults.add(table.where("HRFRAC"), "is given together with the hardening of a material", "remove it")
+    elif mixed:
+        scene.parameters["HRFRAC"] = mixed[0]
     for name, instead in (("PLANE", "kind"), ("UNITS", "units")):
         if table.left.pop(name, None) is not None:
             faults.add(table.where(name), "is a key of the model", f"write {instead} = ... before the first table")
