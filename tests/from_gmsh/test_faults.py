@@ -103,7 +103,7 @@ SCENE = [
     ("NU = 0.3", 'NU = 0.3\nhardening = "kinematic"',
      ["[material.steel] hardening: is hardening without a yield stress", "add a yield stress and H, such as yield = 240.0 and H = 4000.0"]),
     ("NU = 0.3", "NU = 0.3\nhardening = 0.5\ncurve = [[0.001, 210.0], [0.01, 240.0], [0.02, 250.0]]",
-     ["[material.steel] hardening: is kinematic, but the curve has more than one slope beyond the yield point", "give yield and H instead of the curve"]),
+     ["[material.steel] hardening: is kinematic, but the curve has more than two points", "give yield and H instead of the curve"]),
     ('NU = 0.3\n[body.below]\nmaterial = "steel"',
      'NU = 0.3\nyield = 200.0\nhardening = 0.5\n[material.iron]\nE = 2e5\nNU = 0.3\nyield = 100.0\nhardening = 0.4\n[body.below]\nmaterial = "iron"',
      ["[material.iron] hardening: is 0.4, but that of [material.steel] is 0.5",

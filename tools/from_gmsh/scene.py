@@ -253,7 +253,7 @@ def read_materials(table, scene, faults):
                 faults.add(own.where("curve"), "is given together with yield or H", "give either yield and H, or a curve that begins with the yield point")
             stress = curve[0][1] if curve else None
             if kinematic and curve and len(curve) > 2:
-                faults.add(own.where("hardening"), "is kinematic, but the curve has more than one slope beyond the yield point",
+                faults.add(own.where("hardening"), "is kinematic, but the curve has more than two points",
                            "give yield and H instead of the curve")
         elif kinematic and stress is None:
             faults.add(own.where("hardening"), "is hardening without a yield stress", "add a yield stress and H, such as yield = 240.0 and H = 4000.0")
