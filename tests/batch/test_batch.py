@@ -65,6 +65,22 @@ class Whole(Case):
                 self.assertIn("2 decks, 3 load cases in ", run.stdout)
                 self.assertIn("cases.dat SUBCASE 3: no equilibrium: the load moves the body of GRID 1", run.stdout)
 
+    def test_sequences(self):
+        """A load case in which the last contact opens has results and exit status 0; those after it have rows without results."""
+        text = (ROOT / "input/hertz/hertz330_unloaded.dat").read_text().replace("LOAD    12      1.      .001 ", "LOAD    12      1.      -.1  ")
+        (self.place / "three.dat").write_text(text)
+        (self.place / "two.dat").write_text(text.partition("SUBCASE 3")[0] + "BEGIN BULK" + text.partition("BEGIN BULK")[2])
+        for options in [], ["--one-table"]:
+            with self.subTest(options):
+                run = self.run_it(1, "two.dat", "three.dat", "-o", "out", *options)
+                rows = self.table("out")
+                self.assertEqual([(row["subcase"], row["status"]) for row in rows],
+                                 [("1", "valid"), ("2", "contact lost"), ("1", "valid"), ("2", "contact lost"), ("3", "not solved")])
+                self.assertEqual([bool(row["p_max"]) for row in rows], [True, True, True, True, False])
+                self.assertIn("two.dat SUBCASE 2: contact lost: no contact is left after load factor 0.9062", run.stdout)
+                self.assertIn("three.dat SUBCASE 3: not solved: it starts from the end", run.stdout)
+        self.run_it(0, "two.dat", "-o", "lost")
+
     def test_titles_and_warnings_of_load_cases(self):
         """SUBTITLE and LABEL, those above the first SUBCASE for all; a warning of a case is in its row, even if the deck has only notes."""
         cards = SMALL.read_text().split("BEGIN BULK")[1]

@@ -12,7 +12,9 @@ CASE_COLUMNS = ["subcase", "subtitle", "label"]
 SUMMARY = "summary_"
 TAKEN = ("status", "warnings", "max_pressure", "max_pressure_is")
 ANSWERED = {"valid", "no equilibrium", "overlap", "not converged", "limit load", "singular stiffness", "contact not found", "ill-conditioned",
-            "not certified"}   # last words of a complete listing
+            "not certified", "contact lost", "not solved"}   # last words of a complete listing
+VALID = ("valid", "contact lost")   # exit status 0
+NOT_SOLVED = re.compile(r" SUBCASE (\d+): (not solved): ")   # on standard error; the summary does not have such load cases
 NOT_RUN = "not run"
 KILLED = "killed"              # sent from outside: the deck may be run again
 NO_FAULT = re.compile(r": warning: |: \d+ warnings?(?: \(\d+ shown\))?$")
@@ -27,8 +29,9 @@ def row_of(deck, stem, ended, one_table=False):
     row.update(deck=deck.path, exit_status=ended.code if ended.code >= 0 else "",
                seconds=f"{ended.seconds:.3f}", memory_MB=f"{ended.memory / 1024:.1f}" if ended.memory else "")
     listing, cases = read_text(stem + ".lst"), read_summary(stem + ".summary.csv")
-    words = [summary.get("status", "") for summary in cases.values()] or [""]
-    row["status"], row["message"] = judge(ended, listing, next((word for word in words if word != "valid"), "valid"))
+    cases.update((case, {"status": word}) for case, word in NOT_SOLVED.findall(ended.said))
+    words = sorted([summary.get("status", "") for summary in cases.values()] or [""], key=lambda word: (word in VALID, word == "valid"))
+    row["status"], row["message"] = judge(ended, listing, words[0])
     if row["status"] in ANSWERED:
         words = titles(deck.path) if len(cases) > 1 else {}
         found = [{**case_row(case, listing, summary, ended, one_table), **words.get(case, {})} for case, summary in cases.items()]
@@ -86,7 +89,7 @@ def judge(ended, listing, word):
         return "refused", said
     if ended.code not in (0, 1, 4):
         return "internal error", said or f"exit status {ended.code}"
-    if not whole(listing, word) or (word == "valid") != (ended.code == 0):
+    if not whole(listing, word) or (word in VALID) != (ended.code == 0):
         return "incomplete", f"exit status {ended.code} without a whole listing" + (f": {said}" if said else "")
     return word, said
 
@@ -102,7 +105,9 @@ def whole(listing, word):
     """Is the listing complete? The program renames it when it is finished, so an incomplete one is from another writer."""
     if word not in ANSWERED or not listing.startswith("epcont ") or not listing.endswith("\n"):
         return False
-    return "\nACCURACY" in listing if word == "valid" else "\n  *NOT VALID*  " in listing
+    if word == "not solved":
+        return f"  {word}  " in listing
+    return "\nACCURACY" in listing if word in VALID else "\n  *NOT VALID*  " in listing
 
 
 def first_fault(said):
