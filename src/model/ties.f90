@@ -158,7 +158,8 @@ contains
         j = model%constraints%sum_of(component(i), node(i))
         if (j == 0) cycle
         if (state(j) == begun) then
-          call found%add_error(of_equation, equation(row), 0, ': '// &
+          ! The row may be that of a platen; a circle has an equation.
+          call found%add_error(of_equation, maxval(equation, mask=state == begun), 0, ': '// &
                                freedom(model, component(i), node(i))//' would follow itself', &
                                'equations that do not go round in a circle')
           model%constraints%sum_of(component(i), node(i)) = 0
