@@ -51,6 +51,7 @@ module epcont_load_history
     procedure, private :: is_fine_enough
     procedure, private :: take_as_other
     procedure, private :: errors
+    procedure, private :: end_figures
     procedure :: is_flow
     procedure, private :: end_of
     procedure, private :: add_increment
@@ -62,7 +63,7 @@ contains
   pure subroutine begin_case(self)
     class(loaded_model), intent(inout) :: self
 
-    self%loads = self%model%loads
+    if (self%iteration%yields) self%loads = self%model%loads   ! else the path has one step, which keeps them
     if (allocated(self%increment_error)) deallocate (self%increment_error)
   end subroutine begin_case
 
@@ -83,7 +84,7 @@ contains
     self%certificate = no_certificate
     plan = self%iteration
     if (plan%yields) plan%load_steps = load_steps
-    self%model%loads = self%loads
+    if (plan%yields) self%model%loads = self%loads
     call self%begin_replay()
     associate (kept => self%kept, answer => self%answer)
       plan%keeps = kept%another
@@ -139,7 +140,7 @@ contains
 
     is_fine_enough = .true.
     if (.not. (self%answer%converged .and. self%certificate%valid .and. allocated(self%other))) return
-    if (size(self%increment) == 0 .or. self%answer%lost_contact) return
+    if (self%answer%lost_contact) return
     found = self%errors()
     associate (wanted => self%model%controls%accuracy)
       if (size(self%answer%contact%force) > 0) then
@@ -154,8 +155,7 @@ contains
   subroutine take_as_other(self)
     class(loaded_model), intent(inout) :: self
 
-    self%other = self%increment(size(self%increment))
-    self%other%stress = self%answer%stress
+    self%other = self%end_figures()
     self%other_steps = self%steps
     self%other_end = self%end_of()
     deallocate (self%kept%linear)   ! it has the tangent of the end
@@ -164,12 +164,17 @@ contains
   !> Errors by the size of the increments, from both runs.
   pure type(increment_errors) function errors(self)
     class(loaded_model), intent(in) :: self
-    type(increment_record) :: found
 
-    found = self%increment(size(self%increment))
-    found%stress = self%answer%stress
-    errors = errors_of_increments(found, self%other, self%steps, self%other_steps)
+    errors = errors_of_increments(self%end_figures(), self%other, self%steps, self%other_steps)
   end function errors
+
+  !> Figures at the end of a load case, with the stresses.
+  pure type(increment_record) function end_figures(self)
+    class(loaded_model), intent(in) :: self
+
+    end_figures = increment_of(self%answer, size(self%answer%history))
+    end_figures%stress = self%answer%stress
+  end function end_figures
 
   !> Follow the loads in another number of increments, for their error.
   subroutine follow_others(self, watch)
@@ -195,8 +200,7 @@ contains
       call path%finish(kept%linear, kept%virgin, answer)
       if (answer%converged .and. path%is_complete()) then
         call self%find_results(watch)
-        self%other = increment_of(answer, size(answer%history))
-        self%other%stress = answer%stress
+        self%other = self%end_figures()
         self%other_end = self%end_of()
       end if
       deallocate (kept%linear)   ! it has the tangent of the end

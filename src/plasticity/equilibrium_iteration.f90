@@ -57,7 +57,7 @@ module epcont_plasticity_equilibrium_iteration
     type(pivot_record), allocatable :: pivot(:)         !! kept pivots of all solves
     type(solved_state), private :: about             !! state about which the law is linear
     type(iteration_record), private :: now          !! the last solve
-    !> Stresses of the first solve: of elastic bodies, if no load step was before [components, points]
+    !> Total theory: stresses of the first solve, of elastic bodies [components, points]
     real(wp), allocatable :: first_stress(:, :)
     logical, allocatable :: touching(:)             !! active set, from which the next search starts [pairs]
     real(wp), allocatable, private :: force(:)      !! the last contact forces [force] [pairs]
@@ -181,7 +181,8 @@ contains
       call self%judge(scene, found, watch)
       travel = maxval(abs(found%displacement))
       if (iteration == 1) farthest = far_away*travel
-      if (.not. allocated(self%first_stress)) self%first_stress = found%point_stress
+      if (self%linear%materials%yields .and. .not. (scene%model%controls%flow_theory .or. &
+          allocated(self%first_stress))) self%first_stress = found%point_stress
       ! Do not report a diverged state: its numbers may be close to overflow.
       self%runs_away = .not. self%converged .and. scene%model%sections%has_flat_curve() .and. &
         travel > farthest
