@@ -63,7 +63,7 @@ contains
   pure subroutine begin_case(self)
     class(loaded_model), intent(inout) :: self
 
-    if (self%iteration%yields) self%loads = self%model%loads   ! else the path has one step, which keeps them
+    if (self%iteration%follows) self%loads = self%model%loads   ! else the path has one step, which keeps them
     if (allocated(self%increment_error)) deallocate (self%increment_error)
   end subroutine begin_case
 
@@ -83,8 +83,8 @@ contains
     self%answer = none
     self%certificate = no_certificate
     plan = self%iteration
-    if (plan%yields) plan%load_steps = load_steps
-    if (plan%yields) self%model%loads = self%loads
+    if (plan%follows) plan%load_steps = load_steps
+    if (plan%follows) self%model%loads = self%loads
     call self%begin_replay()
     associate (kept => self%kept, answer => self%answer)
       plan%keeps = kept%another
@@ -98,7 +98,7 @@ contains
         if (self%is_unbalanced()) call self%refine(refinements, watch)
         if (.not. self%certificate%valid) exit
         call self%add_increment(path%iterations())
-        call path%commit(kept%linear, answer)
+        call path%commit(self%planned_model, kept%linear, answer)
         self%replayed = self%certificate%history
       end do
       call path%finish(kept%linear, kept%virgin, answer)
@@ -195,7 +195,7 @@ contains
       do
         call path%advance(self%planned_model, kept%linear, answer, watch)
         if (.not. answer%converged .or. answer%lost_contact .or. path%is_complete()) exit
-        call path%commit(kept%linear, answer)
+        call path%commit(self%planned_model, kept%linear, answer)
       end do
       call path%finish(kept%linear, kept%virgin, answer)
       if (answer%converged .and. path%is_complete()) then
@@ -227,7 +227,7 @@ contains
 
     last%loads = self%model%loads
     last%state = self%answer%solved_state
-    call self%kept%linear%materials%commit(self%answer%point)
+    if (self%iteration%yields) call self%kept%linear%materials%commit(self%answer%point)
     call move_alloc(self%kept%linear%materials%committed, last%history)
   end function end_of
 
@@ -267,11 +267,11 @@ contains
     can_start = allocated(self%start) .or. .not. self%has_memory()
   end function can_start
 
-  !> Does the model yield by flow theory?
+  !> Are the loads followed in increments: by flow theory, or with friction?
   pure logical function is_flow(self)
     class(loaded_model), intent(in) :: self
 
-    is_flow = self%model%controls%flow_theory .and. self%iteration%yields
+    is_flow = self%model%controls%flow_theory .and. self%iteration%follows
   end function is_flow
 
   !> Does the answer of a load case depend on those before?

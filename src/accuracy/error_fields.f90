@@ -93,7 +93,7 @@ contains
     work%unit_loads => unit_loads
     allocate (field%smooth(components, table%places), field%element(scene%model%mesh%elements), &
               field%missing(size(unit_loads%unit)), source=0.0_wp)
-    pairs = new_incidence(scene%model%bodies_of_pairs(), scene%model%mesh%bodies)
+    pairs = new_incidence(scene%model%bodies_of_rows(), scene%model%mesh%bodies)
     allocate (work%total(4, size(unit_loads%unit)), source=0.0_wp)
     kept = 0.0_wp
     elements = scene%model%mesh%elements_of_bodies()

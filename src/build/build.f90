@@ -12,7 +12,7 @@ module epcont_build_build
   use epcont_build_temperatures, only: read_temperatures
   use epcont_build_tie_cards, only: read_equations, read_springs
   use epcont_contact_geometry_complete, only: complete_model
-  use epcont_deck_card_kinds, only: card_bconp, card_blseg, card_celas1, card_celas2, card_cgap, &
+  use epcont_deck_card_kinds, only: card_bconp, card_bfric, card_blseg, card_celas1, card_celas2, card_cgap, &
       card_cord2r, card_grav, card_grid, card_load, card_mat1, card_mats1, card_mpcadd, card_nlparm, &
       card_param, card_pelas, card_pgap, card_pshell, card_psolid, card_rbe2, card_rforce, card_spc, &
       card_spc1, card_tables1
@@ -30,8 +30,8 @@ module epcont_build_build
   public :: build_model, tell
 
   !> Cards with ids of their own.
-  integer, parameter :: own_ids(11) = [card_grid, card_mat1, card_mats1, card_tables1, card_pgap, &
-      card_cord2r, card_blseg, card_bconp, card_load, card_mpcadd, card_nlparm]
+  integer, parameter :: own_ids(12) = [card_grid, card_mat1, card_mats1, card_tables1, card_pgap, &
+      card_cord2r, card_blseg, card_bconp, card_load, card_mpcadd, card_nlparm, card_bfric]
 
   !> Fields of parts of a body load: item_acceleration, item_centre, item_spin_up.
   character(len=*), parameter :: body_load_field(3) = ['N1  ', 'G   ', 'RACC']
@@ -122,6 +122,7 @@ contains
                         'PSHELL or PSOLID', faults)
       call note_unnamed(deck, card_tables1, 1, ids(card_mats1, 2), 'MATS1', faults)
       call note_unnamed(deck, card_pgap, 1, ids(card_cgap, 2), 'CGAP', faults)
+      call note_unnamed(deck, card_bfric, 1, ids(card_bconp, 6), 'BCONP', faults)
       call note_unnamed(deck, card_cord2r, 1, ids(card_cgap, cid), 'CGAP', faults)
       call note_unnamed(deck, card_pelas, 1, ids(card_celas1, 2), 'CELAS1', faults)
       call note_unnamed(deck, card_pelas, 5, ids(card_celas1, 2), 'CELAS1', faults)

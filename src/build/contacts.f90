@@ -4,9 +4,9 @@ module epcont_build_contacts
   use epcont_base_text, only: text_of
   use epcont_base_tolerances, only: lost_digits
   use epcont_build_reference, only: card_index, index_of, resolve
-  use epcont_deck_card_kinds, only: card_bconp, card_blseg, card_cgap, card_cord2r, card_pgap
+  use epcont_deck_card_kinds, only: card_bconp, card_bfric, card_blseg, card_cgap, card_cord2r, card_pgap
   use epcont_deck_deck, only: deck_type
-  use epcont_model_arrays, only: scene_type, set_pairs
+  use epcont_model_arrays, only: line_couple, scene_type, set_pairs
   use epcont_model_finding, only: findings, of_couple
   use epcont_model_load_cases, only: contact_all, contact_none
   implicit none
@@ -24,8 +24,10 @@ contains
     type(findings), intent(inout) :: found     !! errors are added
     !> x-axes in the plane of the systems: the basic one, number 0, and those of CORD2R
     real(wp) :: axis(2, 0:deck%card(card_cord2r)%count)
+    logical :: has_friction   ! PARAM FRICTION
     integer :: i, k
 
+    has_friction = deck%parameter_word('FRICTION') /= 'NO'
     axis = spread([1.0_wp, 0.0_wp], 2, size(axis, 2))
     do i = 1, deck%card(card_cord2r)%count
       if (deck%card(card_cord2r)%sound(i)) call read_system()
@@ -38,6 +40,7 @@ contains
     do k = 1, 2
       call resolve(deck, card_bconp, 1 + k, index_of(deck, card_blseg), found, data%couple%line(k))
     end do
+    if (has_friction) call read_friction(deck, data%couple, found)
     do i = 1, size(data%line)
       data%line(i)%is_named = any(data%couple%line(1) == i .or. data%couple%line(2) == i)
       call read_line()
@@ -78,8 +81,9 @@ contains
     subroutine read_pairs()
       integer, dimension(deck%card(card_cgap)%count) :: property, system
       integer :: i, k, node(2, size(system))
-      real(wp) :: gap(size(system)), normal(2, size(system))
+      real(wp) :: friction(size(system)), gap(size(system)), normal(2, size(system))
 
+      friction = 0.0_wp
       gap = 0.0_wp
       normal = 0.0_wp
       associate (cgap => deck%card(card_cgap))
@@ -89,11 +93,15 @@ contains
         end do
         call resolve(deck, card_cgap, cgap%column('CID'), index_of(deck, card_cord2r), found, system)
         do i = 1, cgap%count
-          if (property(i) > 0) gap(i) = deck%card(card_pgap)%number('U0', property(i))
+          if (property(i) > 0) then
+            gap(i) = deck%card(card_pgap)%number('U0', property(i))
+            if (has_friction) friction(i) = deck%card(card_pgap)%number('MU1', property(i))
+          end if
           if (cgap%has('CID', i)) normal(:, i) = axis(:, system(i))
         end do
         associate (pairs => merge(0, cgap%count, chosen == contact_none))
           call set_pairs(data, node(:, :pairs), normal(:, :pairs), gap(:pairs))
+          data%friction = friction(:pairs)
         end associate
       end associate
       data%gap_by_geometry = deck%parameter_word('GAPGEOM') == 'YES'
@@ -122,4 +130,28 @@ contains
       end associate
     end subroutine read_line
   end subroutine read_contacts
+
+  !> Read the friction of BCONP, and check PGAP: pairs stick and slip with the same coefficient.
+  subroutine read_friction(deck, couple, found)
+    type(deck_type), intent(in) :: deck
+    type(line_couple), intent(inout) :: couple(:)
+    type(findings), intent(inout) :: found
+    integer :: bfric(size(couple)), i
+
+    associate (pgap => deck%card(card_pgap))
+      do i = 1, pgap%count
+        if (.not. pgap%has('MU2', i)) cycle
+        if (abs(pgap%number('MU2', i) - pgap%number('MU1', i)) <= 0.0_wp) cycle
+        call found%add_error(card_pgap, i, pgap%column('MU2'), &
+          ': '//pgap%entry%field_text(pgap%column('MU2'))//' differs from MU1', &
+          'leave MU2 blank: pairs stick and slip with the same coefficient')
+      end do
+    end associate
+    associate (bconp => deck%card(card_bconp))
+      call resolve(deck, card_bconp, bconp%column('FRICID'), index_of(deck, card_bfric), found, bfric)
+    end associate
+    do i = 1, size(bfric)
+      if (bfric(i) > 0) couple(i)%friction = deck%card(card_bfric)%number('MU1', bfric(i))
+    end do
+  end subroutine read_friction
 end module epcont_build_contacts

@@ -7,6 +7,9 @@
 !>     w >= 0 if R = lower,   w = 0 if R is between,   w <= 0 if R = upper
 !>
 !> Normal forces are between zero and infinity. F is symmetric and semidefinite; it may be singular.
+!>
+!> With friction, tangential rows follow those of the pairs. Their force T is between -mu R and mu R of their
+!> pair, and their gap is the slip of this load step.
 module epcont_contact_problem
   use epcont_base_kinds, only: wp
   use epcont_flexibility_motion_matrix, only: motion_matrix
@@ -41,6 +44,10 @@ module epcont_contact_problem
     integer, allocatable :: body(:)             !! of each mode [m]
     !> Bounds of the forces; not allocated: zero and infinity, which is huge(1.0_wp) [force] [n]
     real(wp), allocatable :: lower(:), upper(:)
+    !> Coefficient of friction and pair of each tangential row; the last rows are tangential. Not allocated:
+    !! no friction [tangential rows]
+    real(wp), allocatable :: friction(:)
+    integer, allocatable :: pair_of(:)
   contains
     procedure :: between
   end type contact_problem
@@ -59,7 +66,8 @@ module epcont_contact_problem
     real(wp), allocatable :: change(:)       !! forces minus the known forces [force] [n]
     real(wp), allocatable :: gap(:)          !! w [length] [n]
     real(wp), allocatable :: approach(:)     !! q [m]
-    logical, allocatable :: touching(:)      !! closed pairs, with or without force [n]
+    !> Closed pairs, with or without force; tangential rows that stick [n]
+    logical, allocatable :: touching(:)
     logical, allocatable :: at_upper(:)      !! the force is at its upper bound [n]
     !> y with P'y > 0 and A y <= 0, if there is no equilibrium; if no set passed, with A y only slightly
     !! positive, if that is the cause [m]
@@ -74,6 +82,13 @@ module epcont_contact_problem
     integer :: pivots = 0                    !! pairs exchanged by the contact solver that found the set
     integer :: restarts = 0                  !! fresh starts after a set failed the test at full load
     type(pivot_record), allocatable :: history(:)  !! the first pivots of CONRY, at most `history_limit`
+    !> Taken out of the arrays above by `split`: force, slip and sticking of the tangential rows
+    real(wp), allocatable :: friction_force(:)   !! [force] [tangential rows]
+    real(wp), allocatable :: slip(:)             !! [length] [tangential rows]
+    logical, allocatable :: sticking(:)          !! [tangential rows]
+  contains
+    procedure :: split
+    procedure :: row_forces
   end type contact_solution
 
 contains
@@ -86,7 +101,38 @@ contains
 
     between = force > 0.0_wp
     if (allocated(self%lower)) between = force > self%lower .and. force < self%upper
+    if (.not. allocated(self%friction)) return
+    associate (n => size(force) - size(self%friction))
+      between(n + 1:) = abs(force(n + 1:)) < self%friction*force(self%pair_of)
+    end associate
   end function between
+
+  !> Separate the tangential rows from those of the pairs.
+  pure subroutine split(self, pairs)
+    class(contact_solution), intent(inout) :: self   !! with all rows
+    integer, intent(in) :: pairs                     !! number of pairs
+
+    if (size(self%force) == pairs) return
+    if (allocated(self%friction_force)) deallocate (self%friction_force, self%slip, self%sticking)
+    allocate (self%friction_force, source=self%force(pairs + 1:))
+    allocate (self%slip, source=self%gap(pairs + 1:))
+    allocate (self%sticking, source=self%touching(pairs + 1:))
+    self%force = self%force(:pairs)
+    self%gap = self%gap(:pairs)
+    self%touching = self%touching(:pairs)
+    self%at_upper = self%at_upper(:pairs)
+    self%overlapping = self%overlapping(:pairs)
+    self%indeterminate = self%indeterminate(:pairs)
+  end subroutine split
+
+  !> Forces of all rows: of the pairs, then of friction [force] [n].
+  pure function row_forces(self) result(force)
+    class(contact_solution), intent(in) :: self
+    real(wp), allocatable :: force(:)
+
+    force = self%force
+    if (allocated(self%friction_force)) force = [self%force, self%friction_force]
+  end function row_forces
 
   !> Make a solution without contact.
   pure type(contact_solution) function new_solution(pairs, motions) result(solution)

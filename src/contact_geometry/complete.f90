@@ -63,6 +63,7 @@ contains
     where (abs(model%mesh%x) < least_cause) model%mesh%x = 0.0_wp
     call complete_pairs(model, found)
     call find_line_contacts(model, found)
+    if (found%errors == 0) call model%contact%add_tangential_rows()
     call check_controls(model, found)
     call check_loads(model, cases, found)
     if (found%errors > 0) return
@@ -112,10 +113,15 @@ contains
   !> Check that MUP PAPER has the secant stiffness and plane strain, that flow theory has a method for
   !! histories, and that kinematic hardening has flow theory and a bilinear curve.
   pure subroutine check_controls(model, found)
-    type(model_type), intent(in) :: model   !! the model
+    type(model_type), intent(inout) :: model
     type(findings), intent(inout) :: found   !! errors are added
     integer :: s
 
+    if (model%contact%has_friction()) call found%add_error(of_theory, 0, 0, ': friction is not ready yet', &
+                                                           'write PARAM FRICTION NO')
+    ! With friction the answer depends on the path of the loads, also if nothing yields.
+    if (model%contact%has_friction()) model%controls%flow_theory = model%controls%flow_theory .or. .not. &
+      any([(allocated(model%sections%curve(s)%strain), s=1, size(model%sections%curve))])
     if (model%controls%flow_theory) then
       if (model%controls%paper_ratio) call found%add_error(of_theory, 0, 2, &
         ': FLOW does not go with MUP PAPER, a ratio of total theory', 'MUP EXACT, or THEORY TOTAL')

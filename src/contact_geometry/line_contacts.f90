@@ -58,6 +58,7 @@ contains
     end do
     contacts = 0
     if (found%errors == 0) call join_couples()
+    if (found%errors > 0) contacts = 0
     allocate (model%contact%line_contact(contacts))
     do c = 1, contacts
       contact = new_contact(model, pack([(i, i=1, size(number))], number == c))
@@ -135,6 +136,15 @@ contains
         end do
       end do
       call sets%numbers(number, contacts)
+      associate (friction => model%contact%couple%friction)
+        do i = 2, size(friction)
+          k = findloc(number(:i - 1), number(i), dim=1)
+          if (k == 0) cycle
+          if (abs(friction(i) - friction(k)) > 0.0_wp) call found%add_error(of_couple, i, 1, &
+            ': its lines continue those of '//model%name_of(of_couple, k)//', whose friction differs', &
+            'give both the same friction, or lines that do not meet')
+        end do
+      end associate
     end subroutine join_couples
   end subroutine find_line_contacts
 
@@ -152,6 +162,7 @@ contains
       contact%slave = sides_of(couple%line(1))
       contact%master = sides_of(couple%line(2))
     end associate
+    contact%friction = model%contact%couple(couples(1))%friction
     contact%search = model%controls%search
     if (contact%search == 0.0_wp) contact%search = default_search* &
       maxval([(contact%slave%chord_length(k), k=1, size(contact%slave%element)), &

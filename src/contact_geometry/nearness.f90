@@ -279,6 +279,7 @@ contains
     end do
     call end_pairs(model)
     call balance_pairs(model)
+    call model%contact%add_tangential_rows()
     paired = model%contact%pairs > before
   end subroutine pair_nodes_that_came_near
 end module epcont_contact_geometry_nearness

@@ -10,6 +10,6 @@ module epcont_deck_card_kinds
     card_cquad4 = 19, card_ctrax3 = 20, card_ctrax6 = 21, card_psolid = 22, card_blseg = 23, &
     card_bconp = 24, card_cquad8 = 25, card_load = 26, card_spcd = 27, card_temp = 28, &
     card_tempd = 29, card_grav = 30, card_rforce = 31, card_moment = 32, card_mpc = 33, card_mpcadd = 34, &
-    card_celas1 = 35, card_celas2 = 36, card_pelas = 37, card_nlparm = 38, &
-    card_kinds = 38   !! number of cards
+    card_celas1 = 35, card_celas2 = 36, card_pelas = 37, card_nlparm = 38, card_bfric = 39, &
+    card_kinds = 39   !! number of cards
 end module epcont_deck_card_kinds

@@ -118,8 +118,8 @@ module epcont_deck_catalogue
     '  KA; real ignored; closed stiffness: contact is exact', &
     '  KB; real ignored; open stiffness', &
     '  KT; real ignored; tangential stiffness', &
-    '  MU1; real only_zero; static friction | there is no friction', &
-    '  MU2; real only_zero; kinetic friction | there is no friction', &
+    '  MU1; real zero from=0 to=100; coefficient of friction', &
+    '  MU2; real from=0 to=100; of kinetic friction: as MU1, or blank', &
     '  TMAX; real ignored; largest penetration', &
     '  MAR; real ignored; largest adjustment', &
     '  TRMIN; real ignored; smallest penetration', &
@@ -183,7 +183,7 @@ module epcont_deck_catalogue
     '  MASTER; id; master line (BLSEG)', &
     '  ; blank;', &
     '  SFAC; real ignored; stiffness factor: contact is exact', &
-    '  FRICID; system only_zero; friction | there is no friction', &
+    '  FRICID; system; its BFRIC; blank: no friction', &
     '  PTYPE; whole from=1 to=1 default=1; forces from slave and master: 1', &
     '  CID; system only_zero; system of the contact plane: the basic one', &
     'CQUAD8: eight-node quadrilateral', &
@@ -288,7 +288,12 @@ module epcont_deck_catalogue
     '  MAXITER; whole from=1 to=100000 for=MATS1; iterations of an increment; default PARAM MAXIT', &
     '  ; any ignored times=2; tests of convergence, output', &
     '  EPSU; real positive below=1 for=MATS1; instead of PARAM TOL', &
-    '  ; any ignored times=15; other tests, line search, step control']
+    '  ; any ignored times=15; other tests, line search, step control', &
+    'BFRIC: friction of a BCONP', &
+    '  FID; id; friction', &
+    '  FSTIF; real ignored; stiffness of sticking: exact', &
+    '  ; blank;', &
+    '  MU1; real zero from=0 to=100; coefficient of friction']
 
   character(len=*), parameter :: cards(*) = [scene_cards, load_cards]
 
@@ -321,6 +326,7 @@ module epcont_deck_catalogue
     ' if they are left out', &
     'CORNER; real positive to=180 for=BCONP; edges of a boundary line with a larger angle between them'// &
     ' meet at a corner; default: decided from the neighbouring angles [degree]', &
+    'FRICTION; for=CGAP/BCONP word YES NO; NO: all contact without friction; default YES', &
     'WTMASS; real positive for=GRAV/RFORCE; factor of all mass: of RHO and NSM; default 1.0', &
     'LGDISP; whole from=-1 to=-1 ignored; no effect | displacements are small', &
     'INREL; whole only_zero ignored; no effect | supports and contact hold bodies']

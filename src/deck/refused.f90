@@ -35,7 +35,7 @@ module epcont_deck_refused
     'BCRIGID BCNURBS BCNURB2 BCMOVE BCSCAP: rigid bodies defined by their shape | use fixed GRIDs along'// &
     ' it, in a BLSEG', &
     'BSURF BSURFS BCPROP1: surfaces of elements | use BLSEG: the nodes of the line in their order', &
-    'BFRIC BCTPARF FRICTION CFRICT: friction | remove the card: contact is frictionless', &
+    'BCTPARF FRICTION CFRICT: friction | use MU1 of PGAP, or BCONP with FRICID and BFRIC', &
     'BOLT BOLTFOR BOLTFRC BOLTLD BOLTSEQ: bolts with a preload | use an overlap in the joint: PGAP with'// &
     ' U0 below 0.0, or a shorter shank', &
     'CONTACT BGSET BGADD BGPARM BLDOUT: glued contact | use common nodes, or MPC', &

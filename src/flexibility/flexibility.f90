@@ -107,10 +107,10 @@ contains
   pure function gap_opening(model, displacement) result(opening)
     type(model_type), intent(in) :: model
     real(wp), intent(in) :: displacement(:, :)  !! [directions, nodes]
-    real(wp) :: opening(model%contact%pairs)
+    real(wp) :: opening(model%contact%rows())
     integer :: k
 
-    do k = 1, model%contact%pairs
+    do k = 1, model%contact%rows()
       opening(k) = model%contact%opening(k, displacement(:, &
                                                          model%contact%row_node(model%contact%row_start(k): &
           model%contact%row_start(k + 1) - 1)))
@@ -122,11 +122,11 @@ contains
   pure function terms_of_openings(model, displacement) result(terms)
     type(model_type), intent(in) :: model
     real(wp), intent(in) :: displacement(:, :)  !! [directions, nodes]
-    real(wp) :: terms(model%contact%pairs)
+    real(wp) :: terms(model%contact%rows())
     integer :: i, k
 
     terms = 0.0_wp
-    do k = 1, model%contact%pairs
+    do k = 1, model%contact%rows()
       do i = model%contact%row_start(k), model%contact%row_start(k + 1) - 1
         terms(k) = terms(k) + abs(model%contact%row_weight(i))*maxval(abs(displacement(:, &
           model%contact%row_node(i))))
@@ -142,7 +142,7 @@ contains
     integer :: i, k, node
 
     nodal = 0.0_wp
-    do k = 1, model%contact%pairs
+    do k = 1, model%contact%rows()
       do i = model%contact%row_start(k), model%contact%row_start(k + 1) - 1
         node = model%contact%row_node(i)
         nodal(:, node) = nodal(:, node) + force(k)*model%contact%row_weight(i)*model%contact%normal(:, k)
@@ -236,7 +236,7 @@ contains
     !> Compute the closure of each pair by the modes of the bodies that have its nodes.
     subroutine close_gaps()
       real(wp) :: moved(directions, maxval([0, &
-        model%contact%row_start(2:) - model%contact%row_start(:model%contact%pairs)]))
+        model%contact%row_start(2:) - model%contact%row_start(:model%contact%rows())]))
       integer, allocatable :: pair(:), motion(:)   ! row and column of each entry of A
       real(wp), allocatable :: by(:)
       real(wp) :: travel(motions%count)
@@ -247,7 +247,7 @@ contains
               motions%first(model%mesh%body(model%contact%row_node)))
       allocate (pair(n), motion(n), by(n))
       entries = 0
-      do k = 1, model%contact%pairs
+      do k = 1, model%contact%rows()
         associate (node => model%contact%row_node(model%contact%row_start(k):model%contact%row_start(k + &
           1) - 1), &
                    weight => model%contact%row_weight(model%contact%row_start(k):model%contact%row_start(k + &
@@ -268,7 +268,7 @@ contains
           end do
         end associate
       end do
-      closing = new_motion_matrix(model%contact%pairs, motions%count, pair(:entries), motion(:entries), &
+      closing = new_motion_matrix(model%contact%rows(), motions%count, pair(:entries), motion(:entries), &
                                   by(:entries))
       closing%travel = merge(travel, 1.0_wp, travel > 0.0_wp)
     end subroutine close_gaps

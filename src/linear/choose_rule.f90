@@ -22,13 +22,18 @@ contains
     if (.not. plan%joined) allocate (simplex_rule :: rule)
     rule%explains = .not. plan%joined
     rule%threads = plan%threads
-    rule%problem%initial_gap = scene%model%contact%initial_gap
-    rule%problem%lower = 0.0_wp*scene%model%contact%initial_gap
-    rule%problem%upper = spread(huge(1.0_wp), 1, scene%model%contact%pairs)
-    if (allocated(scene%model%contact%force_bound)) then
-      rule%problem%lower = scene%model%contact%force_bound(1, :)
-      rule%problem%upper = scene%model%contact%force_bound(2, :)
-    end if
+    associate (contact => scene%model%contact)
+      rule%problem%lower = spread(0.0_wp, 1, contact%rows())
+      rule%problem%upper = spread(huge(1.0_wp), 1, contact%rows())
+      if (allocated(contact%force_bound)) then
+        rule%problem%lower = contact%force_bound(1, :)
+        rule%problem%upper = contact%force_bound(2, :)
+      end if
+      if (contact%has_friction()) then
+        rule%problem%friction = contact%friction(contact%sliding)
+        rule%problem%pair_of = contact%sliding
+      end if
+    end associate
     rule%problem%travel = scene%motions%travels(scene%model)
     rule%problem%body = scene%motions%body
     call rule%see_case(scene)

@@ -123,6 +123,7 @@ contains
     class(contact_rule), intent(inout) :: self
     type(planned_model), intent(in) :: scene
 
+    self%problem%initial_gap = [scene%model%contact%initial_gap, -scene%model%contact%slipped]
     self%travel_gap = gap_opening(scene%model, scene%model%loads%travel)
     call see_motions(scene%model, scene%motions, self%problem%motion, self%resultant)
   end subroutine see_case

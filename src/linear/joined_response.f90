@@ -66,9 +66,10 @@ contains
 
     many = size(loads%motion) + size(loads%share, 2)
     if (allocated(probe%first)) many = 0
-    pressed = pack([(k, k=1, scene%model%contact%pairs)], problem%between(state%contact%force))
-    allocate (found%load(scene%motions%count, many + 2), found%opening(scene%model%contact%pairs, many + 2), &
-              found%force(scene%model%contact%pairs, many + 2), &
+    pressed = pack([(k, k=1, scene%model%contact%rows())], problem%between(state%contact%force))
+    allocate (found%load(scene%motions%count, many + 2), &
+              found%opening(scene%model%contact%rows(), many + 2), &
+              found%force(scene%model%contact%rows(), many + 2), &
               found%displacement(directions, many + 2, scene%model%mesh%nodes), source=0.0_wp)
     associate (probes => [many + 1, many + 2])
       if (.not. allocated(probe%first)) then
@@ -76,7 +77,7 @@ contains
           found%load(loads%motion(k), k) = 1.0_wp
         end do
         found%opening(:, size(loads%motion) + 1:many) = -loads%share
-        found%opening(:, probes) = first_columns(pressed, scene%model%contact%pairs)
+        found%opening(:, probes) = first_columns(pressed, scene%model%contact%rows())
         call found%solve(springs, scene, bodies, at_contact=.true.)
         probe%first = found%force(:, probes)
       end if
@@ -163,7 +164,7 @@ contains
     class(solved_state), intent(in) :: state
     real(wp), intent(out) :: x(:, :)
     !> Sums of magnitudes of gap contributions, by deformations and by rigid displacements [length]
-    real(wp) :: sums(scene%model%contact%pairs, 2)
+    real(wp) :: sums(scene%model%contact%rows(), 2)
     real(wp) :: of_column(2, 2)   ! by sums and columns
     integer :: k
 
@@ -229,7 +230,7 @@ contains
     type(planned_model), intent(in) :: scene
     class(factored_bodies), intent(in) :: bodies    !! factored with the active set
     type(half_solved_body), allocatable :: half(:)
-    real(wp) :: force(scene%model%contact%pairs)
+    real(wp) :: force(scene%model%contact%rows())
     integer :: j, k
 
     are_unique = .true.

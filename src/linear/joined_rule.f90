@@ -102,7 +102,7 @@ contains
         end associate
       else
         allocate (state%deformation(directions, scene%model%mesh%nodes), source=0.0_wp)
-        state%contact = new_solution(scene%model%contact%pairs, scene%motions%count)
+        state%contact = new_solution(scene%model%contact%rows(), scene%motions%count)
       end if
       if (.not. self%rigid%balanced) then
         state%contact%state = contact_no_equilibrium
@@ -125,7 +125,7 @@ contains
     class(joined_rule), intent(in) :: self
     type(planned_model), intent(in) :: scene
     type(solved_state), intent(inout) :: state
-    real(wp) :: terms(scene%model%contact%pairs)   ! sum of magnitudes of the terms of gaps
+    real(wp) :: terms(scene%model%contact%rows())   ! sum of magnitudes of the terms of gaps
 
     associate (contact => state%contact, motion => self%problem%motion)
       contact%at_upper = .false.

@@ -55,7 +55,7 @@ contains
     integer, intent(in) :: threads               !! number of threads
     logical, intent(out) :: sound                !! the factor can be used
     class(stopwatch), intent(inout) :: watch     !! measures the time
-    real(wp) :: wanted(scene%model%contact%pairs)
+    real(wp) :: wanted(scene%model%contact%rows())
     integer :: k
 
     wanted = merge(self%gamma, 0.0_wp, self%closed)
@@ -102,7 +102,7 @@ contains
 
     call measure(scene, bodies, stiffness, bodies%spring%norm)
     softest = stiffness_of_softest()
-    new%gamma = [(of_pairs*softer_side(k), k=1, scene%model%contact%pairs)]
+    new%gamma = [(of_pairs*softer_side(k), k=1, scene%model%contact%rows())]
     where (new%gamma <= 0.0_wp) new%gamma = of_pairs*softest   ! nothing deforms: no entry in the matrix
     springs = size(scene%numbering%body(1)%spring%start) - 1
     bodies%spring%stiffness = [spread(0.0_wp, 1, springs - size(scene%model%constraints%spring)), &
@@ -116,7 +116,7 @@ contains
     end do
     call hold_suports(scene, new%hold, bodies)
     new%compliance = half_plane*of_pairs/new%gamma
-    new%closed = spread(.true., 1, scene%model%contact%pairs)
+    new%closed = spread(.true., 1, scene%model%contact%rows())
 
   contains
 
@@ -228,10 +228,10 @@ contains
     associate (reference => scene%model%constraints%reference, c => scene%motions%component(motion), &
                node => scene%motions%node(motion))
       if (c == angle) then
-        spring_of_motion = scene%model%contact%pairs + count(reference) + &
+        spring_of_motion = scene%model%contact%rows() + count(reference) + &
                            count(scene%model%constraints%platen(:platen_of(scene, motion))%reference)
       else
-        spring_of_motion = scene%model%contact%pairs + count(reference(:, :node - 1)) + &
+        spring_of_motion = scene%model%contact%rows() + count(reference(:, :node - 1)) + &
           count(reference(:c, node))
       end if
     end associate

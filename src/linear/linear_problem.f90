@@ -70,8 +70,9 @@ contains
     class(stopwatch), intent(inout) :: watch       !! measures the time
 
     call self%rule%solve(scene, self%factored_bodies, start, state, watch)
+    if (state%contact%state == contact_solved) call complete(self, scene, state)
+    call state%contact%split(scene%model%contact%pairs)
     if (state%contact%state /= contact_solved) return
-    call complete(self, scene, state)
     call watch%lap(stage_displacements)
   end subroutine solve
 
@@ -91,6 +92,7 @@ contains
     call self%rule%refine(scene, self%factored_bodies, refined, found, watch)
     if (.not. found) return
     call complete(self, scene, refined)
+    call refined%contact%split(scene%model%contact%pairs)
     change = max(relative_change(state%displacement, refined%displacement, of=refined%displacement), &
                  force_change(state%contact, refined%contact, of=refined%contact))
     if (allocated(refined%point)) deallocate (refined%point)   ! belongs to the strain before
@@ -103,7 +105,7 @@ contains
     type(linear_problem), intent(in) :: self
     type(planned_model), intent(in) :: scene
     type(solved_state), intent(inout) :: state
-    real(wp), dimension(scene%model%contact%pairs) :: gap, rounding
+    real(wp), dimension(scene%model%contact%rows()) :: gap, rounding
 
     state%point_stress = self%law%stress(state%strain)
     associate (contact => state%contact, travel => self%rule%travel_gap, problem => self%rule%problem)
@@ -122,7 +124,10 @@ contains
                              problem%motion%times(contact%approach, magnitudes=.true.) + &
                              terms_of_openings(scene%model, state%deformation)) + &
                  rounding_of_pairs(scene, state)
-      contact%touching = problem%between(contact%force) .or. merge(-gap, gap, contact%at_upper) <= rounding
+      associate (n => scene%model%contact%pairs, pressed => problem%between(contact%force))
+        contact%touching(:n) = pressed(:n) .or. &
+                               merge(-gap(:n), gap(:n), contact%at_upper(:n)) <= rounding(:n)
+      end associate
       contact%gap = merge(0.0_wp, gap, contact%touching)
     end associate
   end subroutine complete
@@ -131,7 +136,7 @@ contains
   pure function rounding_of_pairs(scene, state) result(rounding)
     type(planned_model), intent(in) :: scene
     type(solved_state), intent(in) :: state
-    real(wp) :: rounding(scene%model%contact%pairs)
+    real(wp) :: rounding(scene%model%contact%rows())
     real(wp) :: off(0:scene%model%mesh%bodies)
     integer, allocatable :: body(:, :)
     integer :: i, k
@@ -143,7 +148,7 @@ contains
                      cancelled*maxval(abs(state%displacement(:, i))))
       end associate
     end do
-    body = scene%model%bodies_of_pairs()
+    body = scene%model%bodies_of_rows()
     rounding = [(maxval(off(body(:, k))), k=1, size(rounding))]
   end function rounding_of_pairs
 end module epcont_linear_linear_problem

@@ -108,7 +108,7 @@ contains
     type(planned_model), intent(in) :: scene
     class(factored_bodies), intent(in) :: bodies
 
-    associate (yields => scene%numbering%body%can_yield, n => scene%model%contact%pairs)
+    associate (yields => scene%numbering%body%can_yield, n => scene%model%contact%rows())
       if (.not. allocated(self%problem%flexibility)) then
         allocate (self%problem%flexibility(n, n), source=0.0_wp)
         call add_flexibilities(scene, bodies%body, .not. yields, self%threads, self%problem%flexibility)
@@ -176,7 +176,7 @@ contains
     class(stopwatch), intent(inout) :: watch
     logical, allocatable :: guess(:)
 
-    call deform(scene, bodies, scene%model%loads%load + pair_forces(scene%model, state%contact%force) &
+    call deform(scene, bodies, scene%model%loads%load + pair_forces(scene%model, state%contact%row_forces()) &
                 - bodies%operator%nodal_forces(scene%model, bodies%law%stress(state%strain)) &
                 - spring_forces(scene%model, state%deformation), state)
     call watch%lap(stage_displacements)
@@ -184,7 +184,7 @@ contains
     call move_alloc(state%contact%touching, guess)
     associate (problem => self%problem, &
                opening => gap_opening(scene%model, state%deformation) + self%travel_gap)
-      problem%known_force = state%contact%force
+      problem%known_force = state%contact%row_forces()
       problem%known_gap = problem%initial_gap + opening
       problem%load_gap = opening - matmul(problem%flexibility, problem%known_force)
     end associate
@@ -232,7 +232,7 @@ contains
     type(scaled_problem) :: scaled
 
     call self%scale_pressed(state%contact, scaled)
-    found = find_sensitivity(scaled, self%basis, state%contact%force, &
+    found = find_sensitivity(scaled, self%basis, state%contact%row_forces(), &
                              abs(self%problem%initial_gap) + abs(self%problem%load_gap) + &
                              self%problem%motion%times(state%contact%approach, magnitudes=.true.), condition)
   end function sensitivity
@@ -244,17 +244,19 @@ contains
     type(contact_solution), intent(in) :: contact
     type(scaled_problem), intent(out) :: scaled
     type(rigid_start) :: start
-    integer, allocatable :: pressed(:)
+    integer, allocatable :: row(:)
+    logical, allocatable :: pressed(:)
     integer :: k
 
     scaled = scale_problem(self%problem)
+    pressed = self%problem%between(contact%row_forces())
     if (any(contact%motion_free)) then
-      pressed = pack([(k, k=1, size(contact%force))], self%problem%between(contact%force))
-      call find_rigid_start(dense_motions(scaled%motion%rows(pressed)), 0*scaled%resultant, &
-                            0*scaled%gap(pressed), start)
+      row = pack([(k, k=1, size(pressed))], pressed)
+      call find_rigid_start(dense_motions(scaled%motion%rows(row)), 0*scaled%resultant, &
+                            0*scaled%gap(row), start)
       call drop_motions(scaled, start%redundant)
     end if
-    call renew_basis(self%basis, scaled, self%problem%between(contact%force))
+    call renew_basis(self%basis, scaled, pressed)
   end subroutine scale_pressed
 
   !> Diagonal of F.

@@ -29,7 +29,7 @@ contains
     integer :: b, many
 
     associate (model => scene%model, numbering => scene%numbering)
-      pair = new_incidence(model%bodies_of_pairs(), model%mesh%bodies)
+      pair = new_incidence(model%bodies_of_rows(), model%mesh%bodies)
       many = threads_for(merge(numbering%body%operations, 0.0_wp, chosen), &
                          spread(.false., 1, size(chosen)), threads)
       !$omp parallel do num_threads(many) if (many > 1) schedule(dynamic) ordered private(own)

@@ -55,6 +55,7 @@ module epcont_model_arrays
   !> Two lines that may come into contact (BCONP).
   type :: line_couple
     integer :: line(2) = 0                    !! slave and master, by their positions
+    real(wp) :: friction = 0.0_wp             !! coefficient of friction
     integer :: id = 0                         !! of its card
   end type line_couple
 
@@ -116,6 +117,7 @@ module epcont_model_arrays
     integer, allocatable :: pair_node(:, :)     !! nodes A and B that name the pair [2, pairs]
     real(wp), allocatable :: normal(:, :)       !! unit, along which B is pushed [2, pairs]
     real(wp), allocatable :: initial_gap(:)     !! [length] [pairs]
+    real(wp), allocatable :: friction(:)        !! coefficient of friction; not allocated: 0 [pairs]
     !> The distance from A to B along the normal is added to these gaps (PARAM GAPGEOM YES).
     logical :: gap_by_geometry = .false.
     type(named_line), allocatable :: line(:)    !! lines of nodes [any]
@@ -215,6 +217,7 @@ contains
     scene%thickness = given%thickness
     if (allocated(given%density)) scene%density = given%density
     call set_pairs(scene, given%pair_node, given%normal, given%initial_gap)
+    if (allocated(given%friction)) scene%friction = given%friction(:)
     scene%pressure = given%pressure(:)
     if (allocated(given%temperature)) then
       scene%temperature = given%temperature(:)

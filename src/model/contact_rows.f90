@@ -24,6 +24,7 @@ module epcont_model_contact_rows
     !> Master nodes that got a pair because the loads moved them near the slave
     integer, allocatable :: came_near(:)
     logical :: is_wider = .false.             !! `search` has grown because nodes came near
+    real(wp) :: friction = 0.0_wp             !! coefficient of friction
   end type line_contact
 
   type :: contact_rows
@@ -32,14 +33,21 @@ module epcont_model_contact_rows
     logical :: gap_by_geometry = .false.        !! the distance along the normal is part of the gap
     integer, allocatable :: pair_id(:)          !! [pairs]
     integer, allocatable :: pair_node(:, :)     !! nodes A and B that name the pair [2, pairs]
-    real(wp), allocatable :: normal(:, :)       !! unit, along which B is pushed [2, pairs]
+    !> Unit normal of each pair, along which B is pushed; then the tangents of pairs with friction [2, rows]
+    real(wp), allocatable :: normal(:, :)
     real(wp), allocatable :: initial_gap(:)     !! [length] [pairs]
+    real(wp), allocatable :: friction(:)        !! coefficient of friction, 0 without [pairs]
+    !> Pair of each tangential row. These rows follow those of the pairs [tangential rows]
+    integer, allocatable :: sliding(:)
+    !> Tangential displacement of B relative to A at the start of the load step; slip is the change since
+    !! then [length] [tangential rows]
+    real(wp), allocatable :: slipped(:)
     !> Row k of N: nodes row_node(row_start(k):row_start(k+1)-1) open the gap by row_weight times their
-    !! displacement along the normal. The weights of a row sum to 0. [pairs + 1], [entries], [entries]
+    !! displacement along the normal. The weights of a row sum to 0. [rows + 1], [entries], [entries]
     integer, allocatable :: row_start(:), row_node(:)
     real(wp), allocatable :: row_weight(:)
     !> Lower and upper bound of the force of each row; not allocated if all are contact forces: zero and
-    !! infinity, which is huge(1.0_wp) [force] [2, pairs]
+    !! infinity, which is huge(1.0_wp) [force] [2, rows]
     real(wp), allocatable :: force_bound(:, :)
     type(named_line), allocatable :: line(:)    !! lines of nodes [any]
     type(line_couple), allocatable :: couple(:) !! lines that may come into contact [any]
@@ -47,31 +55,82 @@ module epcont_model_contact_rows
     type(boundary_line) :: boundary
     type(line_contact), allocatable :: line_contact(:)
   contains
-    procedure :: nodes_of_pairs
+    procedure :: rows
+    procedure :: has_friction
+    procedure :: add_tangential_rows
+    procedure :: nodes_of_rows
     procedure :: opening
+    procedure :: slides
     procedure :: single_pairs
   end type contact_rows
 
 contains
 
-  !> Nodes of the gap row of each pair, padded with zeros [any, pairs].
-  pure function nodes_of_pairs(self) result(node)
+  !> Number of rows: pairs, then the tangential rows.
+  pure integer function rows(self)
     class(contact_rows), intent(in) :: self
-    integer :: node(maxval([self%row_start(2:) - self%row_start(:self%pairs), 0]), self%pairs)
+
+    rows = size(self%row_start) - 1
+  end function rows
+
+  !> Has a pair friction?
+  pure logical function has_friction(self)
+    class(contact_rows), intent(in) :: self
+
+    has_friction = .false.
+    if (allocated(self%sliding)) has_friction = size(self%sliding) > 0
+  end function has_friction
+
+  !> Append a tangential row for each pair with friction: nodes and weights of its gap row, along the tangent.
+  !! If the normal is along y, the tangent is along x.
+  pure subroutine add_tangential_rows(self)
+    class(contact_rows), intent(inout) :: self   !! with the rows of its pairs only
+    integer, allocatable :: entry(:), start(:)
+    integer :: e, j, k
+
+    do k = 1, size(self%line_contact)
+      associate (contact => self%line_contact(k))
+        self%friction = [self%friction(:contact%first - 1), &
+                         spread(contact%friction, 1, contact%last + 1 - contact%first)]
+      end associate
+    end do
+    self%sliding = pack([(k, k=1, self%pairs)], self%friction > 0.0_wp)
+    self%slipped = spread(0.0_wp, 1, size(self%sliding))
+    if (size(self%sliding) == 0) return
+    associate (first => self%row_start(:self%pairs), next => self%row_start(2:))
+      entry = [(e, e=1, self%row_start(self%pairs + 1) - 1), &
+               ((e, e=first(self%sliding(j)), next(self%sliding(j)) - 1), j=1, size(self%sliding))]
+      start = self%row_start(:self%pairs + 1)
+      do j = 1, size(self%sliding)
+        start = [start, start(size(start)) + next(self%sliding(j)) - first(self%sliding(j))]
+      end do
+    end associate
+    self%row_start = start
+    self%row_node = self%row_node(entry)
+    self%row_weight = self%row_weight(entry)
+    self%normal = reshape([self%normal(:, :self%pairs), &
+      (self%normal(2, self%sliding(j)), -self%normal(1, self%sliding(j)), j=1, size(self%sliding))], &
+      [2, size(start) - 1])
+  end subroutine add_tangential_rows
+
+  !> Nodes of each row, padded with zeros [any, rows].
+  pure function nodes_of_rows(self) result(node)
+    class(contact_rows), intent(in) :: self
+    integer :: node(maxval([self%row_start(2:) - self%row_start(:self%rows()), 0]), self%rows())
     integer :: k
 
     node = 0
-    do k = 1, self%pairs
+    do k = 1, size(node, 2)
       associate (own => self%row_node(self%row_start(k):self%row_start(k + 1) - 1))
         node(:size(own), k) = own
       end associate
     end do
-  end function nodes_of_pairs
+  end function nodes_of_rows
 
-  !> Compute the opening of the gap of a pair by displacements.
-  pure function opening(self, pair, displacement)
+  !> Compute the opening of a row by displacements: along the normal of a pair, or its tangent.
+  pure function opening(self, row, displacement)
     class(contact_rows), intent(in) :: self
-    integer, intent(in) :: pair   !! index of the pair
+    integer, intent(in) :: row
     real(wp), intent(in) :: displacement(:, :)  !! of the nodes of its row [2, entries of the row]
     real(wp) :: opening, apart(directions)
     integer :: k
@@ -79,10 +138,25 @@ contains
     ! Summed before the projection on the normal: a common translation cancels without rounding.
     apart = 0.0_wp
     do k = 1, size(displacement, 2)
-      apart = apart + self%row_weight(self%row_start(pair) + k - 1)*displacement(:, k)
+      apart = apart + self%row_weight(self%row_start(row) + k - 1)*displacement(:, k)
     end do
-    opening = dot_product(self%normal(:, pair), apart)
+    opening = dot_product(self%normal(:, row), apart)
   end function opening
+
+  !> Tangential displacement of B relative to A [length] [tangential rows].
+  pure function slides(self, displacement)
+    class(contact_rows), intent(in) :: self
+    real(wp), intent(in) :: displacement(:, :)   !! [length] [2, nodes]
+    real(wp) :: slides(size(self%sliding))
+    integer :: j
+
+    do j = 1, size(slides)
+      associate (k => self%pairs + j)
+        slides(j) = self%opening(k, displacement(:, &
+          self%row_node(self%row_start(k):self%row_start(k + 1) - 1)))
+      end associate
+    end do
+  end function slides
 
   !> Number of pairs from CGAP; the pairs of lines come after them.
   pure integer function single_pairs(self)

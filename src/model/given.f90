@@ -18,6 +18,7 @@ module epcont_model_given
   public :: check_values, take_arrays
 
   integer, parameter :: any_shape(0) = [integer ::]   !! for `fit`
+  character(len=*), parameter :: coefficients = 'give a number from 0.0 to 100.0'
 
 contains
 
@@ -72,6 +73,10 @@ contains
               all(scene%normal == 0.0_wp, dim=1), &
               'normal(:, #) is no unit vector', 'one of length 1, or zero: from A to B')
     call need(found, has_size(scene%initial_gap), 'initial_gap(#) is no length', any_size())
+    if (allocated(scene%friction)) call need(found, is_friction(scene%friction), &
+      'friction(#) is no coefficient of friction', coefficients)
+    call need(found, is_friction(scene%couple%friction), 'couple(#)%friction is no coefficient of friction', &
+              coefficients)
     if (allocated(scene%temperature)) then
       call need(found, abs(scene%temperature) <= farthest, 'temperature(#) is no temperature', any_size())
       call need(found, has_size(scene%expansion), 'expansion(#) is no expansion', any_size())
@@ -190,6 +195,7 @@ contains
     call fit(found, 'curve(sections)', sections, given%curve)
     call fit_matrix(found, 'pair_node(2, pairs)', pairs, given%pair_node)
     call fit_matrix(found, 'normal(2, pairs)', pairs, given%normal)
+    if (allocated(given%friction)) call fit(found, 'friction(pairs)', pairs(2:), given%friction)
     if (.not. allocated(given%temperature)) return
     call fit(found, 'temperature(nodes)', nodes(2:), given%temperature)
     call fit(found, 'expansion(sections)', sections, given%expansion)
@@ -362,6 +368,13 @@ contains
 
     has_size = cause == 0.0_wp .or. abs(cause) >= least_cause .and. abs(cause) <= farthest
   end function has_size
+
+  !> Is the value a coefficient of friction?
+  elemental logical function is_friction(coefficient)
+    real(wp), intent(in) :: coefficient
+
+    is_friction = coefficient >= 0.0_wp .and. coefficient <= 100.0_wp
+  end function is_friction
 
   !> Is a number between 1 and the last one?
   elemental logical function within(number, most)

@@ -29,7 +29,7 @@ module epcont_model_model
     procedure :: is_ring
     procedure :: has_rings
     procedure :: can_yield
-    procedure :: bodies_of_pairs
+    procedure :: bodies_of_rows
     procedure :: name_of
   end type model_type
 
@@ -72,17 +72,17 @@ contains
     can_yield = allocated(self%sections%curve(self%mesh%section(element))%strain)
   end function can_yield
 
-  !> Bodies that each pair has nodes of, padded with zeros [any, pairs].
-  pure function bodies_of_pairs(self) result(body)
+  !> Bodies that each row has nodes of, padded with zeros [any, rows].
+  pure function bodies_of_rows(self) result(body)
     class(model_type), intent(in) :: self
     integer, allocatable :: body(:, :)
-    integer :: found(maxval([self%contact%row_start(2:) - self%contact%row_start(:self%contact%pairs), 0]), &
-                     self%contact%pairs)
+    integer :: found(maxval([self%contact%row_start(2:) - self%contact%row_start(:self%contact%rows()), 0]), &
+                     self%contact%rows())
     integer :: i, k, last, most
 
     found = 0
     most = 0
-    do k = 1, self%contact%pairs
+    do k = 1, self%contact%rows()
       last = 0
       do i = self%contact%row_start(k), self%contact%row_start(k + 1) - 1
         associate (b => self%mesh%body(self%contact%row_node(i)))
@@ -94,7 +94,7 @@ contains
       most = max(most, last)
     end do
     body = found(:most, :)
-  end function bodies_of_pairs
+  end function bodies_of_rows
 
   !> Name of a part of the model in messages: `GRID 17`, `CTRIA3 5`.
   pure function name_of(self, kind, which) result(name)

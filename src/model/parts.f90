@@ -42,6 +42,8 @@ contains
       call move_alloc(data%line, contact%line)
       call move_alloc(data%couple, contact%couple)
       contact%pairs = size(contact%initial_gap)
+      call move_alloc(data%friction, contact%friction)
+      if (.not. allocated(contact%friction)) contact%friction = 0*contact%initial_gap
       contact%contact_is_off = data%contact_is_off
       contact%gap_by_geometry = data%gap_by_geometry
     end associate

@@ -52,7 +52,7 @@ contains
     allocate (axes%pair(model%mesh%nodes), axes%turn(model%mesh%nodes), source=0)
     allocate (axes%wanted(directions, model%mesh%nodes), is_whole(model%mesh%nodes), source=.false.)
     allocate (first(directions, model%mesh%nodes))
-    do k = 1, model%contact%pairs
+    do k = 1, model%contact%rows()
       do i = model%contact%row_start(k), model%contact%row_start(k + 1) - 1
         call want(model%contact%row_node(i), model%contact%normal(:, k))
       end do

@@ -103,7 +103,8 @@ contains
         of_node_of_point*model%mesh%node_count(model%mesh%point_element(p)) + &
                        merge(of_yielding_point, 0_i8, model%can_yield(model%mesh%point_element(p)))
     end do
-    expected%apart_bytes = expected%bytes + int(pair_matrices*real(model%contact%pairs, wp)**2, i8)*real_bytes
+    expected%apart_bytes = expected%bytes + &
+      int(pair_matrices*real(model%contact%rows(), wp)**2, i8)*real_bytes
     ! The factors of the unloaded state are kept beside those of the last state.
     if ((cases > 1 .or. model%controls%flow_theory) .and. plan%yields) &
       expected%bytes = 2*expected%bytes - of_process
@@ -134,8 +135,8 @@ contains
     integer(i8) :: entries, factor, flexibility, last, own, pairs, passing, updates, unit_loads
     integer :: b
 
-    pairs = model%contact%pairs
-    of_bodies = new_incidence(model%bodies_of_pairs(), model%mesh%bodies)
+    pairs = model%contact%rows()
+    of_bodies = new_incidence(model%bodies_of_rows(), model%mesh%bodies)
     entries = 0       ! of the factors
     flexibility = 0   ! of the part of F of one body
     unit_loads = 0    ! bytes of the adjoint fields of one body

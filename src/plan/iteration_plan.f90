@@ -23,7 +23,8 @@ module epcont_plan_iteration_plan
 
   type :: iteration_plan
     logical :: yields = .false.            !! a material can yield; otherwise no iteration is needed
-    integer :: load_steps = 1              !! more than one only if a material can yield
+    logical :: follows = .false.           !! the loads are followed in steps: yielding, or friction
+    integer :: load_steps = 1              !! more than one only if the loads are followed
     integer :: method = method_secant
     logical :: chosen_here = .false.       !! epcont chooses the method, not the deck
     !> Largest change, and largest estimated error, of a displacement with which the iteration ends
@@ -52,7 +53,8 @@ contains
       plan%joined = joined
       plan%from_first_pivot = asked%original
       plan%yields = any([(model%can_yield(e), e=1, model%mesh%elements)])
-      if (plan%yields) plan%load_steps = asked%load_steps
+      plan%follows = plan%yields .or. model%contact%has_friction()
+      if (plan%follows) plan%load_steps = asked%load_steps
       plan%chosen_here = asked%method == method_auto
       plan%method = asked%method
       ! NEWTON has no tangent for MUP PAPER. That option follows the paper, so the paper's method is used.

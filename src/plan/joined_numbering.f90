@@ -40,7 +40,7 @@ contains
     integer :: apart, begun, i, last, p
 
     found = dissect(model, 2.0_wp*model%mesh%x(1, :) + model%mesh%x(2, :), [(i, i=1, model%mesh%nodes)], &
-                    followed_nodes(model), new_incidence(model%contact%nodes_of_pairs(), model%mesh%nodes))
+                    followed_nodes(model), new_incidence(model%contact%nodes_of_rows(), model%mesh%nodes))
     acted = any(model%constraints%reference, dim=1)
     acted(model%contact%row_node) = .true.
     springs(0) = 0
@@ -131,13 +131,13 @@ contains
 
     longest = maxval([1, tied%start(2:) - tied%start(:size(tied%start) - 1)])   ! entries of a DOF
     associate (suports => count(model%constraints%reference) + count(model%constraints%platen%reference))
-      allocate (spring%start(model%contact%pairs + suports + size(model%constraints%spring) + 1), source=1)
+      allocate (spring%start(model%contact%rows() + suports + size(model%constraints%spring) + 1), source=1)
       k = longest*(directions*size(model%contact%row_node) + suports + 2*size(model%constraints%spring))
       allocate (spring%equation(k), spring%weight(k))
     end associate
     row = 0
     last = 0
-    do k = 1, model%contact%pairs
+    do k = 1, model%contact%rows()
       do i = model%contact%row_start(k), model%contact%row_start(k + 1) - 1
         call put(equation(1, model%contact%row_node(i)), &
                  model%contact%row_weight(i)*model%contact%normal(1, k))

@@ -26,7 +26,7 @@ contains
     type(model_type), intent(in) :: model
 
     joins = model%controls%rule == rule_joined .or. model%controls%rule == rule_auto .and. &
-            of_pairs*real(model%contact%pairs, wp)**3 > many_of(model)*model%mesh%nodes
+            of_pairs*real(model%contact%rows(), wp)**3 > many_of(model)*model%mesh%nodes
     if (joins) joins = can_join(model)
   end function joins
 

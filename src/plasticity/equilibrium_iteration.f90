@@ -97,6 +97,10 @@ contains
 
     if (self%plan%load_steps > 1 .or. present(loads)) self%last = scene%model%loads
     if (present(loads)) self%start = loads
+    associate (contact => scene%model%contact)
+      contact%slipped = spread(0.0_wp, 1, size(contact%sliding))
+      if (present(state)) contact%slipped = contact%slides(state%displacement)
+    end associate
     call self%put_loads(scene, 1.0_wp/self%plan%load_steps)
     if (allocated(self%virgin)) self%linear = self%virgin
     self%stiff = allocated(self%linear)

@@ -132,12 +132,14 @@ contains
   end subroutine advance
 
   !> Commit an increment: the next one starts from its state.
-  subroutine commit(self, linear, answer)
+  subroutine commit(self, scene, linear, answer)
     class(load_path), intent(inout) :: self
+    type(planned_model), intent(inout) :: scene
     type(linear_problem), intent(inout) :: linear
     class(followed_loads), intent(in) :: answer   !! its state
 
-    call linear%materials%commit(answer%point)
+    if (linear%materials%yields) call linear%materials%commit(answer%point)
+    scene%model%contact%slipped = scene%model%contact%slides(answer%displacement)
     self%iteration%committed = answer%solved_state
   end subroutine commit
 

@@ -64,7 +64,7 @@ DECKS = {
     "CQUAD4,3,1,31,32,33,34|CQUAD4,4,1,23,22,31,34|SPC1,1,12,1,2,24,23,34,33|BLSEG,1,21,22,31,32|BLSEG,2,4,3|BCONP,1,1,2|",
     "lines": "PARAM,PLANE,STRAIN|GRID,1,,0.,0.|GRID,2,,1.,0.|GRID,3,,1.,1.|GRID,4,,0.,1.|GRID,5,,.2,1.05|GRID,6,,.8,1.05|GRID,7,,.8,2.|GRID,8,,.2,2.|"
     "CQUAD4,1,1,1,2,3,4|CQUAD4,2,1,5,6,7,8|PSHELL,1,1,1.|MAT1,1,1000.,,.3|SPC1,1,12,1,2|SPC,1,7,2,-.07,8,2,-.08|SPC1,1,1,7,8|BLSEG,1,4,3|BLSEG,2,5,6|BLSEG,3,7,8|"
-    "BCONP,1,2,1,,.1,0,1,0|PARAM,CORNER,20.|",
+    "BCONP,1,2,1,,.1,4,1,0|BFRIC,4|PARAM,CORNER,20.|",
     "yield": "PARAM,PLANE,STRAIN|" + CORNERS + "SPC1,1,12,1,2|SPC,1,3,2,.02,4,2,.02|CQUAD4,1,1,1,2,3,4|PSHELL,1,1,1.|MAT1,1,1000.,,.3|"
     "MATS1,1,,PLASTIC,50.,1,1,10.|",
     "flow": OUTPUT + "NLPARM = 3|BEGIN BULK|PARAM,PLANE,STRAIN|" + CORNERS + "SPC1,1,12,1,2|SPC,1,3,2,.02,4,2,.02|CQUAD4,1,1,1,2,3,4|PSHELL,1,1,1.|"
@@ -106,7 +106,7 @@ CARDS = {
     "CGAP": ("plane", 0, [("EID", "13", CHANGES), ("PID", "8", CHANGES), ("GA", "3", CHANGES), ("GB", "6", CHANGES), ("X1", "1.", NOTED), ("X2", "1.", NOTED),
                           ("X3", "1.", NOTED), ("CID", "99", unknown("CORD2R"))]),
     "PGAP": ("plane", 0, [("PID", "99", error("there is no PGAP 8")), ("U0", ".02", CHANGES), ("F0", "1.", ZERO), ("KA", "1.", NOTED), ("KB", "1.", NOTED),
-                          ("KT", "1.", NOTED), ("MU1", ".1", ZERO), ("MU2", ".1", ZERO), ("TMAX", "1.", NOTED), ("MAR", "1.", NOTED), ("TRMIN", "1.", NOTED)]),
+                          ("KT", "1.", NOTED), ("MU1", ".1", error("friction is not ready yet")), ("MU2", ".1", error("field 9 (MU2) differs from MU1")), ("TMAX", "1.", NOTED), ("MAR", "1.", NOTED), ("TRMIN", "1.", NOTED)]),
     "CBAR": ("plane", 0, [("EID", "91", NOTED), ("PID", "2", NOTED), ("GA", "3", NOTED), ("GB", "3", NOTED), *[ANYTHING] * 12]),
     "PARAM": ("plane", 0, [("NAME", "NONE", error("unknown parameter NONE")), ("VALUE", "NONE", error("PARAM PLANE: field 3 (VALUE)"))]),
     "MATS1": ("yield", 0, [("MID", "99", unknown("MAT1")), ("TID", "99", unknown("TABLES1")), ("TYPE", "ELASTIC", error("field 4 (TYPE)")), ("H", "60.", CHANGES),
@@ -120,7 +120,7 @@ CARDS = {
     "PSOLID": ("ctrax3", 0, [("PID", "99", error("there is no PSOLID 1")), ("MID", "2", CHANGES)]),
     "BLSEG": ("lines", 1, [("ID", "99", error("there is no BLSEG 2")), ("G1..", "99", unknown("GRID"))]),
     "BCONP": ("lines", 0, [("ID", "8", LISTED), ("SLAVE", "3", error("BCONP 1")), ("MASTER", "3", CHANGES), ("", "1", BLANK), ("SFAC", ".2", NOTED),
-                           ("FRICID", "1", ZERO), ("PTYPE", "2", ZERO), ("CID", "1", ZERO)]),
+                           ("FRICID", "99", unknown("BFRIC")), ("PTYPE", "2", ZERO), ("CID", "1", ZERO)]),
     "CQUAD8": ("cquad8", 0, [*ELEMENT, *((f"G{k}", "99", unknown("GRID")) for k in range(1, 9))]),
     "LOAD": ("plane", 0, [("SID", "99", error("LOAD = 10: the deck has no such set")), ("S", "2.", CHANGES), ("S1 ..", "3.", CHANGES), ("L1 ..", "2", CHANGES)]),
     "SPCD": ("plane", 0, [("SID", "2", error("there is no set 4")), ("G1", "3", error("direction 1 of GRID 3 is not fixed")), ("C1", "6", error("GRID 1 has no direction 6")),
@@ -144,6 +144,7 @@ CARDS = {
     "PELAS": ("plane", 0, [("PID1", "99", error("there is no PELAS 30")), ("K1", "60.", CHANGES), ("GE1", ".1", NOTED), ("S1", ".1", NOTED),
                            ("PID2", "99", error("there is no PELAS 31")), ("K2", "70.", CHANGES), ("GE2", ".1", NOTED), ("S2", ".1", NOTED)]),
     "NLPARM": ("flow", 0, [("ID", "9", error("there is no such NLPARM")), ("NINC", "4", CHANGES), *([ANYTHING]*3), ("MAXITER", "9", LISTED), *([ANYTHING]*2), ("EPSU", ".1", CHANGES), *([ANYTHING]*15)]),
+    "BFRIC": ("lines", 0, [("FID", "99", error("there is no BFRIC 4")), ("FSTIF", "1.", NOTED), ("", "1", BLANK), ("MU1", ".1", error("friction is not ready yet"))]),
 }
 #: The same for each PARAM.
 PARAMETERS = {
@@ -151,7 +152,7 @@ PARAMETERS = {
     "METHOD": ("yield", "SECANT", LISTED), "TOL": ("yield", ".1", LISTED), "MAXIT": ("yield", "7", LISTED), "MUP": ("yield", "PAPER", LISTED),
     "ORIGINAL": ("plane", "YES", LISTED), "NLOAD": ("yield", "2", LISTED), "SEARCH": ("feet", ".1", CHANGES), "SOLVER": ("plane", "FRONTAL", LISTED),
     "FLEXIB": ("strip", "INVERT", LISTED), "ACCURACY": ("plane", ".1", LISTED), "THEORY": ("flow", "TOTAL", CHANGES), "HRFRAC": ("mixed", ".9", CHANGES), "CORNER": ("lines", "170.", LISTED),
-    "WTMASS": ("plane", "2.", CHANGES), "LGDISP": ("plane", "-1", NOTED), "INREL": ("plane", "0", NOTED)}
+    "WTMASS": ("plane", "2.", CHANGES), "FRICTION": ("lines", "MAYBE", error("field 3 (VALUE)")), "LGDISP": ("plane", "-1", NOTED), "INREL": ("plane", "0", NOTED)}
 WITHOUT = {"PLANE": "ctrax3", "RULE": "yield", "GAPGEOM": "lines", "METHOD": "plane", "TOL": "plane", "MAXIT": "plane", "MUP": "plane", "NLOAD": "plane", "HRFRAC": "yield", "THEORY": "plane",
            "SEARCH": "plane", "FLEXIB": "yield", "CORNER": "plane", "WTMASS": "yield"}
 #: The same for each statement of case control, put before the others of `plane` or in place of the one with its name.

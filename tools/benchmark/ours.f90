@@ -144,7 +144,7 @@ contains
     end do
     if (allocated(problem%flexibility)) deallocate (problem%flexibility)
     allocate (problem%flexibility(model%contact%pairs, model%contact%pairs), source=0.0_wp)
-    pairs = new_incidence(model%bodies_of_pairs(), model%mesh%bodies)
+    pairs = new_incidence(model%bodies_of_rows(), model%mesh%bodies)
     do b = 1, model%mesh%bodies
       call find_flexibility(model, numbering, b, pairs%of(b), bodies%body(b), part)
       call add_part(part, problem%flexibility)
