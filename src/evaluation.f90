@@ -57,6 +57,8 @@ module epcont_evaluation
     type(kept_factors) :: kept           !! from load case to load case
     !> Flow theory: plastic history before the increment, for the certificate [points]
     type(replayed_history), allocatable :: replayed(:)
+    !> Tangential displacements before the increment, for the certificate [length] [tangential rows]
+    real(wp), allocatable :: slid(:)
     type(stress_path), allocatable :: stress_path        !! total theory; not allocated: unknown
   contains
     procedure :: evaluate
@@ -76,7 +78,7 @@ contains
 
     call self%find_results(watch)
     associate (model => self%model, answer => self%answer)
-      call certify(model, answer, self%iteration%off_curve, self%certificate, self%replayed)
+      call certify(model, answer, self%iteration%off_curve, self%certificate, self%replayed, self%slid)
       if (answer%converged .and. self%certificate%valid) &
         self%certificate%scene = look_through(model, answer%displacement, answer%contact%force)
     end associate
@@ -95,7 +97,7 @@ contains
         answer%point = kept%linear%materials%states(answer%strain)
       associate (force => answer%contact%force, volume => kept%linear%operator%volume)
         call recover_stresses(model, kept%linear, &
-                              model%loads%load + pair_forces(model, force), &
+                              model%loads%load + pair_forces(model, answer%contact%row_forces()), &
                               answer)
         answer%locking = find_locking(model, volume, answer%stress, answer%equivalent_stress, &
             answer%secant_modulus)
@@ -104,7 +106,7 @@ contains
         answer%pressure = pair_pressures(model, kept%line, touching, force)
         answer%zones = find_zones(kept%line, touching, force, answer%pressure)
         call compare_sides(model, answer%contact%touching, force, answer%pressure, answer%lines, answer%apart)
-        answer%bodies = find_body_forces(model, force)
+        answer%bodies = find_body_forces(model, answer%contact%row_forces())
       end associate
     end associate
     call watch%lap(stage_stresses)

@@ -24,7 +24,9 @@ module epcont_load_history
 
   !> End of a load case, from which the next one of a sequence starts.
   type, extends(path_end) :: case_end
-    type(replayed_history), allocatable :: replayed(:)   !! history of the certificate [points]
+    ! Of the certificate:
+    type(replayed_history), allocatable :: replayed(:)   !! plastic history [points]
+    real(wp), allocatable :: slid(:)     !! tangential displacements [length] [tangential rows]
   end type case_end
 
   type, extends(evaluated_model) :: loaded_model
@@ -99,7 +101,8 @@ contains
         if (.not. self%certificate%valid) exit
         call self%add_increment(path%iterations())
         call path%commit(self%planned_model, kept%linear, answer)
-        self%replayed = self%certificate%history
+        if (allocated(self%certificate%history)) self%replayed = self%certificate%history
+        self%slid = self%certificate%slid
       end do
       call path%finish(kept%linear, kept%virgin, answer)
       if (kept%linear%rule%failed .or. answer%failed_body > 0 .or. &
@@ -236,10 +239,12 @@ contains
     class(loaded_model), intent(inout) :: self
 
     if (allocated(self%replayed)) deallocate (self%replayed)
+    if (allocated(self%slid)) deallocate (self%slid)
     if (.not. self%is_flow()) return
     if (allocated(self%start)) then
-      self%replayed = self%start%replayed
-    else
+      if (allocated(self%start%replayed)) self%replayed = self%start%replayed
+      self%slid = self%start%slid
+    else if (self%iteration%yields) then
       allocate (self%replayed(self%model%mesh%points))
     end if
   end subroutine begin_replay
@@ -256,7 +261,8 @@ contains
     if (.not. (valid .and. self%has_memory())) return
     allocate (self%start)
     self%start%path_end = self%end_of()
-    self%start%replayed = self%certificate%history
+    if (allocated(self%certificate%history)) self%start%replayed = self%certificate%history
+    self%start%slid = self%certificate%slid
     if (allocated(self%other)) call move_alloc(self%other_end, self%other_start)
   end subroutine end_case
 

@@ -88,7 +88,7 @@ contains
       call find_unit_loads(scene, linear, answer, kept%loads, same)
     else
       kept%loads = none%loads
-      allocate (kept%loads%contact%force(scene%model%contact%pairs, 0), kept%loads%contact%unit(0))
+      allocate (kept%loads%contact%force(scene%model%contact%rows(), 0), kept%loads%contact%unit(0))
     end if
     if (.not. same) then
       if (allocated(kept%field)) deallocate (kept%field)

@@ -10,7 +10,7 @@ module epcont_accuracy_unit_loads
   use epcont_plan_forecast, only: most_assessed
   use epcont_plan_planned_model, only: planned_model
   use epcont_result_answer, only: answer_type
-  use epcont_result_body_force, only: shares_of_pairs
+  use epcont_result_body_force, only: shares_of_rows
   implicit none
   private
   public :: choose_motions, find_unit_loads, unit_loads
@@ -49,11 +49,12 @@ contains
 
     motion = choose_motions(scene, abs(answer%contact%approach)*linear%rule%problem%motion%sizes(), &
                             answer%contact%motion_free)
-    kept = loads%are_of(answer, motion) .and. .not. linear%materials%yields
+    kept = loads%are_of(answer, linear%rule%problem%between(answer%contact%row_forces()), motion) .and. .not. &
+           linear%materials%yields
     if (.not. kept) then
       loads = none
       loads%contact%motion = motion
-      loads%pressed = answer%contact%force > 0.0_wp
+      loads%pressed = linear%rule%problem%between(answer%contact%row_forces())
       loads%touching = answer%contact%touching
       loads%motion_free = answer%contact%motion_free
       call find_shares()
@@ -68,10 +69,12 @@ contains
     !> Find the factors of pairs in sums of forces. If no pair of a body is in contact, although some could
     !! be, its sums are unknown.
     subroutine find_shares()
-      real(wp), dimension(scene%model%contact%pairs) :: one, other   !! of one component, and of the other
-      integer :: body, c, i, k
+      real(wp), dimension(scene%model%contact%rows()) :: one, other   !! of one component, and of the other
+      integer :: body, c, i, k, pairs
 
-      allocate (loads%contact%share(scene%model%contact%pairs, 1), source=1.0_wp)
+      pairs = scene%model%contact%pairs
+      allocate (loads%contact%share(scene%model%contact%rows(), 1), source=0.0_wp)
+      loads%contact%share(:pairs, 1) = 1.0_wp
       allocate (loads%column(directions, size(answer%bodies)), &
                 source=merge(-1, 0, size(answer%bodies) > most_bodies))
       if (size(answer%bodies) > most_bodies) return
@@ -79,10 +82,10 @@ contains
         body = answer%bodies(i)%body
         do c = merge(2, 1, scene%model%has_rings()), directions
           if (is_free(body, c)) cycle
-          one = shares_of_pairs(scene%model, body, c)
-          other = shares_of_pairs(scene%model, body, 3 - c)
+          one = shares_of_rows(scene%model, body, c)
+          other = shares_of_rows(scene%model, body, 3 - c)
           if (any(abs(one) > least_difference) .and. .not. &
-              any(abs(one) + abs(other) > least_difference .and. answer%contact%touching)) then
+              any(abs(one(:pairs)) + abs(other(:pairs)) > least_difference .and. answer%contact%touching)) then
             loads%column(c, i) = -1
             cycle
           end if
@@ -145,16 +148,17 @@ contains
   end function choose_motions
 
   !> Do these fields have the active set and the assessed modes of an answer?
-  pure logical function are_of(self, answer, motion)
+  pure logical function are_of(self, answer, pressed, motion)
     class(unit_loads), intent(in) :: self
     type(answer_type), intent(in) :: answer
+    logical, intent(in) :: pressed(:)   !! rows with a force between its bounds
     integer, intent(in) :: motion(:)
 
     are_of = allocated(self%pressed)
     if (are_of) are_of = size(motion) == size(self%contact%motion)
     if (.not. are_of) return
     are_of = all(motion == self%contact%motion) .and. &
-             all(self%pressed .eqv. answer%contact%force > 0.0_wp) .and. &
+             all(self%pressed .eqv. pressed) .and. &
              all(self%touching .eqv. answer%contact%touching) .and. &
              all(self%motion_free .eqv. answer%contact%motion_free)
   end function are_of

@@ -43,6 +43,9 @@ module epcont_certificate_certificate
     real(wp) :: smallest_gap = 0.0_wp     !! [length]
     real(wp) :: overlap = 0.0_wp          !! largest penetration of a pair, minus its rounding error [length]
     real(wp) :: force_gap = 0.0_wp        !! largest |R gap| [force*length]
+    real(wp) :: excess = 0.0_wp           !! largest friction force above mu R [force]
+    !> Largest slip times the friction force that is missing against it, up to mu R [force*length]
+    real(wp) :: force_slip = 0.0_wp
     real(wp) :: off_curve = 0.0_wp        !! largest stress error (`check_stress`)
     real(wp) :: motion_strain = 0.0_wp    !! largest strain by rigid-body displacements / its rounding error
     real(wp) :: lost_stress = 0.0_wp      !! largest stress error by rounding of displacements, relative
@@ -60,6 +63,7 @@ module epcont_certificate_certificate
     type(overlaps_type) :: scene          !! penetration of bodies; searched if all else is valid
     !> Flow theory: plastic history after the increment, from displacements alone [points]
     type(replayed_history), allocatable :: history(:)
+    real(wp), allocatable :: slid(:)      !! tangential displacements [length] [tangential rows]
   contains
     procedure :: figures
     procedure :: has_spoilt
@@ -70,9 +74,10 @@ module epcont_certificate_certificate
 
   !> Checked values, as sentences of messages.
   character(len=*), parameter :: off_the_curve = 'stress error'
-  character(len=*), parameter, public :: figure_name(9) = [character(len=70) :: &
+  character(len=*), parameter, public :: figure_name(11) = [character(len=70) :: &
     'equilibrium residual', off_the_curve, 'energy balance', 'tensile contact force', &
     'penetration', 'contact force at an open gap', &
+    'friction force above mu R', 'slip without the full friction force against it', &
     'rounding error of gaps relative to the deformation', &
     'strain by rigid-body displacements relative to its rounding error', &
     'violation of RBE2 or MPC']
@@ -93,13 +98,15 @@ contains
 
   !> Check an answer. Its inputs are the displacements with and without rigid-body displacements, the
   !! reactions, the stresses at the integration points and the contact forces.
-  subroutine certify(model, answer, curve_tolerance, found, before)
+  subroutine certify(model, answer, curve_tolerance, found, before, slid)
     type(model_type), intent(in) :: model   !! model
     type(answer_type), intent(in) :: answer   !! answer to check
     real(wp), intent(in) :: curve_tolerance   !! largest stress error that the iteration allows
     type(certificate_type), intent(out) :: found   !! the certificate, without its search for penetration
     !> Flow theory: history before the increment [points]
     type(replayed_history), intent(in), optional :: before(:)
+    !> Tangential displacements before the increment; absent: zero [length] [tangential rows]
+    real(wp), intent(in), optional :: slid(:)
     real(wp) :: load(directions, model%mesh%nodes)
     type(balance_type) :: total
     real(wp) :: forces, largest_force, largest_stress, length
@@ -123,7 +130,7 @@ contains
     if (unstressed) found%off_curve = 0.0_wp
     ! The accuracy of the gaps must match the deformation of the bodies, not rigid-body displacements, and not
     ! loads that a support takes directly.
-    forces = sum(abs(load + answer%reaction)) + sum(abs(answer%contact%force))
+    forces = sum(abs(load + answer%reaction)) + sum(abs(answer%contact%row_forces()))
     length = ratio(max(abs(total%stored), total%stored - total%expansion%work), forces)
     associate (u => answer%displacement, reaction => answer%reaction)
       ! If supports take all loads, displacements are rounding errors of the indentation by these forces.
@@ -138,6 +145,8 @@ contains
       total%terms = sum(abs(load*u)) + sum(abs(reaction*u)) + abs(total%stored) + &
               part_of_held*total%expansion%held_work
     end associate
+    allocate (found%slid(size(model%contact%sliding)), source=0.0_wp)
+    if (present(slid)) found%slid = slid
     if (model%contact%pairs > 0) call add_pairs(model, answer, load, total, found)
     largest_force = max(maxval(total%element_force), maxval(abs(load)), &
         part_of_held*total%expansion%held_force)
@@ -241,8 +250,8 @@ contains
     found%stress_roundings = max(found%stress_roundings, part%stress_roundings)
   end subroutine add_part
 
-  !> Find the smallest force and gap and the largest product of pairs. Add the work of their forces, and
-  !! subtract these from the residual.
+  !> Find the smallest force and gap and the largest product of pairs, and check friction. Add the work of the
+  !! forces, and subtract these from the residual.
   subroutine add_pairs(model, answer, load, total, found)
     type(model_type), intent(in) :: model        !! the model
     type(answer_type), intent(in) :: answer      !! answer to check
@@ -250,13 +259,15 @@ contains
     type(balance_type), intent(inout) :: total   !! sums to add to
     type(certificate_type), intent(inout) :: found
     real(wp) :: apart(directions), gap, opening, rounding, travel
+    real(wp), allocatable :: forces(:)   ! of all rows [force]
     integer :: i, k, node
 
+    forces = answer%contact%row_forces()
     found%smallest_force = minval(answer%contact%force)
     found%smallest_gap = huge(1.0_wp)
     found%force_scale = max(maxval(abs(answer%contact%force)), maxval(abs(load)), tiny(1.0_wp))
-    do k = 1, model%contact%pairs
-      associate (force => answer%contact%force(k), normal => model%contact%normal(:, k))
+    do k = 1, model%contact%rows()
+      associate (force => forces(k), normal => model%contact%normal(:, k))
         apart = 0.0_wp
         travel = 0.0_wp
         do i = model%contact%row_start(k), model%contact%row_start(k + 1) - 1
@@ -268,6 +279,10 @@ contains
         opening = sum(normal*apart)
         total%work = total%work + force*opening
         total%terms = total%terms + abs(force*opening)
+        if (k > model%contact%pairs) then
+          call check_friction(model, forces, k, opening, found)
+          cycle
+        end if
         rounding = roundings*epsilon(1.0_wp)*max(abs(model%contact%initial_gap(k)), travel)
         if (force > 0.0_wp) found%gap_rounding = max(found%gap_rounding, rounding)
         gap = model%contact%initial_gap(k) + opening
@@ -278,6 +293,24 @@ contains
     end do
   end subroutine add_pairs
 
+  !> Check the friction of a pair: its force is at most mu R, and it is mu R against any slip.
+  pure subroutine check_friction(model, force, row, displacement, found)
+    type(model_type), intent(in) :: model
+    real(wp), intent(in) :: force(:)       !! of all rows [force]
+    integer, intent(in) :: row             !! tangential row
+    real(wp), intent(in) :: displacement   !! of B relative to A [length]
+    type(certificate_type), intent(inout) :: found   !! its `slid` is that before, then that of this answer
+    real(wp) :: most, slip
+
+    associate (j => row - model%contact%pairs)
+      slip = displacement - found%slid(j)
+      found%slid(j) = displacement
+      most = model%contact%friction(model%contact%sliding(j))*max(force(model%contact%sliding(j)), 0.0_wp)
+    end associate
+    found%excess = max(found%excess, abs(force(row)) - most)
+    found%force_slip = max(found%force_slip, abs(slip)*abs(most + sign(force(row), slip*force(row))))
+  end subroutine check_friction
+
   !> Find the checked values and their limits, in the order of `figure_name`.
   pure subroutine figures(self, figure, largest)
     class(certificate_type), intent(in) :: self
@@ -286,9 +319,10 @@ contains
 
     exact = valid_to*self%length_scale + self%gap_rounding
     figure = [self%equilibrium, self%off_curve, self%energy, ratio(-self%smallest_force, self%force_scale), &
-              self%overlap, ratio(self%force_gap, self%force_scale), self%gap_rounding/self%length_scale, &
+              self%overlap, ratio(self%force_gap, self%force_scale), ratio(self%excess, self%force_scale), &
+              ratio(self%force_slip, self%force_scale), self%gap_rounding/self%length_scale, &
               self%motion_strain, self%ties]
-    largest = [valid_to, self%off_curve_limit, valid_to, valid_to, exact, exact, &
+    largest = [valid_to, self%off_curve_limit, valid_to, valid_to, exact, exact, valid_to, exact, &
                largest_rounding, most_roundings, valid_to]
   end subroutine figures
 

@@ -134,15 +134,15 @@ contains
     end do
   end function terms_of_openings
 
-  !> Nodal forces of the pairs: N' R [force] [directions, nodes].
+  !> Nodal forces of the pairs, or of all rows: N' R [force] [directions, nodes].
   pure function pair_forces(model, force) result(nodal)
     type(model_type), intent(in) :: model
-    real(wp), intent(in) :: force(:)  !! [pairs]
+    real(wp), intent(in) :: force(:)  !! [pairs, or rows]
     real(wp) :: nodal(directions, model%mesh%nodes)
     integer :: i, k, node
 
     nodal = 0.0_wp
-    do k = 1, model%contact%rows()
+    do k = 1, size(force)
       do i = model%contact%row_start(k), model%contact%row_start(k + 1) - 1
         node = model%contact%row_node(i)
         nodal(:, node) = nodal(:, node) + force(k)*model%contact%row_weight(i)*model%contact%normal(:, k)

@@ -16,9 +16,9 @@ module epcont_linear_contact_rule
   !> of forces. Pairs in contact stay closed, the others open.
   type :: contact_loads
     integer, allocatable :: motion(:)      !! the modes [assessed modes]
-    real(wp), allocatable :: share(:, :)   !! weight of each pair in each sum [pairs, sums]
+    real(wp), allocatable :: share(:, :)   !! weight of each row in each sum [rows, sums]
     logical :: sound = .false.             !! the forces below are unique
-    real(wp), allocatable :: force(:, :)   !! at each pair under each load [force] [pairs, loads]
+    real(wp), allocatable :: force(:, :)   !! of each row under each load [force] [rows, loads]
     !> Largest force under each load; 0: the load is not needed [force] [loads]
     real(wp), allocatable :: unit(:)
     !> Change of each sum by a unit load along each mode of the model [modes, sums]

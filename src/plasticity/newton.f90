@@ -81,7 +81,8 @@ contains
     along = found%strain - about%strain
     travel = found%displacement - about%displacement
     length = 1.0_wp
-    if (.not. self%takes_full_step) call find_length(length, point)
+    ! Friction forces have no energy.
+    if (.not. (self%takes_full_step .or. model%contact%has_friction())) call find_length(length, point)
     self%takes_full_step = .false.
     if (length < 1.0_wp) then
       about%displacement = about%displacement + length*travel

@@ -98,11 +98,12 @@ contains
       call wrap(listing, '  attempts: '//attempts_text(run))
     end if
     if (.not. run%outcome%has_answer) return
-    if (run%iteration%yields) call list_iterations(listing, run)
+    if (run%iteration%follows) call list_iterations(listing, run)
     if (run%model%contact%pairs > 0) call list_contact(listing, run)
     if (run%wants_nodes(all_tables)) call put_table(run, 'nodes', listing)
     if (run%wants_elements(all_tables)) call put_table(run, 'elements', listing)
-    if (run%wants_elements(all_tables) .and. run%is_flow()) call put_table(run, 'plastic', listing)
+    if (run%wants_elements(all_tables) .and. allocated(run%answer%plastic_strain)) &
+      call put_table(run, 'plastic', listing)
     call list_summary()
     if (run%certificate%scene%looked_through) call list_scene_found(listing, run)
     call listing%heading('ACCURACY')
@@ -166,7 +167,7 @@ contains
     type(table_type), intent(inout) :: listing
     type(run_results), intent(in) :: run
 
-    call put_table(run, 'history', listing)
+    if (run%iteration%yields) call put_table(run, 'history', listing)
     if (run%is_flow()) then
       call put_table(run, 'increments', listing)
       if (run%model%controls%steps_by_accuracy) &
@@ -175,6 +176,7 @@ contains
         text_of(size(run%increment))//' increments instead of '//text_of(run%steps)// &
         ': one that does not converge is halved')
     end if
+    if (.not. run%iteration%yields) return
     call listing%line('')
     if (any(run%answer%history%by_tangent)) call listing%say(&
       'the last step uses the tangent: its change is the error that the other steps have left')
@@ -196,6 +198,7 @@ contains
     type(run_results), intent(in) :: run
 
     call put_table(run, 'contact', listing)
+    if (run%model%contact%has_friction()) call put_table(run, 'friction', listing)
     call put_table(run, 'zones', listing)
     if (size(run%answer%lines) > 0) call put_table(run, 'lines', listing)
     call put_table(run, 'bodies', listing)

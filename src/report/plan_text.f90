@@ -144,7 +144,14 @@ contains
     type(table_type), intent(inout) :: plan
     type(planned_model), intent(in) :: scene
 
+    if (scene%model%contact%has_friction()) call plan%say('friction at '// &
+      plural(size(scene%model%contact%sliding), 'pair')//': the answer depends on the path of the loads')
     if (.not. scene%iteration%yields) then
+      if (scene%iteration%follows .and. scene%iteration%load_steps > 1) then
+        call plan%say('elastic material only: '//text_of(scene%iteration%load_steps)// &
+                      ' load steps, each from the end of the one before')
+        return
+      end if
       call plan%say('elastic material only: one solve, no iteration')
       if (scene%model%controls%sequence) &
         call plan%say('a sequence of load cases: without plastic strain, each is independent of those before')

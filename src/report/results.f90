@@ -29,6 +29,7 @@ module epcont_report_results
     result_file('.summary.csv', &
                 'outcome, approaches, certificate and accuracy; 17 digits as in all tables'), &
     result_file('.contact.csv', 'the pairs'), &
+    result_file('.friction.csv', 'friction force, shear traction and slip of the pairs with friction'), &
     result_file('.zones.csv', 'the contact zones: runs of neighbouring pairs in contact'), &
     result_file('.bodies.csv', 'the contact resultant on each body'), &
     result_file('.history.csv', 'the iterations'), &
@@ -43,7 +44,7 @@ module epcont_report_results
     result_file('.pvd', 'for ParaView: index of DECK.caseN.vtu and .caseN.contact.vtu of load cases')]
 
   !> The first files are the listing, the summary, and tables with rows of each load case.
-  integer, parameter :: listing = 1, summary = 2, of_each_case = 11
+  integer, parameter :: listing = 1, summary = 2, of_each_case = 12
 
   !> Results of one load case. If there are several, its part of each file is held in memory.
   type :: case_results
@@ -143,6 +144,8 @@ contains
       is_wanted = .true.
     case ('.bodies.csv')
       is_wanted = is_wanted .and. run%model%contact%pairs > 0
+    case ('.friction.csv')
+      is_wanted = is_wanted .and. run%model%contact%has_friction()
     case ('.increments.csv')
       is_wanted = is_wanted .and. run%is_flow()
     case ('.pivots.csv')
@@ -151,7 +154,8 @@ contains
     case ('.nodes.csv')
       is_wanted = is_wanted .and. run%wants_nodes(self%all_tables)
     case ('.plastic.csv')
-      is_wanted = is_wanted .and. run%is_flow() .and. run%wants_elements(self%all_tables)
+      is_wanted = is_wanted .and. allocated(run%answer%plastic_strain) .and. &
+                  run%wants_elements(self%all_tables)
     case ('.elements.csv')
       is_wanted = is_wanted .and. run%wants_elements(self%all_tables)
     end select

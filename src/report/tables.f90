@@ -8,6 +8,7 @@ module epcont_report_tables
   use epcont_report_columns, only: column, columns_text, estimate, force, known, length, no_number, number, &
       off_curve, rounding, state, stress, table_type, unknown, whole, word
   use epcont_messages_outcome, only: limit_of_pressure
+  use epcont_report_friction_table, only: friction_columns, put_friction
   use epcont_report_run, only: run_results
   use epcont_result_stresses, only: place_of_point
   implicit none
@@ -130,6 +131,7 @@ contains
     type(column), allocatable :: columns(:)
 
     if (suffix == '.contact.csv') columns = contact_columns
+    if (suffix == '.friction.csv') columns = friction_columns
     if (suffix == '.zones.csv') columns = zone_columns
     if (suffix == '.bodies.csv') columns = body_columns
     if (suffix == '.history.csv') columns = history_columns
@@ -153,6 +155,8 @@ contains
     select case (name)
     case ('contact')
       call put_contact()
+    case ('friction')
+      call put_friction(run, table)
     case ('zones')
       call put_zones()
     case ('lines')

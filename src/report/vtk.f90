@@ -76,7 +76,7 @@ contains
       call file%line('<PointData Vectors="displacement">')
       call file%put('node_id', model%mesh%node_id(node))
       call file%put('displacement', answer%displacement(:, node))
-      force = pair_forces(model, answer%contact%force)
+      force = pair_forces(model, answer%contact%row_forces())
       call file%put('contact_force', force(:, node))
       call file%put('reaction', answer%reaction(:, node))
       call file%line('</PointData>'//newline//'<CellData Scalars="equivalent_stress">')
@@ -109,6 +109,8 @@ contains
     type(vtk_cells) :: cells
     integer, dimension(run%model%contact%pairs) :: bconp, zone   ! 0 for a CGAP; 0 outside of zones
     real(wp) :: force(directions, run%model%contact%pairs)
+    real(wp), dimension(run%model%contact%pairs) :: friction, slip
+    logical :: sticking(run%model%contact%pairs)
     integer :: k
 
     line = find_contact_line(run%model)
@@ -119,6 +121,16 @@ contains
       force(:, k) = run%answer%contact%force(k)*run%model%contact%normal(:, k)
       if (line%node(k) /= run%model%contact%pair_node(2, k)) force(:, k) = -force(:, k)
     end do
+    associate (contact => run%model%contact, found => run%answer%contact)
+      slip = 0.0_wp
+      friction = 0.0_wp
+      sticking = .false.
+      if (contact%has_friction()) then
+        slip(contact%sliding) = found%slip
+        friction(contact%sliding) = found%friction_force
+        sticking(contact%sliding) = found%sticking
+      end if
+    end associate
     zone = 0
     do k = 1, size(run%answer%zones)
       zone(run%answer%zones(k)%pairs) = k
@@ -139,6 +151,11 @@ contains
     call file%put('has_pressure', merge(1, 0, run%answer%pressure >= 0.0_wp))
     call file%put('gap', run%answer%contact%gap)
     call file%put('touching', merge(1, 0, run%answer%contact%touching))
+    if (run%model%contact%has_friction()) then
+      call file%put('friction_force', friction)
+      call file%put('slip', slip)
+      call file%put('sticking', merge(1, 0, sticking))
+    end if
     call file%put('zone', zone)
     call file%line('</PointData>'//newline//'<CellData Scalars="bconp">')
     call file%put('bconp', bconp(cells%point(cells%last)))

@@ -7,7 +7,7 @@ module epcont_result_body_force
   use epcont_model_model, only: model_type
   implicit none
   private
-  public :: body_force, find_body_forces, resultants, shares_of_pairs
+  public :: body_force, find_body_forces, resultants, shares_of_rows
 
   !> Contact resultant on a body with elements. In axisymmetric models it has no x, since hoop stresses carry
   !! radial forces.
@@ -22,7 +22,7 @@ contains
   !> Find the contact resultants on all bodies with elements.
   pure function find_body_forces(model, force) result(found)
     type(model_type), intent(in) :: model   !! model
-    real(wp), intent(in) :: force(:)        !! [force] [pairs]
+    real(wp), intent(in) :: force(:)        !! [force] [rows]
     type(body_force), allocatable :: found(:)
     real(wp) :: sums(directions, model%mesh%bodies)
     logical :: has_elements(model%mesh%bodies)
@@ -31,7 +31,7 @@ contains
     has_elements = .false.
     has_elements(model%mesh%body(model%mesh%connectivity(1, :))) = .true.
     sums = resultants(model, force)
-    where (abs(sums) <= cancelled*sum(force)) sums = 0.0_wp
+    where (abs(sums) <= cancelled*sum(abs(force))) sums = 0.0_wp
     if (model%has_rings()) sums(1, :) = 0.0_wp
     do i = model%mesh%nodes, 1, -1
       first(model%mesh%body(i)) = i
@@ -42,10 +42,10 @@ contains
     end associate
   end function find_body_forces
 
-  !> Find the resultants of pair forces on each body [force] [2, bodies].
+  !> Find the resultants of contact forces on each body [force] [2, bodies].
   pure function resultants(model, force) result(sums)
     type(model_type), intent(in) :: model   !! model
-    real(wp), intent(in) :: force(:)        !! [force] [pairs]
+    real(wp), intent(in) :: force(:)        !! [force] [pairs, or rows]
     real(wp) :: sums(directions, model%mesh%bodies)
     real(wp), allocatable :: nodal(:, :)
     integer :: i
@@ -57,18 +57,18 @@ contains
     end do
   end function resultants
 
-  !> Find the factor of each pair force in one component of the resultant on a body [pairs].
-  pure function shares_of_pairs(model, body, c) result(share)
+  !> Find the factor of each contact force in one component of the resultant on a body [rows].
+  pure function shares_of_rows(model, body, c) result(share)
     type(model_type), intent(in) :: model   !! model
     integer, intent(in) :: body, c          !! the body, the component
-    real(wp) :: share(model%contact%pairs)
+    real(wp) :: share(model%contact%rows())
     integer :: first, k, last
 
-    do k = 1, model%contact%pairs
+    do k = 1, size(share)
       first = model%contact%row_start(k)
       last = model%contact%row_start(k + 1) - 1
       share(k) = model%contact%normal(c, k)*sum(model%contact%row_weight(first:last), &
           mask=model%mesh%body(model%contact%row_node(first:last)) == body)
     end do
-  end function shares_of_pairs
+  end function shares_of_rows
 end module epcont_result_body_force
