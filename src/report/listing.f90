@@ -117,13 +117,14 @@ contains
     subroutine list_summary()
       call listing%heading('SUMMARY')
       call list_figures(listing, figures, [character(len=21) :: 'max_pressure', 'total_contact_force', &
-        'pairs_in_contact', 'approach_', 'angle_', 'moment_', 'spring_', 'plastic_elements', &
+        'pairs_in_contact', 'total_friction_force', 'pairs_sticking', 'pairs_slipping', 'max_slip', &
+        'approach_', 'angle_', 'moment_', 'spring_', 'plastic_elements', &
         'max_equivalent_stress', 'max_displacement', 'lowest_temperature', 'highest_temperature', 'status'])
       call listing%heading('CERTIFICATE  (recomputed from displacements and forces alone; tolerance '// &
                            short_real(valid_to)//')')
       call list_figures(listing, figures, [character(len=25) :: 'equilibrium_residual', 'smallest_', &
-        'largest_force_gap_product', 'stress_off_curve|', 'curve_tolerance', 'stress_off_curve_limit', &
-        'energy_balance'])
+        'largest_force_gap_product', 'friction_above_limit', 'largest_force_slip', 'stress_off_curve|', &
+        'curve_tolerance', 'stress_off_curve_limit', 'energy_balance'])
     end subroutine list_summary
 
     !> List iteration error and rounding error.

@@ -7,12 +7,13 @@ module epcont_report_summary
   use epcont_base_tolerances, only: valid_to
   use epcont_certificate_scene, only: little, overlap_place
   use epcont_element_kinematics, only: directions
-  use epcont_report_columns, only: estimate, factor, force, full_number, known, length, listed_number, &
-      number, part, rounding, size_of, stress
+  use epcont_report_columns, only: factor, force, known, length, listed_number, number, part, rounding, &
+      size_of, stress
   use epcont_model_arrays, only: angle
   use epcont_model_springs, only: spring_stretch
-  use epcont_messages_names, only: direction_of, motion_name, percent, point_name, when
+  use epcont_messages_names, only: direction_of, motion_name, point_name, when
   use epcont_messages_outcome, only: limit_of_pressure, reason_of, unbounded
+  use epcont_report_figure_list, only: figure_list, figure_type, new_figure_list
   use epcont_report_run, only: run_results
   use epcont_result_stresses, only: first_largest, place_of_point
   implicit none
@@ -20,25 +21,6 @@ module epcont_report_summary
   public :: figure_type, summarise
 
   character(len=*), parameter :: none = '', radian = 'radian'
-
-  integer, parameter :: room_at_first = 64   !! number of values
-
-  type :: figure_type
-    character(len=40) :: key = ''      !! in the file
-    character(len=26) :: value = ''
-    character(len=13) :: unit = ''
-    character(len=44) :: name = ''     !! in the listing; empty if it is not listed
-    character(len=64) :: listed = ''   !! its value there
-    character(len=80) :: note = ''     !! text after the value
-  end type figure_type
-
-  !> Values, in order.
-  type :: figure_list
-    type(figure_type), allocatable :: figure(:)   !! with free space
-    integer :: count = 0
-  contains
-    procedure, private :: put, list_as, put_word, put_error, put_increment_error, append
-  end type figure_list
 
 contains
 
@@ -48,7 +30,7 @@ contains
     type(figure_type), allocatable :: figures(:)
     type(figure_list) :: list
 
-    allocate (list%figure(room_at_first))
+    list = new_figure_list()
     call list%put_word('status', run%outcome%word, 'status')
     call list%put_word('warnings', text_of(run%faults%warnings + run%outcome%found%warnings), '')
     call list%put_word('notes', text_of(run%faults%notes + run%outcome%found%notes), '')
@@ -93,6 +75,7 @@ contains
                      when(run%model%contact%pairs > 0, 'total contact force'))
     call figures%put_word('pairs_in_contact', text_of(count(run%answer%contact%touching)), &
                           when(run%model%contact%pairs > 0, 'pairs in contact'))
+    if (run%model%contact%has_friction()) call put_friction(run, figures)
     call figures%put_word('plastic_elements', text_of(count(run%answer%plastic)), &
                           when(any(run%answer%plastic), 'yielded elements'))
     if (allocated(run%stress_path)) then
@@ -108,6 +91,23 @@ contains
                      'largest displacement')
     if (allocated(run%model%loads%free_strain)) call put_temperatures(run, figures)
   end subroutine put_answer
+
+  !> Add friction forces, and how many pairs stick and slip.
+  subroutine put_friction(run, figures)
+    type(run_results), intent(in) :: run
+    type(figure_list), intent(inout) :: figures
+
+    associate (contact => run%answer%contact, pair => run%model%contact%sliding)
+      call figures%put('total_friction_force', force, number, sum(abs(contact%friction_force)), &
+                       'total friction force')
+      call figures%put_word('pairs_sticking', text_of(count(contact%touching(pair) .and. contact%sticking)), &
+                            'pairs that stick')
+      call figures%put_word('pairs_slipping', text_of(count(contact%touching(pair) .and. .not. &
+                                                            contact%sticking)), 'pairs that slip')
+      call figures%put('max_slip', length, number, maxval(abs(contact%slip), mask=contact%touching(pair)), &
+                       'largest slip in this increment')
+    end associate
+  end subroutine put_friction
 
   !> Add the lowest and highest temperatures, relative to TREF, of elements with thermal expansion.
   subroutine put_temperatures(run, figures)
@@ -179,6 +179,13 @@ contains
       call figures%put('largest_force_gap_product', 'force*length', number, c%force_gap, &
                        'largest force times gap')
       call figures%list_as(listed_number(rounding, c%force_gap/c%force_scale/c%length_scale, 0.0_wp))
+      if (run%model%contact%has_friction()) then
+        call figures%put('friction_above_limit', force, number, c%excess, 'friction above mu R / largest force')
+        call figures%list_as(listed_number(rounding, c%excess/c%force_scale, 0.0_wp))
+        call figures%put('largest_force_slip_product', 'force*length', number, c%force_slip, &
+                         'largest missing friction times slip')
+        call figures%list_as(listed_number(rounding, c%force_slip/c%force_scale/c%length_scale, 0.0_wp))
+      end if
       call figures%put('stress_off_curve', none, rounding, c%off_curve, 'stress error')
       call figures%put('curve_tolerance', none, size_of, c%curve_tolerance, &
                        when(c%curve_tolerance > valid_to, '  tolerance, from the iteration'))
@@ -311,78 +318,4 @@ contains
 
     key = text_of(run%model%mesh%node_id(run%motions%node(k)))//'_'//direction_of(run%motions, k)
   end function motion_key
-
-  !> Add a number; its kind defines its digits in the listing.
-  subroutine put(self, key, unit, kind, value, name, note)
-    class(figure_list), intent(inout) :: self
-    character(len=*), intent(in) :: key, unit
-    integer, intent(in) :: kind
-    real(wp), intent(in) :: value
-    character(len=*), intent(in), optional :: name, note   !! in the listing
-    type(figure_type) :: figure
-
-    figure = figure_type(key, full_number(kind, value), unit)
-    if (present(name)) figure%name = name
-    figure%listed = listed_number(kind, value, 0.0_wp)
-    if (present(note)) figure%note = note
-    call self%append(figure)
-  end subroutine put
-
-  !> Replace the text of the last number in the listing.
-  subroutine list_as(self, listed)
-    class(figure_list), intent(inout) :: self
-    character(len=*), intent(in) :: listed
-
-    self%figure(self%count)%listed = listed
-  end subroutine list_as
-
-  !> Add a word.
-  subroutine put_word(self, key, word, name)
-    class(figure_list), intent(inout) :: self
-    character(len=*), intent(in) :: key, word
-    character(len=*), intent(in) :: name   !! in the listing; empty if it is not listed
-
-    call self%append(figure_type(key, word, '', name, word))
-  end subroutine put_word
-
-  !> Append a value. Space doubles, since many bodies have many values.
-  subroutine append(self, figure)
-    class(figure_list), intent(inout) :: self
-    type(figure_type), intent(in) :: figure
-    type(figure_type), allocatable :: more(:)
-
-    if (self%count == size(self%figure)) then
-      allocate (more(2*self%count))
-      more(:self%count) = self%figure
-      call move_alloc(more, self%figure)
-    end if
-    self%count = self%count + 1
-    self%figure(self%count) = figure
-  end subroutine append
-
-  !> Add an error by the size of the increments; the listing shows it if it is known.
-  subroutine put_increment_error(self, key, unit, name, error, value)
-    class(figure_list), intent(inout) :: self
-    character(len=*), intent(in) :: key, unit, name   !! key and name are those of the value
-    real(wp), intent(in) :: error, value
-
-    call self%put('increment_error_'//key, unit, known, error, &
-                  when(error >= 0.0_wp, 'increments: '//name), '   '//percent(error, value))
-    call self%list_as(listed_number(estimate, error, value))
-  end subroutine put_increment_error
-
-  !> Add a mesh error; the listing shows it if it is known, otherwise the reason.
-  subroutine put_error(self, key, unit, name, error, value, limit)
-    class(figure_list), intent(inout) :: self
-    character(len=*), intent(in) :: key, unit, name   !! key and name are those of the value
-    real(wp), intent(in) :: error, value
-    character(len=*), intent(in) :: limit             !! of the value: `bounded`, `singular` ...
-    character(len=:), allocatable :: reason
-
-    reason = reason_of(limit)
-    call self%put('mesh_error_'//key, unit, known, error, &
-                  when(reason /= '' .or. error >= 0.0_wp, 'mesh: '//name), &
-                  when(reason == '', '   '//percent(error, value)))
-    call self%list_as(when(reason == '', listed_number(estimate, error, value), reason))
-  end subroutine put_error
 end module epcont_report_summary
