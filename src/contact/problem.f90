@@ -48,6 +48,9 @@ module epcont_contact_problem
     !! no friction [tangential rows]
     real(wp), allocatable :: friction(:)
     integer, allocatable :: pair_of(:)
+    !> Forces with the states that are tried first, for example those of the last load step; not allocated:
+    !! the known forces, or all pairs stick [force] [n]
+    real(wp), allocatable :: guess_force(:)
   contains
     procedure :: between
   end type contact_problem

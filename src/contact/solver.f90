@@ -5,6 +5,7 @@ module epcont_contact_solver
     solved_to
   use epcont_contact_basis, only: contact_basis, move_basis, new_basis, respond
   use epcont_contact_equilibrium, only: find_rigid_start, rigid_start
+  use epcont_contact_friction, only: solve_friction
   use epcont_contact_problem, only: contact_no_equilibrium, contact_overlap, contact_problem, &
     contact_solution, contact_stalled, new_solution
   use epcont_contact_scaling, only: drop_motions, scale_problem, scaled_problem
@@ -35,6 +36,10 @@ contains
     type(motion_matrix) :: motion   ! A of all modes, scaled [n, m]
     real(wp), allocatable :: loose(:, :), ray(:)
 
+    if (allocated(problem%friction)) then
+      call solve_friction(problem, solution, start)
+      return
+    end if
     scaled = scale_problem(problem)
     motion = scaled%motion
     if (present(start)) scaled%guess = start

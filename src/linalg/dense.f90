@@ -4,12 +4,12 @@
 !> matrix is an error.
 module epcont_linalg_dense
   use epcont_base_kinds, only: wp
-  use epcont_linalg_lapack, only: dgemm, dgesv, dgesvd, dpotrf, dpotri, dpotrs, dpstrf, dsyrk, dtrsm
+  use epcont_linalg_lapack, only: dgemm, dgesvd, dgetrf, dgetrs, dpotrf, dpotri, dpotrs, dpstrf, dsyrk, dtrsm
   implicit none
   private
   public :: cholesky_factor, cholesky_inverse, cholesky_solve
   public :: factor_saddle, solve_saddle
-  public :: lu_solve, pivoted_cholesky, add_inner_products, add_product, null_space
+  public :: lu_factor, lu_substitute, lu_solve, pivoted_cholesky, add_inner_products, add_product, null_space
 
 contains
 
@@ -59,6 +59,27 @@ contains
     call dpstrf('L', n, a, n, order, rank, tolerance, work, info)
   end subroutine pivoted_cholesky
 
+  !> Replace a matrix by its LU factors.
+  pure subroutine lu_factor(a, pivots, info)
+    real(wp), contiguous, intent(inout) :: a(:, :)    !! [n, n]
+    integer, intent(out) :: pivots(size(a, 1))        !! exchanged rows [n]
+    integer, intent(out) :: info   !! 0, or the first pivot that is exactly zero
+
+    info = 0
+    if (size(a) > 0) call dgetrf(size(a, 1), size(a, 1), a, size(a, 1), pivots, info)
+  end subroutine lu_factor
+
+  !> Replace each column of `b` by the solution of a x = b.
+  pure subroutine lu_substitute(factor, pivots, b)
+    real(wp), contiguous, intent(in) :: factor(:, :)  !! from `lu_factor` [n, n]
+    integer, intent(in) :: pivots(:)                  !! [n]
+    real(wp), contiguous, intent(inout) :: b(:, :)    !! right-hand sides, then solutions [n, k]
+    integer :: info
+
+    if (size(b) > 0) &
+      call dgetrs('N', size(b, 1), size(b, 2), factor, size(factor, 1), pivots, b, size(b, 1), info)
+  end subroutine lu_substitute
+
   !> Solve a x = b; `a` is overwritten by its LU factors.
   pure subroutine lu_solve(a, b, info)
     real(wp), contiguous, intent(inout) :: a(:, :)    !! [n, n]
@@ -66,8 +87,8 @@ contains
     integer, intent(out) :: info   !! 0, or the first pivot that is exactly zero (`b` is then untouched)
     integer :: pivots(size(a, 1))
 
-    info = 0
-    if (size(a) > 0) call dgesv(size(a, 1), size(b, 2), a, size(a, 1), pivots, b, size(a, 1), info)
+    call lu_factor(a, pivots, info)
+    if (info == 0) call lu_substitute(a, pivots, b)
   end subroutine lu_solve
 
   !> c = c + factor a b.

@@ -7,7 +7,7 @@ module epcont_linalg_lapack
   implicit none
   private
   public :: dgemm, dgemv, dsyrk, dtrsm
-  public :: dpotrf, dpotrs, dpotri, dpstrf, dgesv, dgesvd
+  public :: dpotrf, dpotrs, dpotri, dpstrf, dgetrf, dgetrs, dgesvd
 
   ! Products, and solution with a triangle
   interface
@@ -92,13 +92,23 @@ module epcont_linalg_lapack
 
   ! General matrices
   interface
-    !> Solution by LU factors with row interchanges, which replace A
-    pure subroutine dgesv(n, nrhs, a, lda, ipiv, b, ldb, info)
+    !> LU factors with row interchanges, which replace A
+    pure subroutine dgetrf(m, n, a, lda, ipiv, info)
       import :: wp
-      integer, intent(in) :: n, nrhs, lda, ldb
-      real(wp), intent(inout) :: a(lda, *), b(ldb, *)
+      integer, intent(in) :: m, n, lda
+      real(wp), intent(inout) :: a(lda, *)
       integer, intent(out) :: ipiv(*), info
-    end subroutine dgesv
+    end subroutine dgetrf
+
+    !> Solution with the factors of dgetrf
+    pure subroutine dgetrs(trans, n, nrhs, a, lda, ipiv, b, ldb, info)
+      import :: wp
+      character, intent(in) :: trans
+      integer, intent(in) :: n, nrhs, lda, ldb, ipiv(*)
+      real(wp), intent(in) :: a(lda, *)
+      real(wp), intent(inout) :: b(ldb, *)
+      integer, intent(out) :: info
+    end subroutine dgetrs
 
     !> Singular values, descending, and singular vectors
     pure subroutine dgesvd(jobu, jobvt, m, n, a, lda, s, u, ldu, vt, ldvt, work, lwork, info)
