@@ -112,20 +112,25 @@ class Deck:
         self.card("SUPORT", node, 2)
         self.card("FORCE", 1, node, 0, load, 0.0, way, 0.0)
 
-    def press(self, mesh, line, value, first=1, theta=0.0):
+    def press(self, mesh, line, value, first=1, theta=0.0, case=1):
         """Pressure on the edges between the corners of a line."""
         corners = {n for nodes in mesh.element for n in nodes[:corners_of(nodes)]}
         line = [n for n in line if n in corners]
         for a, b in zip(line, line[1:]):
             element = mesh.side(a, b)
-            self.card("PLOADX1", 1, first + element, value, value, first + a, first + b, *([theta] if theta else []))
+            self.card("PLOADX1", case, first + element, value, value, first + a, first + b, *([theta] if theta else []))
 
     def sequence(self, *parts):
         """Load cases in sequence, each (title, factor of the loads, number of increments)."""
         for case, (title, part, increments) in enumerate(parts, 1):
-            self.cases += [f"SUBCASE {case}", f"  SUBTITLE = {title}", f"  LOAD = {case + 10}", f"  NLPARM = {case}"]
+            self.load_case(title, case + 10, case)
             self.card("LOAD", case + 10, 1.0, part, 1)
             self.card("NLPARM", case, increments)
+
+    def load_case(self, title, loads, increments=None):
+        """A further load case: the numbers of its loads and of its NLPARM."""
+        self.cases += [f"SUBCASE {1 + sum(line.startswith('SUBCASE') for line in self.cases)}", f"  SUBTITLE = {title}", f"  LOAD = {loads}"]
+        self.cases += [f"  NLPARM = {increments}"] if increments else []
 
     def hold(self, digits, nodes, first=1):
         nodes = sorted(first + n for n in nodes)

@@ -1,7 +1,9 @@
 """Models that yield."""
+import math
+
 from .deck import Deck
 from .elastic import flat_punch
-from .mesh import Mesh, block, cells, graded, rings, round_origin, squared, without_unused
+from .mesh import Mesh, block, cells, first_free, graded, rings, round_origin, squared, without_unused
 
 
 def grid(xs, ys):
@@ -108,6 +110,41 @@ def one_element_flow():
     deck.hold(1, [0, 3])
     deck.hold(2, [0, 1])
     deck.press(square, [1, 2], -300.0)
+    return deck
+
+
+def rolling(ratio=3.9, passes=10, n=4, step=2, length=8):
+    """A Hertz pressure with `n` elements in a half-width, which moves by `step` elements from load case to load case. The half plane repeats itself
+    after `length` half-widths."""
+    columns, deep, shear = length * n, 6.0, 200.0
+    fine = [j / n for j in range(n + n // 2 + 1)]
+    mesh = squared([i / n for i in range(columns + 1)], [-y for y in reversed(fine + [fine[-1] + y for y in graded(1.3 / n, 1.3, deep - fine[-1])[1:]])])
+    deck = Deck("MOVING HERTZ PRESSURE", [
+        f"A Hertz pressure of half-width a = 1 moves along the face of a half plane, by {step / n:g} from load case to load case, in {passes} passes. The "
+        f"half plane repeats itself after {length}: both sides of this block have the same displacements (RBE2). Plane strain, E = 210000, nu = 0.3, "
+        f"perfectly plastic; the yield stress in shear is k = {shear:g}, the largest pressure p0 = {ratio:g} k.",
+        "Known answer: up to p0/k = 4.000, where the largest shear stress along the face, p0/4, is k, later passes cause "
+        "less and less plastic strain (shakedown). Above that, each pass causes about the same plastic strain as the one before."], from_geometry=False)
+    deck.body(mesh, 1)
+    deck.material(1, 210000.0, 0.3)
+    deck.yields(1, math.sqrt(3.0) * shear, 0.0)
+    deck.hold(12, mesh.line["bottom"])
+    free = first_free(mesh)
+    for row, (left, right) in enumerate(zip(mesh.on(0, 0.0)[1:], mesh.on(0, float(length))[1:])):
+        deck.card("RBE2", free + row, left + 1, 12, right + 1)
+
+    def force(x):   # of the pressure left of x
+        x = max(-1.0, min(1.0, x))
+        return ratio * shear / 2 * (x * math.sqrt(1.0 - x * x) + math.asin(x))
+
+    top, places = mesh.line["top"], range(0, columns, step)
+    for case, place in enumerate(places, 1):
+        for i in range(-n, n):
+            at = (place + i) % columns
+            deck.press(mesh, top[at:at + 2], n * (force((i + 1) / n) - force(i / n)), case=case)
+    for turn in range(1, passes + 1):
+        for case, place in enumerate(places, 1):
+            deck.load_case(f"PASS {turn}, AT {place / n:g}", case)
     return deck
 
 
