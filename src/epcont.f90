@@ -95,7 +95,7 @@ contains
         call name_item(solution%model, found%list(k))
       end do
       k = findloc(found%list%severity, severity_error, dim=1)
-      if (k > 0) outcome%sentence = found%list(k)%what//' (wanted: '//found%list(k)%remedy//')'
+      if (k > 0) outcome%sentence = found%list(k)%what//' ('//found%list(k)%remedy//')'
       outcome%found = found
     end subroutine tell
   end subroutine solve_scene

@@ -21,8 +21,7 @@ import argparse
 import pathlib
 import sys
 
-from drawing import figure, kept, paper, style
-from drawing.run import Refused, Run
+from drawing import KINDS, Refused
 from wording import parser_of, run
 
 
@@ -33,6 +32,8 @@ def paper_figure(arguments):
     parser.add_argument("plastic", type=pathlib.Path)
     parser.add_argument("-o", "--output", type=pathlib.Path, required=True, help="name of the picture, without .png and .svg")
     options = parser.parse_args(arguments)
+    from drawing import paper, style   # after the options: --help needs no package
+    from drawing.run import Run
     runs = Run(options.elastic), Run(options.plastic)
     for run in runs:
         paper.check(run)
@@ -44,11 +45,13 @@ def one_figure(arguments):
     parser = parser_of(__doc__, "tools/plot")
     parser.add_argument("deck", type=pathlib.Path, nargs="?")
     parser.add_argument("-o", "--output", type=pathlib.Path, help="name of the picture, with .png")
-    parser.add_argument("--only", choices=figure.KINDS, help="panels of this kind only")
+    parser.add_argument("--only", choices=KINDS, help="panels of this kind only")
     parser.add_argument("--known", metavar="FORMULA", action="append", default=[], help="formula to draw with the pressures")
     parser.add_argument("--case", metavar="N", type=int, help="SUBCASE to draw; default: the one with the largest pressure. History panels show all")
     parser.add_argument("--all", action="store_true", help="draw the pictures kept beside the decks of input")
     options = parser.parse_args(arguments)
+    from drawing import figure, kept, style
+    from drawing.run import Run
     if options.all:
         if options.deck or options.output or options.only or options.known or options.case is not None:
             parser.error("--all with other arguments: use it alone")

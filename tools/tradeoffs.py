@@ -36,8 +36,8 @@ BASE = {"METHOD": "NEWTON", "TOL": "1.E-8", "RULE": "CONRY"}
 ORIGINAL = {"ORIGINAL": "YES"}
 #: A model: its known answer, its deck, its meshes (element, parameter; the finest of each element last), whether it yields, and has contact.
 Scene = collections.namedtuple("Scene", "name truth make meshes yields touches")
-#: A successful run: errors and estimates are relative, the largest of their type; None if there is no such value or estimate.
-Run = collections.namedtuple("Run", "scene element size choice cpu memory values error_p error_q estimate_p estimate_q")
+#: A successful run: errors are relative, the largest of their type; None if there is no such value.
+Run = collections.namedtuple("Run", "scene element size choice cpu memory values error_p error_q")
 
 
 def cylinders_pressed(element, across, yields):
@@ -84,16 +84,12 @@ def solve(scene, element, size, deck, choice, place):
     if cpu < 1.0:
         cpu = min(timed(command, place)[1] for _ in range(3))
     found = figures_of(path) if scene.touches else {"u": (inner_displacement(path), None)}
-    error, estimate = {}, {}
+    error = {}
     figures = [key for key in scene.truth if key[0] != "b"]
     for key in figures:
-        value, said = found[key]
         kind = "p" if key[0] == "p" else "q"
-        error[kind] = max(error.get(kind, 0.0), abs(value / scene.truth[key] - 1))
-        if said is not None:
-            estimate[kind] = max(estimate.get(kind, 0.0), said / abs(value))
-    return Run(scene.name, element, size, choice, cpu, memory, {key: found[key][0] for key in figures}, error.get("p"), error.get("q"),
-               estimate.get("p"), estimate.get("q"))
+        error[kind] = max(error.get(kind, 0.0), abs(found[key][0] / scene.truth[key] - 1))
+    return Run(scene.name, element, size, choice, cpu, memory, {key: found[key][0] for key in figures}, error.get("p"), error.get("q"))
 
 
 def worst(run):
@@ -139,15 +135,6 @@ def per_cent(part):
     return "" if part is None else short(100 * part, 2)
 
 
-def fronts(runs):
-    by_time, by_memory = front(runs, "cpu"), front(runs, "memory")
-    rows = sorted(by_time + [run for run in by_memory if run not in by_time], key=lambda run: -worst(run))
-    return table(["element", "mesh", "choice", "CPU, ms", "MB", "p_max error, %", "estimate", "approach error, %", "estimate", "front"],
-                 [[run.element.upper(), run.size, words(run.choice), short(1e3 * run.cpu), f"{run.memory:.1f}", per_cent(run.error_p),
-                   per_cent(run.estimate_p), per_cent(run.error_q), per_cent(run.estimate_q),
-                   " and ".join([word for word, of in (("time", by_time), ("memory", by_memory)) if run in of])] for run in rows])
-
-
 def elements(runs, scene):
     """Time that each element needs for an error with the base choice, interpolated between two meshes in logarithmic scales."""
     rows = []
@@ -179,26 +166,25 @@ def one_at_a_time(runs, failed, scene):
             against = [(run, base[key(run)]) for run in of]
             moved = max(abs(run.values[k] / whole.values[k] - 1) for run, whole in against for k in run.values)
             large = max(against, key=lambda pair: pair[1].cpu)
-            cells += [f"{statistics.median(run.cpu / whole.cpu for run, whole in against):.2f}", f"{large[0].cpu / large[1].cpu:.2f}",
-                      f"{large[0].memory / large[1].memory:.2f}", f"{moved:.0e}",
+            cells += [f"{statistics.median(run.cpu / whole.cpu for run, whole in against):.2f}", f"{large[0].memory / large[1].memory:.2f}", f"{moved:.0e}",
                       f"{statistics.median(worst(run) / worst(whole) for run, whole in against):.2f}"]
         else:
-            cells += [""] * 5
+            cells += [""] * 4
         rows.append([*cells, f"{lost} of {lost + len(of)}" if lost else ""])
     return rows
 
 
 def prices(rows):
-    """Summarize the rows of `one_at_a_time` over all models: range of times, largest change and error, runs without answer."""
+    """Summarize the rows of `one_at_a_time` over all models: ranges of time and memory, largest change and error, runs without answer."""
     choices_of = collections.defaultdict(list)
     for _, choice, *cells in rows:
         choices_of[choice].append(cells)
     lines = []
     for choice, cells in choices_of.items():
-        times, changes, errors = ([float(row[k]) for row in cells if row[k]] for k in (0, 3, 4))
-        lost = sum(int(row[5].split()[0]) for row in cells if row[5])
+        times, memory, changes, errors = ([float(row[k]) for row in cells if row[k]] for k in range(4))
+        lost = sum(int(row[4].split()[0]) for row in cells if row[4])
         if times:
-            lines.append([choice, f"{min(times):.2f} to {max(times):.2f}", f"{max(changes):.0e}", f"{max(errors):.2f}", lost or ""])
+            lines.append([choice, f"{min(times):.2f} to {max(times):.2f}", f"{min(memory):.2f} to {max(memory):.2f}", f"{max(changes):.0e}", f"{max(errors):.2f}", lost or ""])
     return lines
 
 
@@ -227,53 +213,23 @@ def draw(found, path):
     figure.savefig(path, dpi=110, metadata={"Software": None})
 
 
-#: Mechanisms that were removed: old and new program in turns, medians of five, one thread.
-REMOVED = [
-    ["PARAM RULE BLOCK: block pivoting with F of each body",
-     "600 pairs: 0.27 s, now 0.26 s (CONRY); 1000 pairs: 0.56 s, now 0.70 s (JOINED)", "300 lines for the same answer"],
-    ["F in levels: block tridiagonal matrices",
-     "30 bodies, 42 000 nodes: 0.43 s and 158 MB, now 0.65 s and 208 MB (JOINED). 16 x 16 bricks: 0.57 s and 66 MB, now 0.16 s and 26 MB", "900 lines"],
-    ["PARAM PRECIS SINGLE: factors in single precision",
-     "hertz 42000, elastic: 0.32 s and 112 MB, now 0.33 s and 141 MB; yielded: 0.65 s and 165 MB, now 0.82 s and 214 MB",
-     "1 000 lines, a second solve if single precision fails, and all tests in three precisions"],
-    ["PARAM PRECIS MIXED: the same with iterative refinement",
-     "hertz 42000, elastic: 0.39 s and 114 MB; yielded: 1.39 s and 166 MB", "the same lines; slower than double precision"],
-    ["forecast of the run time in seconds", "right within a factor of 2 for 151 of 152 decks", "360 lines of src and 700 of tests that depend on the machine"],
-    ["large pages under the factors; heap touched ahead", "0 to 4 % of processor time", "90 lines; one call of madvise has most of the gain (`system/memory.f90`)"],
-    ["condition estimate within the factorization", "at most 3 % of processor time", "110 lines; now one procedure of 20 lines (`assembly/stiffness.f90`)"],
-    ["adjoint loads along every rigid-body mode", "an error of each approach; now only of the 12 largest rigid-body displacements",
-     "350 lines; 16 x 16 bricks took 0.49 s and 66 MB, without 0.33 s and 36 MB"],
-    ["load cases of a deck in parallel", "none on one thread; for more threads, run decks in parallel (`tools/batch`)", "200 lines"],
-    ["cards read by several threads", "at most 0.013 s of 0.359 s (hertz 42000, two threads)", "60 lines"]]
-
-
 def page(found, quick, spent, picture):
     count = sum(len(runs) + len(failed) for _, runs, failed in found)
     single = [row for scene, runs, failed in found for row in one_at_a_time(runs, failed, scene)]
     text = ["# Time, memory and accuracy of each choice",
             f"`tools/tradeoff{' --quick' if quick else ''}` solved {count} combinations of mesh, element, method, tolerance and contact solver in {spent / 60:.0f} minutes "
             f"({platform.machine()}). The mesh decides: other choices on one mesh mostly leave the same error.",
-            "- Time: processor time of the whole process on one thread, the least of three runs. Memory: its peak.\n"
-            "- Error: true error of the largest pressure and of the approach, the worst of each model. For the tube: mean u(a). The pin has no approach, because its load is a point load.\n"
-            "- Estimate: the error that epcont itself states.\n"
-            "- Mesh: elements across the contact (cylinders), around the pin, through the wall (tube); size at the contact (joint).",
-            "## Price of a choice", f"Ranges over all models, relative to {words(BASE)} on the same mesh. `One choice at a time` below explains the columns.",
-            table(["choice", "time", "largest change", "largest error", "no answer"], prices(single)),
-            f"![Error against time]({picture})", "## Elements: milliseconds for an error",
-            f"Choices: {words(BASE)}, if they apply to the model. Error: the worse of largest pressure and approach, on this mesh and all finer ones.",
-            table(["model", "element", "3 %", "1 %", "0.3 %", "finest, % in ms"], [row for scene, runs, _ in found for row in elements(runs, scene)]),
-            "## One choice at a time",
-            f"All figures are relative to {words(BASE)} on the same mesh.",
-            "- Time: median over the meshes. Largest, memory: on the mesh that takes longest.\n"
-            "- Change: largest change of p_max or approach. Error: true error, median.\n"
+            "Time is the processor time of the whole process on one thread, the least of three runs. Error is the true error of largest pressure and approach, the worst of each model "
+            "(tube: mean u(a); pin: pressure alone, because its load is a point load).",
+            "## Price of a choice", f"All figures are relative to {words(BASE)} on the same mesh.",
+            "- Time: range over the models, each the median over its meshes. Memory: the same of the peak, on the mesh that takes longest.\n"
+            "- Change: largest change of p_max or approach. Error: factor of the true error, the largest median of a model.\n"
             "- No answer: runs without convergence in 100 iterations, or with an answer that the certificate rejects.",
-            table(["model", "choice", "time", "largest", "memory", "change", "error", "no answer"], single),
-            "## Removed", "Old and new program ran in turns. Processor time and peak memory, medians of five. Models are those of `tools/decks`.",
-            table(["mechanism", "gain", "reason for removal"], REMOVED),
-            "## Pareto fronts", "A run is on the front if its error is at least a tenth less than that of all cheaper runs. If choices on one mesh differ by less than a tenth, "
-            f"the one nearest to {words(BASE)} is shown."]
-    for scene, runs, _ in found:
-        text += [f"### {scene.name[0].upper()}{scene.name[1:]}", fronts(runs)]
+            table(["choice", "time", "memory", "change", "error", "no answer"], prices(single)),
+            f"![Error against time]({picture})",
+            f"Crosses: {words(BASE)}. Black line: each run has an error at least a tenth below that of all faster ones.", "## Elements: milliseconds for an error",
+            f"Choices: {words(BASE)}, if they apply to the model. The error is not exceeded on this mesh and all finer ones.",
+            table(["model", "element", "3 %", "1 %", "0.3 %", "finest, % in ms"], [row for scene, runs, _ in found for row in elements(runs, scene)])]
     return "\n\n".join(text) + "\n"
 
 

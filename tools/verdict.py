@@ -67,8 +67,9 @@ def decks_of(top):
             found.setdefault(str(path.relative_to(top).parent / name), {})[table] = path
     for path in sorted(top.rglob("batch.csv")):
         for row in tables.rows(path):
-            own = pathlib.PurePath(row.get("deck") or "").with_suffix("").parts
-            name = max((name for name in found if own[-len(pathlib.PurePath(name).parts):] == pathlib.PurePath(name).parts), key=len, default="/".join(own))
+            own, base = pathlib.PurePath(row.get("deck") or "").with_suffix("").parts, path.parent.relative_to(top).parts
+            ends = {name: pathlib.PurePath(name).parts[len(base):] for name in found if pathlib.PurePath(name).parts[:len(base)] == base}
+            name = max((name for name, end in ends.items() if own[-len(end):] == end), key=len, default="/".join((*base, *own)))
             found.setdefault(name, {}).setdefault("batch", []).append(row)
     return found
 
@@ -192,7 +193,7 @@ def compare_folders(first, second, relative=None, shown=20):
     names = sorted(old.keys() | new.keys())
     found = {name: worst_of(name, old.get(name), new.get(name), relative) for name in names}
     bad = [worst for worst in found.values() if worst]
-    for _, words in bad[:shown]:
+    for _, words in bad[:shown] if len(bad) > 1 else []:   # a single one is in the verdict
         print(words)
     verdict = f"{len(names)} deck{'s' * (len(names) != 1)}: "
     if not bad:

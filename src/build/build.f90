@@ -252,7 +252,7 @@ contains
       one%what = name//', SPC = '//text_of(subcase(case)%spc%id)//': '//one%what
     else
       one%what = name//' has no SPC: '//one%what
-      one%remedy = 'SPC = '//text_of(subcase(other)%spc%id)//' in it; or '//one%remedy
+      one%remedy = 'write SPC = '//text_of(subcase(other)%spc%id)//' in it; or '//one%remedy
       one%place = subcase(case)%place
     end if
   end subroutine name_supports

@@ -55,15 +55,17 @@ contains
       used = [used, cases%case(k)%set]
     end do
     call check_combinations(deck, card_load, load_cards, 'loads', &
-                            'the set of FORCE, PLOADX1, MOMENT, GRAV, RFORCE or SPCD cards', found)
+                            'give the set of FORCE, PLOADX1, MOMENT, GRAV, RFORCE or SPCD cards', found)
     call check_choices(deck, deck%subcase%contact, nint(deck%card(card_bconp)%value(1, :)), 'BCONTACT', &
-                       'there is no such BCONP', 'ALL, NONE or the id of a BCONP', found)
+                       'there is no such BCONP', 'give ALL, NONE or the id of a BCONP', found)
     call choose_load_steps()
     associate (mats1 => deck%card(card_mats1))
       if (cases%sequence .and. .not. data%controls%flow_theory .and. &
           any(mats1%word(mats1%column('TYPE'), :) == 'PLASTIC')) call found%add_error(deck%sequence, &
         'a sequence of SUBCASEs needs flow theory: total theory has no memory of earlier loads', &
         'remove PARAM THEORY or ORIGINAL, or write CNTNLSUB = NO: each begins with the unloaded state')
+      if (deck%linear%line > 0 .and. mats1%count > 0) &
+        call found%add_note(deck%linear, 'SOL: materials with MATS1 yield, as with SOL 106')
     end associate
     call note_unused(deck, load_cards, used, found)
     call note_unused(deck, [card_load], loads, found)
@@ -119,11 +121,11 @@ contains
           end associate
         end do
         call check_choices(deck, choice, nint(nlparm%value(1, :)), 'NLPARM', 'there is no such NLPARM', &
-                           'the id of an NLPARM card', found)
+                           'give the id of an NLPARM card', found)
         call note_unnamed(deck, card_nlparm, 1, choice%id, 'load case', found)
         row = deck%parameter_row('NLOAD')
         if (row > 0 .and. any(choice%id > 0)) call found%add_error(card_param, row, 1, &
-          ': NLPARM says the number of load steps, too', 'one of the two')
+          ': NLPARM gives the number of load steps, too', 'remove one of the two')
       end associate
     end subroutine choose_load_steps
   end subroutine read_cases
@@ -154,13 +156,13 @@ contains
         idle(i) = all(direction == 0.0_wp)
         if (force%number('N3', i) /= 0.0_wp) &
           call found%add_error(card_force, i, force%column('N3'), ': field 8 (N3) points off the plane', &
-                               '0.0: models lie in the x-y plane')
+                               'write 0.0: models are in the x-y plane')
         ! Not zero, but of a magnitude outside the allowed range.
         if (factor /= 0.0_wp .and. largest > 0.0_wp .and. &
             (abs(factor)*largest < least_cause .or. abs(factor)*largest > farthest)) &
           call found%add_error(card_force, i, force%column('F'), &
                                ': field 5 (F) times the vector of N1 and N2 is too far from 1.0', &
-                               'other units: forces from '//short_real(least_cause)//' to '// &
+                               'use other units: forces from '//short_real(least_cause)//' to '// &
                                short_real(farthest)//', or 0.0')
         ! Rounding of a right angle, such as the cosine of 90 degrees, is set to zero.
         where (abs(direction) < epsilon(1.0_wp)*largest) direction = 0.0_wp
@@ -182,7 +184,7 @@ contains
       do i = 1, size(idle)
         if (idle(i) .and. blank(i)) &
           call found%add_error(card_force, i, n1, ': N1 and N2 are blank: no direction', &
-                               'the direction of the force, such as 0.0 and -1.0')
+                               'give the direction of the force, such as 0.0 and -1.0')
       end do
       i = findloc(idle .and. .not. blank, .true., dim=1)
       if (i > 0) call found%add_note(card_force, i, n1, &

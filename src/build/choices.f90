@@ -65,12 +65,12 @@ contains
     associate (name => deck%card(card_param)%word(1, :))
       do row = 1, deck%card(card_param)%count
         if (any(name(:row - 1) == name(row)) .and. name(row) /= '') &
-          call found%add_error(card_param, row, 1, ' is there twice', 'one of the two')
+          call found%add_error(card_param, row, 1, ' is given twice', 'remove one of the two')
         if (any(name(row) == chosen)) beside = beside//', '//trim(name(row))
       end do
     end associate
     if (original .and. beside /= '') call found%add_error( &
       card_param, deck%parameter_row('ORIGINAL'), 2, &
-      ': YES chooses what other PARAMs say: '//beside(3:), 'these left out, or ORIGINAL')
+      ': YES chooses what other PARAMs say: '//beside(3:), 'remove them, or ORIGINAL')
   end subroutine check_once
 end module epcont_build_choices

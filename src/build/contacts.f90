@@ -67,10 +67,10 @@ contains
       if (norm2(z) > 0.0_wp) x = to_c - z*(dot_product(z, to_c)/dot_product(z, z))
       if (norm2(x) <= lost_digits*norm2(to_c)) then
         call found%add_error(card_cord2r, i, 1, ': points A, B and C lie on one line: no x-axis', &
-                             'three points that span a plane')
+                             'give three points that span a plane')
       else if (abs(x(3)) > lost_digits*norm2(x)) then
         call found%add_error(card_cord2r, i, 1, ': its x-axis points off the x-y plane', &
-                             'point C in the plane, B - A along z')
+                             'put point C in the plane, and B - A along z')
       else
         axis(:, i) = x(:2)/norm2(x(:2))
       end if
@@ -119,7 +119,8 @@ contains
           do id = blseg%list(k)%from, blseg%list(k)%to, blseg%list(k)%step
             if (nodes%find(id) > 0) cycle
             if (nodes%whole) &
-              call found%add_error(card_blseg, i, -k, ': there is no GRID '//text_of(id), 'the id of a GRID')
+              call found%add_error(card_blseg, i, -k, ': there is no GRID '//text_of(id), &
+                                   'give the id of a GRID')
             sound = .false.
             exit   ! the first node of a range
           end do

@@ -44,10 +44,10 @@ contains
         do i = 1, size(load)
           if (load(i)%factor == 0.0_wp .or. .not. card%sound(i)) cycle
           direction = [card%number('N1', i), card%number('N2', i)]
-          call want_zero(card_grav, i, 'N3', 'off the plane', '0.0: models lie in the x-y plane')
+          call want_zero(card_grav, i, 'N3', 'off the plane', 'write 0.0: models are in the x-y plane')
           if (all(direction == 0.0_wp)) &
             call found%add_error(card_grav, i, card%column('N1'), ': N1 and N2 are 0.0: no direction', &
-                                 'where it acts to, such as 0.0 and -1.0')
+                                 'give the direction in which it acts, such as 0.0 and -1.0')
           ! As for FORCE: rounding of a right angle is set to zero.
           where (abs(direction) < epsilon(1.0_wp)*maxval(abs(direction))) direction = 0.0_wp
           load(i)%acceleration = card%number('A', i)*direction
@@ -67,13 +67,13 @@ contains
         do i = 1, size(load)
           if (load(i)%factor == 0.0_wp .or. .not. card%sound(i)) cycle
           if (.not. (card%has('A', i) .or. card%has('RACC', i))) call found%add_error( &
-            card_rforce, i, card%column('A'), ': neither field 5 (A) nor field 13 (RACC) is given: no spin', &
-            'A, or RACC on the next line')
-          call want_zero(card_rforce, i, 'R1', 'along x', '0.0: '//axis_is())
+            card_rforce, i, card%column('A'), ': fields 5 (A) and 13 (RACC) are blank: no rotation', &
+            'give A, or RACC on the next line')
+          call want_zero(card_rforce, i, 'R1', 'along x', 'write 0.0: '//axis_is())
           call want_zero(card_rforce, i, merge('R3', 'R2', rings), merge('along z', 'along y', rings), &
-                         '0.0: '//axis_is())
+                         'write 0.0: '//axis_is())
           if (card%number(axis, i) == 0.0_wp) call found%add_error( &
-            card_rforce, i, card%column(axis), ': '//axis//' is 0.0: it has no axis', '1.0: '//axis_is())
+            card_rforce, i, card%column(axis), ': '//axis//' is 0.0: no axis', 'write 1.0: '//axis_is())
           load(i)%spin = card%number('A', i)*card%number(axis, i)
           load(i)%spin_up = card%number('RACC', i)*card%number(axis, i)
           if (centre(i) > 0) load(i)%centre = x(:, centre(i))

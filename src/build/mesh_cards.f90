@@ -52,7 +52,7 @@ contains
         do i = 1, grid%count
           if (z(i) /= 0.0_wp) &
             call refuse(deck, card_grid, i, 'X3', ': field 6 (X3) is '//short_real(z(i))//', off the plane', &
-                        '0.0: models lie in the x-y plane', found)
+                        'write 0.0: models are in the x-y plane', found)
         end do
       end associate
     end associate
@@ -165,16 +165,17 @@ contains
           material(i)%expansion == 0.0_wp) call found%add_note(card_mat1, i, mat1%column('TREF'), &
                                                                ': field 8 (TREF) has no effect without A')
       if (count([mat1%has('E', i), mat1%has('G', i), mat1%has('NU', i)]) < 2) then
-        call refuse(deck, card_mat1, i, 'E', ': of E, G and NU two are needed', 'E and NU, say', found)
+        call refuse(deck, card_mat1, i, 'E', ': two of E, G and NU are needed', &
+                    'give E and NU, for example', found)
       else if (.not. mat1%has('NU', i)) then
         poisson = young/(2.0_wp*shear) - 1.0_wp
         if (poisson < 0.0_wp .or. poisson >= 0.5_wp) &
           call refuse(deck, card_mat1, i, 'G', ': E and G give NU = '//short_real(poisson), &
-                      '0 <= NU < 0.5: G above E/3, up to E/2', found)
+                      'give a G above E/3 and at most E/2: 0 <= NU < 0.5', found)
       else if (.not. mat1%has('E', i)) then
         young = 2.0_wp*shear*(1.0_wp + poisson)
       else if (mat1%has('G', i) .and. abs(2.0_wp*shear*(1.0_wp + poisson) - young) > same_moduli*young) then
-        call refuse(deck, card_mat1, i, 'G', ': G is not E/(2(1 + NU))', 'a blank G', found)
+        call refuse(deck, card_mat1, i, 'G', ': G is not E/(2(1 + NU))', 'leave G blank', found)
       end if
     end associate
   end subroutine read_elasticity
@@ -192,15 +193,15 @@ contains
           material%curve = bilinear_curve(material%young, mats1%number('LIMIT1', i), mats1%number('H', i))
         else
           call refuse(deck, card_mats1, i, 'LIMIT1', ': neither a table nor a yield stress', &
-                      'TID, or LIMIT1 and H', found)
+                      'give TID, or LIMIT1 and H', found)
         end if
         return
       end if
       if (mats1%has('H', i)) call refuse(deck, card_mats1, i, 'H', ': field 5 (H) is given beside a table', &
-          'a blank H, or a blank TID', found)
+          'leave H or TID blank', found)
       if (.not. mats1%has('LIMIT1', i) .and. mats1%word(mats1%column('TYPE'), i) == 'PLASTIC') &
         call refuse(deck, card_mats1, i, 'LIMIT1', ': field 8 (LIMIT1) is blank', &
-                    'the yield stress: the second stress of the table', found)
+                    'give the yield stress: the second stress of the table', found)
     end associate
     if (table > 0) call read_table(deck, i, table, material%young, material%curve, found)
   end subroutine read_yielding
@@ -255,7 +256,7 @@ contains
         if (deck%card(card_mats1)%has('LIMIT1', i) .and. abs(limit - stress) > same_stress*stress) &
           call refuse(deck, card_mats1, i, 'LIMIT1', ': field 8 (LIMIT1) is '//short_real(limit)// &
                       ', the second stress of '//tables1%identity(t)//' '//short_real(stress), &
-                      'the same stress in both', found)
+                      'give the same stress in both', found)
       end associate
     end associate
   end subroutine read_table
@@ -318,7 +319,7 @@ contains
         kinematics = plane_strain
       else if (deck%parameter_row('PLANE') == 0) then
         call refuse(deck, card_pshell, i, 'MID2', ': neither plane strain nor plane stress is chosen', &
-                    '-1 here for plane strain, or PARAM,PLANE,STRAIN or PARAM,PLANE,STRESS', found)
+                    'write -1 here for plane strain, or add PARAM,PLANE,STRAIN or PARAM,PLANE,STRESS', found)
       end if
     end associate
   end subroutine choose_kinematics

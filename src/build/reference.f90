@@ -58,7 +58,7 @@ contains
       earlier = order(k - 1)
       if (id(i) == id(earlier) .and. deck%card(table(i))%given(1, row(i))) &
         call found%add_error(table(i), row(i), 1, ': the id is taken by '// &
-                             deck%card(table(earlier))%identity(row(earlier)), 'an id of its own')
+                             deck%card(table(earlier))%identity(row(earlier)), 'give it an id of its own')
     end do
   end subroutine check_unique
 
@@ -106,7 +106,7 @@ contains
         what = ': '//table%entry%field_text(column)//': there is no '//trim(noun)//' '//text_of(id(i))
         if (i > first) &
           what = what//'; '//text_of(i - first + 1)//' '//trim(table%entry%name)//' cards refer to it'
-        if (id(i) /= 0) call found%add_error(card, row(first), column, what, 'the id of '// &
+        if (id(i) /= 0) call found%add_error(card, row(first), column, what, 'give the id of '// &
                                              trim(merge('an', 'a ', noun == 'element'))//' '//trim(noun))
         first = i + 1
       end do
@@ -136,14 +136,27 @@ contains
       if (i > 0) then
         call found%add_error(table(i), row(i), 1, ': the deck has several sets, '//text_of(set(1))// &
                              ' and '//text_of(id(i))//', and chooses none', &
-                             word//' = '//text_of(set(1))//' before BEGIN BULK')
+                             'write '//word//' = '//text_of(set(1))//' before BEGIN BULK')
         return
       end if
     end if
     if (all(id /= 0)) &
-      call check_choices(deck, choice, id, word, 'the deck has no such set', &
-                         'the set of the cards in the deck', found)
+      call check_choices(deck, choice, id, word, 'the deck has no such set', set_remedy(id), found)
   end subroutine chosen_sets
+
+  !> Remedy for a set that does not exist: the sets of the deck.
+  pure function set_remedy(ids) result(text)
+    integer, intent(in) :: ids(:)   !! sets of all cards
+    character(len=:), allocatable :: text
+    integer :: i
+
+    text = ''
+    do i = 1, size(ids)
+      if (all(ids(:i - 1) /= ids(i))) text = text//' '//text_of(ids(i))
+    end do
+    if (text /= '') text = 'give a set of the deck:'//text
+    if (text == '') text = 'remove this line, or add cards of this set'
+  end function set_remedy
 
   !> Report once each choice of case control that no card matches.
   pure subroutine check_choices(deck, choice, ids, word, what, remedy, found)
@@ -179,7 +192,7 @@ contains
       do i = 1, combined%count
         if (.not. (combined%sound(i) .and. deck%whole)) cycle
         if (any(id == nint(combined%value(1, i)))) &
-          call found%add_error(card, i, 1, ': the id is that of a set of '//noun, 'an id of its own')
+          call found%add_error(card, i, 1, ': the id is that of a set of '//noun, 'give it an id of its own')
         do item = combined%list_start(i), combined%list_start(i + 1) - 1
           set = member_of(combined%list(item))
           if (any(id == set)) cycle
@@ -296,7 +309,7 @@ contains
         ids = text_of(from)
         if (to > from) ids = ids//' to '//text_of(to)
       end associate
-      call found%add_error(card, i, -item, ': there is no GRID '//ids, 'the id of a GRID')
+      call found%add_error(card, i, -item, ': there is no GRID '//ids, 'give the id of a GRID')
     end subroutine refuse
   end function nodes_of_lists
 end module epcont_build_reference

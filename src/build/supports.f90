@@ -132,7 +132,7 @@ contains
         end do
         if (conflict > 0) call found%add_error( &
           card(1), card(2), card(3), ': '//direction_text(deck, conflict, node)// &
-          ' is held at another displacement already', 'give one displacement for each DOF')
+          ' has another prescribed displacement already', 'give one displacement for each DOF')
       end associate
     end subroutine hold
   end subroutine find_held
@@ -159,9 +159,9 @@ contains
           if (at%c == angle) node = data%platen(at%node)%leader
           if (before(at%c, node) == 0) before(at%c, node) = i
           if (.not. held(at%c, node, cases%case(k)%pattern)) then
-            call refuse(' is not fixed', 'SPC or SPC1 of this direction, in the set that the case has')
+            call refuse(' is not fixed', 'fix this direction with SPC or SPC1, in the set of the load case')
           else if (displacement(i) /= displacement(before(at%c, node))) then
-            call refuse(' has another displacement already', 'one displacement for each direction')
+            call refuse(' has another displacement already', 'give one displacement for each direction')
           end if
         end associate
       end do
@@ -235,7 +235,7 @@ contains
                               ' rotates, so GM follow in directions 1 and 2')
         else if (.not. any(tied)) then
           call found%add_warning(card_rbe2, i, 3, ': field 4 (CM) ties neither direction 1 nor 2', &
-                                 'the directions in which GM move as GN does, such as 12')
+                                 'give the directions in which GM move with GN, such as 12')
         end if
       end do
     end subroutine check_ties

@@ -40,7 +40,7 @@ contains
       if (all(temp%sound) .and. all(tempd%sound)) &
         call check_choices(deck, deck%subcase%temperature, nint([temp%value(1, :), tempd%value(1::2, :)]), &
                            'TEMPERATURE', 'the deck has no such set', &
-                           'the set of TEMP or TEMPD cards in the deck', found)
+                           'give the set of TEMP or TEMPD cards in the deck', found)
     end associate
     call note_unused(deck, cases%heat%set, found)
 
@@ -104,7 +104,7 @@ contains
       associate (said => deck%card(card)%value(column + 1, i))
         if (by > 0 .and. any(temperature < said .or. temperature > said)) &
           call found%add_error(card, i, column, ': another temperature than '// &
-                               deck%card(card)%identity(by)//' has for the same', 'one temperature')
+                               deck%card(card)%identity(by)//' has for the same', 'give one temperature')
         by = i
         temperature = said
       end associate
@@ -125,7 +125,7 @@ contains
     k = findloc(unnamed, .true., dim=1)
     if (k > 0 .and. default_by == 0) call found%add_error(of_node, k, 1, &
       ': has no temperature in set '//text_of(set)//and_more(count(unnamed), '; nor have ', ' more'), &
-      'TEMP or TEMPD')
+      'add TEMP or TEMPD')
     if (default_by > 0 .and. .not. any(unnamed) .and. any(expands)) &
       call found%add_note(card_tempd, default_by, 1, ': all nodes have a TEMP in set '//text_of(set))
     if (found%errors > 0) return   ! a wrong card may have it
@@ -134,9 +134,9 @@ contains
     if (k > 0) then
       call found%add_warning(card_temp, named_by(1, k), named_by(2, k), ': no material expands at '// &
                              deck%card(card_grid)%identity(k)// &
-                             and_more(count(vain), ', nor at ', ' more nodes'), 'A on its MAT1')
+                             and_more(count(vain), ', nor at ', ' more nodes'), 'give A on its MAT1')
     else if (.not. any(expands)) then
-      call found%add_warning(card_tempd, default_by, 1, ': no material expands', 'A on MAT1')
+      call found%add_warning(card_tempd, default_by, 1, ': no material expands', 'give A on MAT1')
     end if
   end subroutine check_nodes
 

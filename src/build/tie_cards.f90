@@ -20,7 +20,7 @@ module epcont_build_tie_cards
   !> Digits of both displacements and of the rotation about z.
   integer, parameter, public :: digit(angle) = [1, 2, 6]
 
-  character(len=*), parameter :: in_plane = ': models lie in the x-y plane'
+  character(len=*), parameter :: in_plane = ': models are in the x-y plane'
 
 contains
 
@@ -64,7 +64,7 @@ contains
     do c = 3, digit(angle)
       if (.not. names(digits, c) .or. (c == digit(angle) .and. any(data%platen%leader == node))) cycle
       call found%add_error(card(1), card(2), card(3), ': '//deck%card(card_grid)%identity(node)// &
-                           ' has no direction '//text_of(c), 'direction 1 or 2; 6 at the GN of an RBE2')
+                           ' has no direction '//text_of(c), 'give direction 1 or 2; 6 at the GN of an RBE2')
       return
     end do
   end subroutine check_directions
@@ -134,14 +134,14 @@ contains
         platen = findloc(data%platen%leader, node(i), dim=1)
         if (any([cards%number('N1', i), cards%number('N2', i)] /= 0.0_wp)) then
           call found%add_error(card_moment, i, cards%column('N1'), ': the moment is not about z', &
-                               'N1 and N2 0.0'//in_plane)
+                               'write 0.0 for N1 and N2'//in_plane)
         else if (cards%number('N3', i) == 0.0_wp) then
           call found%add_error(card_moment, i, cards%column('N3'), ': field 8 (N3) is 0.0: no direction', &
-                               '1.0, or -1.0 for clockwise')
+                               'write 1.0, or -1.0 for clockwise')
         else if (platen == 0) then
           call found%add_error(card_moment, i, 2, ': '//deck%card(card_grid)%identity(node(i))// &
-                               ' leads no RBE2, and elements have no rotations', &
-                               'the GN of an RBE2 that spreads the moment')
+                               ' is not GN of an RBE2, and elements have no rotations', &
+                               'give the GN of an RBE2 that distributes the moment')
         else
           moment = [moment, set_moment(nint(cards%value(1, i)), platen, &
                                        cards%number('M', i)*cards%number('N3', i))]
@@ -163,8 +163,8 @@ contains
     call chosen_sets(deck, [card_mpc, card_mpcadd], deck%subcase%mpc, 'MPC', found, set)
     k = findloc(set /= set(1), .true., dim=1)
     if (k > 0) call found%add_error(deck%subcase(k)%mpc%place, 'MPC is not that of the first load case', &
-                                    'the same equations in all of them')
-    call check_combinations(deck, card_mpcadd, [card_mpc], 'MPC', 'the set of MPC cards', found)
+                                    'use the same equations in all load cases')
+    call check_combinations(deck, card_mpcadd, [card_mpc], 'MPC', 'give the set of MPC cards', found)
     sets = set(:1)
     associate (sums => deck%card(card_mpcadd))
       do i = 1, sums%count
@@ -208,10 +208,10 @@ contains
           a = item%number(3)
           do k = 1, size(node)
             if (node(k) == 0 .and. nodes%whole) call found%add_error(card_mpc, card, -before - k, &
-              ': there is no GRID '//text_of(nint(item(k)%number(1))), 'the id of a GRID')
+              ': there is no GRID '//text_of(nint(item(k)%number(1))), 'give the id of a GRID')
             if (node(k) > 0 .and. c(k) > 2) call found%add_error(card_mpc, card, -before - k, ': '// &
               deck%card(card_grid)%identity(node(k))//' has no direction '//text_of(c(k)), &
-              'direction 1 or 2'//in_plane)
+              'give direction 1 or 2'//in_plane)
           end do
         end associate
         sound = table%sound(card) .and. all(node > 0 .and. c <= 2)
@@ -256,7 +256,7 @@ contains
                        int(deck%card(card_pelas)%value(column, row)), dim=1)
           if (at < i) call found%add_error(card_pelas, row, column, ': the id '// &
             text_of(nint(deck%card(card_pelas)%value(column, row)))//' is taken by another PELAS', &
-            'an id of its own')
+            'give it an id of its own')
         end associate
       end do
     end subroutine check_properties
@@ -279,7 +279,7 @@ contains
           if (card == card_celas1) then
             property = properties%find(nint(table%value(2, i)))
             if (property == 0) call found%add_error(card, i, 2, ': there is no PELAS '// &
-              text_of(nint(table%value(2, i))), 'the id of a PELAS')
+              text_of(nint(table%value(2, i))), 'give the id of a PELAS')
             if (property == 0) cycle
             spring%stiffness = stiffness(property)
           end if

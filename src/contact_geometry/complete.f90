@@ -88,8 +88,9 @@ contains
       call tie_freedom(model, k, tie(k), found)
     end do
     if (size(model%constraints%platen) > 0 .and. model%has_rings()) call found%add_error(of_platen, 1, 0, &
-      ': '//model%name_of(of_node, model%constraints%platen(1)%leader)//' would turn, and rings do not', &
-      'no MOMENT, SUPORT or SPC that names its direction 6')
+      ': '//model%name_of(of_node, model%constraints%platen(1)%leader)// &
+      ' would rotate, and axisymmetric bodies do not', &
+      'remove the MOMENT, SUPORT or SPC of its direction 6')
     do k = 1, size(model%constraints%platen)
       call turn_followers(model, k, found)
     end do
@@ -124,7 +125,7 @@ contains
       any([(allocated(model%sections%curve(s)%strain), s=1, size(model%sections%curve))])
     if (model%controls%flow_theory) then
       if (model%controls%paper_ratio) call found%add_error(of_theory, 0, 2, &
-        ': FLOW does not go with MUP PAPER, a ratio of total theory', 'MUP EXACT, or THEORY TOTAL')
+        ': FLOW does not go with MUP PAPER, a ratio of total theory', 'use MUP EXACT, or THEORY TOTAL')
       if (any(model%controls%method == [method_secant, method_modsec])) &
         call found%add_error(of_theory, 0, 2, &
         ': FLOW does not go with METHOD SECANT or MODSEC, which use the whole strain', &
@@ -146,14 +147,14 @@ contains
     if (.not. model%controls%paper_ratio) return
     if (model%controls%method == method_newton) &
       call found%add_error(of_paper_ratio, 0, 2, ': PAPER does not go with METHOD NEWTON', &
-                           'METHOD SECANT, MODSEC or INISTR, or MUP EXACT')
+                           'use METHOD SECANT, MODSEC or INISTR, or MUP EXACT')
     do s = 1, size(model%sections%curve)
       if (model%sections%kinematics(s) == plane_strain .or. &
           .not. allocated(model%sections%curve(s)%strain)) cycle
       call found%add_error(of_paper_ratio, 0, 2, &
         ': formula (2-4) for Poisson''s ratio beyond yield (MUP PAPER) is of plane strain; '// &
         model%name_of(of_section, s)//' can yield, and is not', &
-        'plane strain, or MUP EXACT (ORIGINAL takes PAPER)')
+        'use plane strain, or MUP EXACT (ORIGINAL takes PAPER)')
       return
     end do
   end subroutine check_controls

@@ -54,7 +54,7 @@ contains
     end do
     do i = 1, size(model%contact%line)
       if (.not. used(i)) call found%add_warning(of_line, i, 1, ': no BCONP names it', &
-          'a BCONP with it as SLAVE or MASTER, or no such line')
+          'add a BCONP with it as SLAVE or MASTER, or remove the line')
     end do
     contacts = 0
     if (found%errors == 0) call join_couples()
@@ -79,11 +79,11 @@ contains
 
       associate (slave => model%contact%couple(i)%line(1), master => model%contact%couple(i)%line(2))
         if (slave == master) then
-          call found%add_error(of_couple, i, 3, ': SLAVE and MASTER are one line', 'another BLSEG')
+          call found%add_error(of_couple, i, 3, ': SLAVE and MASTER are one line', 'give another BLSEG')
           return
         else if (overlap(slave, master)) then
-          call found%add_error(of_couple, i, 3, ': SLAVE and MASTER share sides of elements', &
-                               'lines without a side in common')
+          call found%add_error(of_couple, i, 3, ': SLAVE and MASTER share edges of elements', &
+                               'give lines without a common edge')
           return
         end if
         do k = 1, i - 1
@@ -94,7 +94,7 @@ contains
           end associate
           call found%add_error(of_couple, i, 2, ': its lines are those of '//model%name_of(of_couple, k)// &
                                ': forces would be shared between the two', &
-                               'one BCONP for two lines: contact is exact either way')
+                               'keep one BCONP for two lines: contact is exact either way')
           return
         end do
       end associate
@@ -203,12 +203,12 @@ contains
     subroutine add_nothing_faced()
       character(len=:), allocatable :: remedy, what
 
-      what = ': no node of BLSEG '//text_of(contact%slave_id(1))//' faces a side of BLSEG '// &
+      what = ': no node of BLSEG '//text_of(contact%slave_id(1))//' faces an edge of BLSEG '// &
              text_of(contact%master_id(1))
-      remedy = 'lines that face each other'
+      remedy = 'give lines that face each other'
       if (faces%same_way > 0) then
-        what = what//'; '//text_of(faces%same_way)//' of them near sides that look the same way'
-        remedy = 'boundaries of two bodies that face each other'
+        what = what//'; '//text_of(faces%same_way)//' of them near edges that face the same way'
+        remedy = 'give boundaries of two bodies that face each other'
       end if
       call found%add_error(of_couple, contact%couple(1), 1, what, remedy)
     end subroutine add_nothing_faced

@@ -33,12 +33,12 @@ contains
       associate (line => model%contact%line(i))
         allocate (line%side(0))
         if (size(line%node) == 1) &
-          call found%add_error(of_line, i, 0, ': one node is no line', 'two nodes or more')
+          call found%add_error(of_line, i, 0, ': one node is no line', 'give two nodes or more')
         passed = first_passed_twice(line%node)
         if (passed > 0) then
           call found%add_error(of_line, i, -passed, ': '//model%name_of(of_node, line%node(passed))// &
-                               ' stands in it before', &
-                               'each node once; a closed line ends with its first node')
+                               ' is already in it', &
+                               'name each node once; end a closed line with its first node')
         else
           call walk(line%node)
         end if
@@ -78,8 +78,9 @@ contains
       model%contact%line(i)%side = side(:sides)
       k = model%mesh%body_outline%after(side(sides))
       if (sides > 3 .and. model%mesh%body_outline%after(k) == side(1)) &
-        call found%add_warning(of_line, i, -size(node), ': it leaves out only the side back to its first'// &
-                               ' node', 'that node once more at its end: a closed line')
+        call found%add_warning(of_line, i, -size(node), &
+                               ': it leaves out only the edge back to its first node', &
+                               'repeat that node at its end: the line is then closed')
       model%contact%line(i)%box = reshape([minval(model%mesh%x(:, node), dim=2), &
                                            maxval(model%mesh%x(:, node), dim=2)], [2, 2])
     end subroutine walk
@@ -133,13 +134,13 @@ contains
 
     ends = model%name_of(of_node, node(1))//' and '//text_of(model%mesh%node_id(node(2)))
     if (size(element) == 0) then
-      call found%add_error(of_line, i, -k - 1, ': '//ends//' are not the ends of a side of an element', &
-                           'nodes in the order of the boundary, from corner to corner')
+      call found%add_error(of_line, i, -k - 1, ': '//ends//' are not the ends of an edge of an element', &
+                           'give the nodes in the order of the boundary, from corner to corner')
     else
-      call found%add_error(of_line, i, -k - 1, ': the side between '//ends// &
+      call found%add_error(of_line, i, -k - 1, ': the edge between '//ends// &
                            ' lies inside a body, between '//model%name_of(of_element, element(1))// &
                            ' and '//model%name_of(of_element, element(size(element))), &
-                           'sides that one element has')
+                           'give edges that belong to one element only')
     end if
   end subroutine add_no_side
 

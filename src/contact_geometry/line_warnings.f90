@@ -58,7 +58,7 @@ contains
       call found%add_warning(of_couple, contact%couple(1), 1, ': the initial gap at '// &
                              model%name_of(of_node, model%contact%pair_node(2, deepest))//' is '// &
                              short_real(model%contact%initial_gap(deepest))//others, &
-                             'gaps of 0.0 or more, unless a fit is meant')
+                             'give gaps of 0.0 or more, unless you mean an interference fit')
     end subroutine warn_of_overlap
 
     !> Warn of a finer slave. Slave nodes carry the pressure. If they are closer than the master nodes, they
@@ -71,14 +71,14 @@ contains
       if (sides(1)*finer >= sides(2)) return
       if (sides(1)*far_coarser < sides(2)) then
         text = 'pressures and approaches will be those of facets'
-        advice = 'lines of about the same fineness'
+        advice = 'mesh both lines with edges of similar length'
       else
         text = 'pressures will show these as facets'
-        advice = 'SLAVE and MASTER exchanged, or lines of about the same fineness'
+        advice = 'exchange SLAVE and MASTER, or mesh both lines with edges of similar length'
       end if
-      call found%add_warning(of_couple, contact%couple(1), 2, ': sides of the slave line are '// &
+      call found%add_warning(of_couple, contact%couple(1), 2, ': edges of the slave line are '// &
                              short_real(sides(2)/sides(1))// &
-                             ' times shorter than those that they face: '//text, advice)
+                             ' times shorter than their opposite edges: '//text, advice)
     end subroutine warn_of_finer_slave
 
     !> Lengths, from node to node, of the slave edges and of their opposite edges, summed where the lines are
@@ -114,7 +114,7 @@ contains
         call found%add_warning(of_couple, contact%couple(1), 2, ': the slave is '// &
                                short_real(thickness(1))//' thick, the master '//short_real(thickness(2))// &
                                ': pressures are forces by the slave''s area, of which the master covers '// &
-                               'a part', 'SLAVE and MASTER exchanged')
+                               'a part', 'exchange SLAVE and MASTER')
     end subroutine warn_of_thicker_slave
   end subroutine warn_of_contact
 

@@ -35,14 +35,14 @@ contains
     call find_chains()
     first = findloc(edge(3, :) > 0, .true., dim=1)
     if (first == 0) return
-    call found%add_warning(of_node, first, 1, ': lies on side '//model%name_of(of_node, edge(1, first))// &
+    call found%add_warning(of_node, first, 1, ': is on edge '//model%name_of(of_node, edge(1, first))// &
                            ' to '//text_of(model%mesh%node_id(edge(2, first)))//' of '// &
-                           model%name_of(of_element, edge(3, first))//' and is '// &
-                           trim(merge('a corner beside it', 'no node of it     ', &
+                           model%name_of(of_element, edge(3, first))//' '// &
+                           trim(merge('and is a corner beside it', 'but not a node of it     ', &
                                       any(model%mesh%connectivity(:, edge(3, first)) == first)))// &
                            ': the body may open there'// &
                            and_more(count(edge(3, :) > 0), '; so do ', ' more nodes'), &
-                           'elements that share all nodes of their common sides')
+                           'let the elements share all nodes of their common edges')
 
   contains
 
@@ -162,16 +162,16 @@ contains
         end do
       end do
       do i = 1, size(met)
-        call found%add_warning(of_node, first(1, met(i)), 1, ': lies where '// &
+        call found%add_warning(of_node, first(1, met(i)), 1, ': coincides with '// &
                                model%name_of(of_node, first(2, met(i)))// &
-                               ' of another body does, and no pair joins the two'// &
+                               ' of another body, and no pair joins the two'// &
                                and_more(twins(met(i)), '; so do ', ' more of these two bodies'), &
-                               'a CGAP, lines with a BCONP between them, or one GRID for both')
+                               'add a CGAP, or a BCONP between two lines, or use one GRID for both')
       end do
       twins(met) = 0
     end do
-    if (at > 0) call found%add_warning(of_node, at, 1, ': lies '//short_real(deepest%distance)// &
-      ' deep in the body of '//model%name_of(of_element, model%mesh%body_outline%element(deepest%side))// &
+    if (at > 0) call found%add_warning(of_node, at, 1, ': is '//short_real(deepest%distance)// &
+      ' inside the body of '//model%name_of(of_element, model%mesh%body_outline%element(deepest%side))// &
       ', with no pair there', 'move the bodies apart, or define a contact between them')
 
   contains

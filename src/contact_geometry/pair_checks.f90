@@ -67,7 +67,7 @@ contains
         if (along(1) <= -same_way .or. along(2) >= same_way) &
           call found%add_warning(of_pair, k, 1, ': its normal points the wrong way: into the body of GA, '// &
                                  'or out of that of GB', &
-                                 'GA and GB exchanged, or the x-axis of CID reversed')
+                                 'exchange GA and GB, or reverse the x-axis of CID')
       end do
     end subroutine warn_of_wrong_ways
 
@@ -87,10 +87,10 @@ contains
       if (all(sideways == 0.0_wp)) return
       far = maxloc(sideways, dim=1)
       call found%add_warning(of_pair, far, 4, ': GA and GB lie '//short_real(sideways(far))// &
-                             ' apart along the contact, more than a side there ('// &
+                             ' apart along the contact, more than an edge there ('// &
                              short_real(maxval(longest(model%contact%pair_node(:, far))))//')'// &
                              and_more(count(sideways > 0.0_wp), '; so do ', ' more'), &
-                             'nodes that lie opposite each other, or BLSEG lines with a BCONP between them')
+                             'pair nodes that are opposite each other, or use BLSEG lines with a BCONP')
     end subroutine warn_of_sideways
   end subroutine check_pairs
 
@@ -114,13 +114,13 @@ contains
     if (k > 0) call found%add_error(of_pair, k, 1, ': joins the nodes of '// &
         model%name_of(of_pair, cgap(k))//' along the same normal, with the '// &
         'same gap'//like_this(cgap), &
-        'one CGAP for two nodes and a normal')
+        'keep one CGAP for two nodes and a normal')
     k = findloc(line > 0, .true., dim=1)
     if (k == 0) return
     c = findloc(model%contact%line_contact%last >= line(k), .true., dim=1)
     call found%add_error(of_pair, k, 1, ': joins nodes that '// &
                          model%name_of(of_couple, model%contact%line_contact(c)%couple(1))// &
-                         ' joins along the same normal'//like_this(line), 'either CGAPs or a BCONP')
+                         ' joins along the same normal'//like_this(line), 'use either CGAPs or a BCONP')
   end subroutine refuse_pairs_twice
 
   !> First CGAP before pair k with the same nodes, normal and gap, 0 if absent.
@@ -213,8 +213,8 @@ contains
     which = and_more(size(held), ', and ', ' more')
     if (couple > 0) which = ': '//model%name_of(of_node, model%contact%pair_node(2, held(1)))//which
     call found%add_warning(merge(of_couple, of_pair, couple > 0), merge(couple, held(1), couple > 0), 1, &
-                           which//': can neither open nor close: the nodes on both sides are held '// &
-                           'along the normal', 'a free node on one side, or no pair')
+                           which//': can neither open nor close: the nodes on both sides are fixed '// &
+                           'along the normal', 'free the node on one side, or remove the pair')
 
   contains
 
@@ -262,10 +262,10 @@ contains
       what = ' at both ends and none at its middle, '//model%name_of(of_node, node(3))
       if (at(3)) what = ' at its middle, '//model%name_of(of_node, node(3))//', and none at its ends'
       call found%add_warning(of_pair, around%group(around%start(node(merge(3, 1, at(3))))), 1, &
-                             ': a side of '//model%name_of(of_element, element)//' has CGAPs'//what// &
+                             ': an edge of '//model%name_of(of_element, element)//' has CGAPs'//what// &
                              ': it will pass through what it touches, and the pressures are wrong'// &
-                             and_more(size(half), '; so it is with ', ' more'), &
-                             'CGAPs at all three nodes of the sides, or BLSEG and BCONP')
+                             and_more(size(half), '; so do ', ' more'), &
+                             'add CGAPs at all three nodes of the edges, or use BLSEG and BCONP')
     end associate
   end subroutine warn_of_half_sides
 
@@ -315,6 +315,6 @@ contains
     character(len=:), allocatable :: text
 
     text = ': forces would be shared between the two'
-    if (count(pair > 0) > 1) text = text//'; so it is with '//plural(count(pair > 0) - 1, 'more CGAP')
+    if (count(pair > 0) > 1) text = text//'; so do '//plural(count(pair > 0) - 1, 'more CGAP')
   end function like_this
 end module epcont_contact_geometry_pair_checks

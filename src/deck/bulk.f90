@@ -159,10 +159,10 @@ contains
       return
     end if
     remedy = suggestion(name, names, 'epcont --cards lists the cards that are read')
-    if (name == 'CQUAD9' .or. name == 'CQUAD') remedy = 'CTRIA6, CQUAD4 or CQUAD8'
+    if (name == 'CQUAD9' .or. name == 'CQUAD') remedy = 'use CTRIA6, CQUAD4 or CQUAD8'
     if (name == 'MATT1' .or. index(name, 'TABLEM') == 1) &
       remedy = 'use MAT1: moduli do not depend on temperature'
-    if (any(names == word)) remedy = 'fields of 8 columns, or commas'
+    if (any(names == word)) remedy = 'use fields of 8 columns, or commas'
     if (first == 1 .and. any(keyword == word) .or. word == 'BEGIN') &
       remedy = 'write one line BEGIN BULK after case control'
     call faults%add_error(card%place(0), 'unknown card '//name, remedy)

@@ -68,8 +68,8 @@ contains
     subroutine refuse_surplus()
       character(len=:), allocatable :: remedy
 
-      remedy = 'blank'
-      if (table%entry%list_slot == huge(1)) remedy = 'blank; '//trim(table%entry%name)// &
+      remedy = 'leave it blank'
+      if (table%entry%list_slot == huge(1)) remedy = 'leave it blank; '//trim(table%entry%name)// &
         ' ends with field '//text_of(number_of(size(table%entry%field)))
       call refuse(card, table, row, slot, 'must be blank', remedy, faults)
     end subroutine refuse_surplus
@@ -81,7 +81,7 @@ contains
         table%value(slot, row) = field%default
         if (field%same_as /= 0) table%value(slot, row) = table%value(slot + field%same_as, row)
         if (field%required .or. card%filled(slot + field%with(1)) .or. card%filled(slot + field%with(2))) &
-          call refuse(card, table, row, slot, 'is blank', field%allowed(), faults)
+          call refuse(card, table, row, slot, 'is blank', 'give '//field%allowed(), faults)
       end associate
     end subroutine take_blank
 
@@ -193,7 +193,7 @@ contains
 
     slot = table%entry%list_slot
     if (.not. any([(card%filled(k), k=slot, card%count)])) call refuse(card, table, row, slot, 'is blank', &
-                                                                       id%allowed(), faults)
+                                                                       'give '//id%allowed(), faults)
     do while (slot <= card%count)
       if (card%filled(slot)) call read_range(card, row, slot, table, faults)
       slot = slot + 1
@@ -226,7 +226,7 @@ contains
       call read_step(card, row, slot, item, table, faults)
     else if (item%to < item%from) then
       call refuse(card, table, row, slot, 'is less than the id before THRU', &
-                  'an id of at least '//text_of(item%from), faults)
+                  'give an id of at least '//text_of(item%from), faults)
       return
     end if
     call table%add_item(row, item)
@@ -258,7 +258,7 @@ contains
     else
       call refuse(card, table, row, slot, &
                   'does not lead from '//text_of(item%from)//' to '//text_of(item%to), &
-                  'a step that divides '//text_of(length), faults)
+                  'give a step that divides '//text_of(length), faults)
     end if
   end subroutine read_step
 
@@ -286,7 +286,7 @@ contains
       record = record + 1
       do k = first + size(table%entry%record), table%entry%record_slot(record) - 1
         if (card%filled(k)) call refuse(card, table, row, k, 'must be blank', &
-                                        'blank: the next follows on the next line', faults)
+                                        'leave it blank: the next follows on the next line', faults)
       end do
       first = table%entry%record_slot(record)
     end do
@@ -295,7 +295,7 @@ contains
       if (card%filled(slot)) &
         call faults%add_error(card%place(slot), table%identity(row)//': field '// &
                               text_of(number_of(slot))//' must be blank', &
-                              'blank: '//table%entry%end_word//' ends the card')
+                              'leave it blank: '//table%entry%end_word//' ends the card')
     end do
   end subroutine read_records
 
@@ -328,8 +328,9 @@ contains
     if (card%filled(slot)) then
       call read_slot(card, table, row, slot, entry, value, faults)
     else if (entry%required) then
-      remedy = entry%allowed()
-      if (table%entry%end_word /= '') remedy = 'a real, or '//table%entry%end_word//' after the last point'
+      remedy = 'give '//entry%allowed()
+      if (table%entry%end_word /= '') &
+        remedy = 'give a real, or '//table%entry%end_word//' after the last point'
       call refuse(card, table, row, slot, 'is blank', remedy, faults)
     end if
   end subroutine read_part
@@ -342,19 +343,19 @@ contains
     character(len=:), allocatable, intent(out) :: what, remedy
     integer :: last
 
-    remedy = entry%allowed()
+    remedy = 'give '//entry%allowed()
     select case (value%outcome)
     case (scan_no_point)
       what = 'is not a real number'
       last = verify(text(2:)//'.', '0123456789')   ! last of its digits
-      remedy = 'a real needs a decimal point: '//text(:last)//'.'//text(last + 1:)
+      remedy = 'add the decimal point: '//text(:last)//'.'//text(last + 1:)
       if (last == len(text)) remedy = remedy//'0'
     case (scan_too_large)
       what = 'is too large for a number'
-      if (entry%kind == kind_real) remedy = 'at most 1.0E+30'
+      if (entry%kind == kind_real) remedy = 'give at most 1.0E+30'
     case (scan_too_small)
       what = 'is too small for a number'
-      remedy = '0.0, or at least 2.226E-308'
+      remedy = 'give 0.0, or at least 2.226E-308'
     case (out_of_reach)
       what = 'is too far from 1.0'
       remedy = 'use other units: magnitudes'
@@ -371,7 +372,7 @@ contains
       if (entry%kind == kind_word) what = 'is not an allowed word'
       if (entry%instead /= '' .and. value%number == entry%highest) then
         what = 'is '//text//', '//trim(entry%reason)
-        remedy = 'less, such as '//trim(entry%instead)
+        remedy = 'give less, such as '//trim(entry%instead)
       end if
     end select
   end subroutine explain

@@ -33,6 +33,7 @@ module epcont_deck_case_control
     character(len=:), allocatable :: title                   !! empty if not given
     type(subcase_control), allocatable :: subcase(:)         !! at least one
     type(place_type) :: sequence   !! statement that makes the load cases a sequence; line 0: absent
+    type(place_type) :: linear     !! SOL of a linear solution, such as 101; line 0: absent
     logical :: echo_unsorted = .false., echo_sorted = .false.   !! list the cards as they are, sorted by name
   contains
     procedure :: is_sequence
@@ -52,6 +53,8 @@ module epcont_deck_case_control
     '  1 24 66 101 106 400 401 402 600 601 SESTATIC NLSTATIC '
   !> Values of SOL whose load cases are a sequence unless CNTNLSUB says otherwise.
   character(len=*), parameter :: sequential = ' 66 106 NLSTATIC '
+  !> Values of SOL for which other programs use elastic material only.
+  character(len=*), parameter :: linear = ' 1 24 101 SESTATIC '
 
   !> A statement, cut into its parts. Columns are counted in its line.
   type :: statement
@@ -108,6 +111,7 @@ contains
           call faults%add_note(parts%value_place, 'SOL: epcont solves for static loads only')
         if (index(sequential, words) > 0 .and. .not. any(stated .and. keyword == 'CNTNLSUB')) &
           control%sequence = parts%value_place
+        if (index(linear, words) > 0) control%linear = parts%value_place
       case ('CEND')
         if (len(parts%value) > 0) &
           call faults%add_error(parts%value_place, 'CEND takes no value', 'remove it')
@@ -117,7 +121,7 @@ contains
           control%sequence = parts%word_place
         else if (upper(parts%value) /= 'NO') then
           call refuse(parts, 'a word', ' known to epcont', &
-                      'NO or YES: a list of SUBCASEs (SID) is not supported', faults)
+                      'give NO or YES: a list of SUBCASEs (SID) is not supported', faults)
         end if
       case ('SUBCASE')
         call begin_subcase()
@@ -208,8 +212,8 @@ contains
     if (outcome == scan_sound .and. value > 0 .and. value <= largest_id) then
       number = int(value)
     else
-      call refuse(parts, 'a number', ' that can be used', 'a whole number from 1 to '//text_of(largest_id), &
-                  faults)
+      call refuse(parts, 'a number', ' that can be used', &
+                  'give a whole number from 1 to '//text_of(largest_id), faults)
     end if
   end subroutine take_number
 
@@ -230,7 +234,7 @@ contains
 
     says_all = upper(parts%value) == 'ALL'
     if (.not. says_all .and. upper(parts%value) /= 'NONE') &
-      call refuse(parts, 'a word', ' known to epcont', 'ALL or NONE', faults)
+      call refuse(parts, 'a word', ' known to epcont', 'give ALL or NONE', faults)
   end function says_all
 
   !> Report a TEMPERATURE statement whose option is not LOAD.

@@ -17,7 +17,7 @@ module epcont_deck_former
     former_entry('PRECIS', '', .false., 'epcont always calculates in double precision', 'remove the card'), &
     former_entry('RULE', 'BLOCK', .false., 'AUTO finds the same answer, by CONRY or JOINED', &
                  'remove the card'), &
-    former_entry('SOLVER', 'SPARSE', .true., 'FRONTAL factors large bodies', 'AUTO, BAND or FRONTAL')]
+    former_entry('SOLVER', 'SPARSE', .true., 'FRONTAL factors large bodies', 'use AUTO, BAND or FRONTAL')]
 
 contains
 

@@ -113,7 +113,8 @@ contains
       call find_quoted(lines%text_of_line(line), place, name)
       place%line = line
       if (.not. allocated(name)) then
-        call faults%add_error(place, 'INCLUDE needs the name of a file between quotes', 'INCLUDE ''file''')
+        call faults%add_error(place, 'INCLUDE needs the name of a file between quotes', &
+                              'write INCLUDE ''file''')
         return
       end if
       parent = lines%line(line)%file
@@ -122,17 +123,17 @@ contains
       depth = files_above(parent, name)
       if (depth == 0) then
         trouble = shown(name)//' includes itself'
-        remedy = 'a file that does not lead back here'
+        remedy = 'include a file that does not lead back here'
       else if (depth > deepest) then
         trouble = 'files are included more than '//text_of(deepest)//' deep'
-        remedy = 'fewer levels'
+        remedy = 'use fewer levels'
       else if (size(lines%files) > most_files) then
         trouble = 'more than '//text_of(most_files)//' files'
-        remedy = 'fewer files'
+        remedy = 'use fewer files'
       else
         call load(name, parent, trouble, lines)
         if (allocated(trouble)) trouble = shown(name)//': '//trouble
-        remedy = 'a name relative to the file of this line'
+        remedy = 'give a name relative to the file of this line'
       end if
       if (allocated(trouble)) then
         call faults%add_error(place, 'INCLUDE: '//trouble, remedy)

@@ -11,10 +11,10 @@ module epcont_messages_array_words
 
   !> Words of decks, each with its replacement for models from arrays. Phrases come before their words.
   character(len=56), parameter :: word(*) = [character(len=56) :: &
-    'no MOMENT, SUPORT or SPC that names its direction 6', 'tie: it does not turn', &
+    'remove the MOMENT, SUPORT or SPC of its direction 6', 'use tie: it does not rotate', &
     'GA and GB are not the ends', 'its corners are not the ends', &
     'field 9 (CID) is blank', 'its normal is zero', &
-    'the id of a CORD2R whose x-axis is the normal', 'a normal', &
+    'give a CORD2R whose x-axis is the normal', 'give a normal', &
     'the x-axis of CID', 'the normal', &
     'with SPC1', '(held)', 'with SUPORT,', '(reference) at node,direction:', 'SUPORT', 'reference', &
     'an RBE2', 'a tie', 'RBE2', 'tie', 'GN', '`leader`', &
@@ -23,9 +23,10 @@ module epcont_messages_array_words
     'BLSEG lines', 'lines', 'BLSEG', 'line', 'BCONP', 'couple', 'SLAVE', 'slave', 'MASTER', 'master', &
     'PSHELL', 'section', 'PSOLID', 'section', 'the MAT1', 'young', &
     'field 5 (N1)', 'acceleration(1)', 'field 3 (G)', 'centre(1)', 'field 12 (RACC)', 'spin_up', &
-    'a node on it, or blank', 'a centre on it', 'field 6 (RHO)', 'density', &
+    'give a node on it, or leave it blank', 'give a centre on it', 'field 6 (RHO)', 'density', &
     'GRAV and RFORCE act', 'body_load acts', &
-    'the deck has no elements', 'there are no elements', 'CTRIA3 cards', 'add_elements', &
+    'the deck has no elements', 'there are no elements', &
+    'elements, such as CTRIA3', 'elements: call add_elements', &
     ' (MUP PAPER)', '', &
     'MUP EXACT (ORIGINAL takes PAPER)', '.false.', 'MUP EXACT', '.false.', &
     'THEORY TOTAL', '.false.', 'MUP PAPER', 'paper_ratio', &

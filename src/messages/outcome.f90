@@ -83,7 +83,7 @@ contains
     do k = 1, run%motions%count
       if (.not. run%answer%contact%motion_free(k)) cycle
       call found%add_note(place_type(), 'approach of '//motion_name(run, k)// &
-                                  ': undetermined rigid-body mode, so its value is arbitrary')
+                         ': undetermined rigid-body mode; its value is the smallest that the gaps allow')
     end do
   end subroutine remark_answer
 

@@ -95,10 +95,10 @@ contains
     case (much_overlap)
       text = 'bodies penetrate each other by '//by_much//word%penetration//finer
     case (much_gap)
-      text = 'a pair presses across a gap of '//by_much//word%distance//finer
+      text = 'a pair carries a force across a gap of '//by_much//word%distance//finer
     case default
       text = large_displacements//'bodies in contact slide by '//word%depth//' along each other, at '// &
-             word%at//', where sides are '//short_real(side)//' long; contact uses the undeformed shape'
+             word%at//', where edges are '//short_real(side)//' long; contact uses the undeformed shape'
     end select
   end function place_warning
 
@@ -121,7 +121,8 @@ contains
     place = faulty(worst)
     word = words_of(model, place)
     text = ''
-    if (worst == 2 .or. worst == 3) text = 'pair '//text_of(model%contact%pair_id(place%pair))//' presses '
+    if (worst == 2 .or. worst == 3) &
+      text = 'pair '//text_of(model%contact%pair_id(place%pair))//' carries a force '
     select case (worst)
     case (1)
       text = 'bodies pass through each other: '//word%penetration//'; '//word%allowed//' is allowed'
@@ -131,18 +132,18 @@ contains
       text = text//'. Possible fix: '//remedy(model, [place%side, place%other])
     case (2)
       text = text//'across a gap: '//word%distance//'; '//word%allowed//may_help// &
-             'pairs of nodes, or lines, that face each other'
+             'give pairs of nodes, or lines, that face each other'
     case (3)
       text = text//'beside the other body: at '//word%at//' is '//word%depth//' beside the end of '// &
-             word%other_side//'; '//word%allowed//may_help//'bodies in their final positions, '// &
-             'or longer ones: contact uses the undeformed shape'
+             word%other_side//'; '//word%allowed//may_help//'draw the bodies in their final positions, '// &
+             'or make them longer: contact uses the undeformed shape'
     case (4)
       passing = model%name_of(of_element, model%mesh%body_outline%element(place%side))
       if (place%node > 0) passing = model%name_of(of_node, place%node)
       text = 'bodies pass through each other on their way: '//passing//' of the body of '//word%body// &
-             ' goes through that of '//word%other_body//', '//word%depth//' deep at '// &
+             ' goes through that of '//word%other_body//', '//word%depth//' deep, at '// &
              point_name(place%x)//', behind '//word%other_side//'; '//word%allowed//may_help// &
-             remedy(model, [place%side, place%other])//', or loads and supports that move it another way'
+             remedy(model, [place%side, place%other])//', or change the loads and supports that move it'
     end select
   end function fault
 
@@ -181,7 +182,7 @@ contains
     character(len=:), allocatable :: name
 
     associate (outline => model%mesh%body_outline)
-      name = 'side '//model%name_of(of_node, outline%node(1, side))//' to '// &
+      name = 'edge '//model%name_of(of_node, outline%node(1, side))//' to '// &
              text_of(model%mesh%node_id(outline%node(2, side)))//' of '// &
              model%name_of(of_element, outline%element(side))
     end associate
@@ -209,10 +210,9 @@ contains
       of_slave = are_of(model, model%contact%line_contact(k)%slave, side)
       of_master = are_of(model, model%contact%line_contact(k)%master, side)
       if (.not. any(of_slave .and. of_master([2, 1]))) cycle
-      text = 'shorter sides of both lines there'
-      if (of_master(1)) text = 'SLAVE and MASTER of BCONP '// &
-        text_of(model%contact%line_contact(k)%bconp(1))// &
-                               ' exchanged, or '//text
+      text = 'use shorter edges on both lines there'
+      if (of_master(1)) text = 'exchange SLAVE and MASTER of BCONP '// &
+        text_of(model%contact%line_contact(k)%bconp(1))//', or '//text
       return
     end do
     line = 0
@@ -221,15 +221,15 @@ contains
               any(model%contact%line(k)%side == side(2))]) line = k
     end do
     if (all(line > 0)) then
-      text = 'a BCONP between BLSEG '//text_of(model%contact%line(line(1))%id)//' and BLSEG '// &
+      text = 'add a BCONP between BLSEG '//text_of(model%contact%line(line(1))%id)//' and BLSEG '// &
              text_of(model%contact%line(line(2))%id)
     else if (any(line > 0)) then
-      text = 'a BLSEG along '//side_name(model, side(minloc(line, dim=1)))// &
+      text = 'add a BLSEG along '//side_name(model, side(minloc(line, dim=1)))// &
              ', and a BCONP between it and BLSEG '//text_of(model%contact%line(maxval(line))%id)
     else
-      text = 'a BLSEG along each of the two sides, and a BCONP between the lines'
+      text = 'add a BLSEG along each of the two edges, and a BCONP between the lines'
       if (is_mate(find_mates(model), model%mesh%body_outline%node(:, side(1)), &
-                  model%mesh%body_outline%part(side(2)))) text = 'more CGAPs there, or '//text
+                  model%mesh%body_outline%part(side(2)))) text = 'add CGAPs there, or '//text
     end if
   end function remedy
 

@@ -48,8 +48,8 @@ contains
     ring = findloc(is_ring, .true., dim=1)
     plane = findloc(model%mesh%section > 0 .and. .not. is_ring, .true., dim=1)
     if (ring > 0 .and. plane > 0) call found%add_error(of_element, ring, 0, &
-      ': a ring in a deck of plane elements ('//model%name_of(of_element, plane)//')', &
-      'plane elements only, or rings only')
+      ': an axisymmetric element in a deck of plane elements ('//model%name_of(of_element, plane)//')', &
+      'use plane elements only, or axisymmetric elements only')
 
   contains
 
@@ -69,8 +69,8 @@ contains
         turn = kind%turn(x)
         extent = max(maxval(abs(x(1, 2:n) - x(1, 1))), maxval(abs(x(2, 2:n) - x(2, 1))))
         if (extent > 0.0_wp .and. extent < shortest_side) then
-          call found%add_error(of_element, e, -node(1), ': its sides are shorter than '// &
-                               short_real(shortest_side), 'other units')
+          call found%add_error(of_element, e, -node(1), ': its edges are shorter than '// &
+                               short_real(shortest_side), 'use other units')
         else if (turn /= 0 .or. kind%turn(straight) /= 0) then
           if (size(node) > n) call check_middles()
           if (turn < 0) then
@@ -79,11 +79,11 @@ contains
           end if
         else if (n == 3) then
           call found%add_error(of_element, e, -node(2), ': its corners '//ids(node(:n))//' lie on one line', &
-                               'corners that span an area')
+                               'give corners that span an area')
         else
           call found%add_error(of_element, e, -node(1), ': its corners '//ids(node(:n))// &
                                ' cross over, bend inwards or lie on one line', &
-                               'four corners in turn, each bending the same way')
+                               'give four corners in turn, each bending the same way')
         end if
       end associate
     end subroutine check_shape
@@ -91,7 +91,7 @@ contains
     !> Check mid-side nodes: they may leave the middle unless the element folds over. An edge that bulges
     !! more than half a circle is probably an error.
     subroutine check_middles()
-      character(len=*), parameter :: remedy = 'nodes near the middles of the sides'
+      character(len=*), parameter :: remedy = 'put it near the middle of its edge'
       character(len=:), allocatable :: name
       real(wp) :: part(n)
       integer :: node
@@ -103,11 +103,11 @@ contains
       node = model%mesh%connectivity(n + maxloc(part, dim=1), e)
       name = ': mid-side node '//text_of(model%mesh%node_id(node))
       if (turn == 0) then
-        call found%add_error(of_element, e, -node, name//' is so far from the middle of its side that '// &
+        call found%add_error(of_element, e, -node, name//' is so far from the middle of its edge that '// &
                              'the element folds over', remedy)
       else
-        call found%add_warning(of_element, e, -node, name//' is farther from the middle of its side '// &
-                               'than half of that side is long', remedy)
+        call found%add_warning(of_element, e, -node, name//' is farther from the middle of its edge '// &
+                               'than half of the length of that edge', remedy)
       end if
     end subroutine check_middles
 
@@ -171,19 +171,21 @@ contains
     end do
     do i = 1, model%mesh%nodes
       if (in_ring(i) .and. model%mesh%x(1, i) < 0.0_wp) then
-        call found%add_error(of_node, i, 3, ': belongs to a ring and lies at a negative radius', &
-                             'X1 of at least 0.0: x is the radius')
+        call found%add_error(of_node, i, 3, &
+                             ': belongs to an axisymmetric element and has a negative radius', &
+                             'give an X1 of at least 0.0: x is the radius')
       else if (beyond(i)) then
-        call found%add_error(of_node, i, 3, ': is the middle of a side of a ring that goes beyond the axis', &
-                             'x of at least 0.0 all along it: x is the radius')
+        call found%add_error(of_node, i, 3, &
+                             ': is the mid-side node of an axisymmetric edge that crosses the axis', &
+                             'keep x at least 0.0 all along it: x is the radius')
       end if
     end do
     loose = in_ring .and. model%mesh%x(1, :) == 0.0_wp .and. &
       .not. model%constraints%held(1, model%constraints%leader(1, :))
     if (.not. any(loose)) return
     call found%add_error(of_node, findloc(loose, .true., dim=1), 3, &
-                         ': lies on the axis of rings and could leave it'// &
-                         and_more(count(loose), '; so could ', ' more'), 'direction 1 held')
+                         ': is on the axis of axisymmetric bodies and could leave it'// &
+                         and_more(count(loose), '; so could ', ' more'), 'fix direction 1')
     found%list(found%count)%node = pack([(i, i=1, model%mesh%nodes)], loose)
   end subroutine check_axis
 
@@ -200,13 +202,13 @@ contains
     twice = [(on_the_same_corners(e), e=1, model%mesh%elements)]
     e = findloc(twice, .true., dim=1)
     if (e > 0) call found%add_warning(of_element, e, 1, ' has the nodes of '// &
-      model%name_of(of_element, over(e))//': both count, one upon the other'// &
-      and_more(count(twice), '; so it is with ', ' more'), 'one element, unless two laminae are meant')
+      model%name_of(of_element, over(e))//': both count, one on the other'// &
+      and_more(count(twice), '; so do ', ' more'), 'remove one, unless you mean two laminae')
     e = findloc(over > 0 .and. .not. twice, .true., dim=1)
     if (e > 0) call found%add_error(of_element, e, 1, ': overlaps '//model%name_of(of_element, over(e))// &
-      ': both lie the same way from the side that they share'// &
-      and_more(count(over > 0) - count(twice), '; so it is with ', ' more'), &
-      'elements that do not overlap, or laminae on the same corners')
+      ': both are on the same side of their common edge'// &
+      and_more(count(over > 0) - count(twice), '; so do ', ' more'), &
+      'use elements that do not overlap, or laminae on the same corners')
 
   contains
 

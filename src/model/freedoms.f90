@@ -54,14 +54,14 @@ contains
       at = model%constraints%leader(c, at)
     end do
     if (at == node) then
-      why = ' would follow itself'
-      remedy = 'nodes that follow GN, without GN'
+      why = ' would depend on itself'
+      remedy = 'let it depend on another node'
     else if (model%constraints%leader(c, node) /= node .or. model%constraints%sum_of(c, node) > 0) then
-      why = ' follows another RBE2 already'
+      why = ' depends on another RBE2 already'
       remedy = 'use one master node for each DOF'
     else if (model%constraints%held(c, node)) then
-      why = ' is held by a support too'
-      remedy = 'the support at GN '//text_of(model%mesh%node_id(leader))//' instead'
+      why = ' is fixed by a support too'
+      remedy = 'fix GN '//text_of(model%mesh%node_id(leader))//' instead'
     end if
   end subroutine why_not_tied
 
@@ -79,7 +79,7 @@ contains
     end do
   end subroutine follow_to_the_end
 
-  !> Check that a SUPORT DOF is free to move.
+  !> Check that a SUPORT DOF is not fixed.
   pure subroutine check_reference(model, c, node, found)
     type(model_type), intent(in) :: model      !! the model
     integer, intent(in) :: c, node             !! direction and node of the DOF
@@ -94,7 +94,7 @@ contains
                 model%constraints%sum_of(c, node) == 0
     end if
     if (.not. is_free) call found%add_error(of_reference, node, c, ': '//freedom(model, c, node)// &
-      ' is held by a support or follows an RBE2', 'use a DOF that is free to move')
+      ' is fixed by a support or depends on an RBE2', 'use a DOF that is not fixed')
   end subroutine check_reference
 
   !> Text of a DOF for messages: `direction 1 of GRID 17`.

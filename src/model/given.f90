@@ -61,17 +61,18 @@ contains
       if (found%errors == 0) call check_block(found, scene, kinds, nodes, 'block('//text_of(i)//')%', &
                                               scene%block(i), elements)
     end do
-    if (found%errors == 0) call need(found, [elements > 0], 'the deck has no elements', 'CTRIA3 cards')
+    if (found%errors == 0) call need(found, [elements > 0], 'the deck has no elements', &
+                                    'elements, such as CTRIA3')
     call need(found, all(abs(scene%x) <= farthest, dim=1), 'x(:, #) is no place', any_size())
     call need(found, all(has_size(scene%load), dim=1), 'load(:, #) is no force', any_size())
     call need(found, all(has_size(scene%prescribed), dim=1), 'prescribed(:, #) is no displacement', &
               any_size())
     call need(found, all(scene%held .or. scene%prescribed == 0.0_wp, dim=1), &
-              'prescribed(:, #) is not 0.0 where held is false', '0.0, or held')
+              'prescribed(:, #) is not 0.0 where held is false', '0.0, or set held there')
     call need(found, all(within(scene%pair_node, nodes), dim=1), 'pair_node(:, #) is no node', up_to(nodes))
     call need(found, abs(norm2(scene%normal, dim=1) - 1.0_wp) <= no_effect .or. &
               all(scene%normal == 0.0_wp, dim=1), &
-              'normal(:, #) is no unit vector', 'one of length 1, or zero: from A to B')
+              'normal(:, #) is no unit vector', 'a vector of length 1, or zero: from A to B')
     call need(found, has_size(scene%initial_gap), 'initial_gap(#) is no length', any_size())
     if (allocated(scene%friction)) call need(found, is_friction(scene%friction), &
       'friction(#) is no coefficient of friction', coefficients)
@@ -108,7 +109,8 @@ contains
     call check_choices(found, scene)
   end subroutine check_values
 
-  !> Report an error if not all values hold: the first one, with its number in place of `#`.
+  !> Report an error if not all values hold: the first one, with its number in place of `#`,
+  !! and the values to give.
   subroutine need(found, holds, what, remedy, of)
     type(findings), intent(inout) :: found
     logical, intent(in) :: holds(:)
@@ -116,14 +118,16 @@ contains
     integer, intent(in), optional :: of   !! item type, if a card of the deck has this number
     character(len=:), allocatable :: text
     integer :: at, which
+    character(len=:), allocatable :: give
 
     if (all(holds)) return
     which = findloc(holds, .false., dim=1)
     at = index(what, '#')
     text = what
     if (at > 0) text = what(:at - 1)//text_of(which)//what(at + 1:)
-    if (present(of)) call found%add_error(of, which, 0, ': '//text, remedy)
-    if (.not. present(of)) call found%add_error(of_scene, 0, 0, text, remedy)
+    give = 'give '//remedy
+    if (present(of)) call found%add_error(of, which, 0, ': '//text, give)
+    if (.not. present(of)) call found%add_error(of_scene, 0, 0, text, give)
   end subroutine need
 
   !> Check that an array is allocated and has the required shape. Its rank is not assumed: gfortran 12
@@ -159,10 +163,10 @@ contains
     integer, allocatable, intent(in) :: extent(:)   !! not allocated: nor is the array
 
     if (.not. allocated(extent)) then
-      call need(found, [.false.], name//' is not allocated', 'allocate it, with size 0 if empty')
+      call need(found, [.false.], name//' is not allocated', 'it a size, 0 if it is empty')
     else if (size(wanted) > 0) then
       call need(found, [all(extent == wanted)], name//' has the shape '//text_of_shape(extent), &
-                text_of_shape(wanted))
+                'it the shape '//text_of_shape(wanted))
     end if
   end subroutine fit_shape
 
@@ -246,7 +250,7 @@ contains
       call fit(found, name//'component', shape(scene%equation(i)%coefficient), scene%equation(i)%component)
       call fit(found, name//'node', shape(scene%equation(i)%coefficient), scene%equation(i)%node)
       call need(found, [size(scene%equation(i)%coefficient) > 0], name//'coefficient is empty', &
-                'a term at least')
+                'at least one term')
       if (found%errors > 0) return
       call need(found, within(scene%equation(i)%node, nodes), name//'node(#) is no node', up_to(nodes))
       call need(found, within(scene%equation(i)%component, directions), &
@@ -291,7 +295,7 @@ contains
 
     row = kind_of(kinds, block%name)
     call need(found, [row > 0], name//'name is '''//trim(block%name)//'''', &
-              'the card of a kind of elements: CTRIA3, say')
+              'the card name of an element type, such as CTRIA3')
     if (row == 0) return
     call fit(found, name//'section', any_shape, block%section)
     if (found%errors == 0) &
@@ -305,7 +309,7 @@ contains
     call need(found, &
               (scene%kinematics(block%section) == axisymmetric) .eqv. block%name == kinds(row)%ring_card, &
               name//'section(#) is not of the kinematics of '//trim(block%name), &
-              'axisymmetric for rings (CTRAX3), and for no others')
+              'axisymmetric sections to axisymmetric elements (CTRAX3), and to no others')
   end subroutine check_block
 
   !> Check that the choices of `controls` exist and its numbers are in range.
@@ -313,7 +317,7 @@ contains
     type(findings), intent(inout) :: found
     type(scene_type), intent(in) :: scene
     character(len=*), parameter :: name(2, 9) = reshape([character(len=22) :: &
-      'method', 'method_auto, say', 'rule', 'rule_auto, say', 'solver', 'solver_auto, say', &
+      'method', 'method_auto', 'rule', 'rule_auto', 'solver', 'solver_auto', &
       'most_iterations', '1 to 100000', 'load_steps', '1 to 10000', &
       'tolerance', '0.0 to less than 1.0', 'accuracy', '0.0 to less than 1.0', &
       'search', '0.0, or a length', 'corner', '0.0 to 180.0 degrees'], [2, 9])

@@ -43,14 +43,14 @@ contains
         if (any(model%mesh%connectivity(:model%mesh%node_count(e), e) == 0)) cycle
         call find_side(model, pressure(k)%given, ends, behind(k))
         if (ends(1) == 0) call found%add_error(of_pressure, k, 0, &
-          ': GA and GB are not the ends of a side of '//model%name_of(of_element, e), &
-          'two neighbouring corners of the element')
+          ': GA and GB are not the ends of an edge of '//model%name_of(of_element, e), &
+          'give two neighbouring corners of the element')
       end associate
     end do
     k = findloc(behind > 0, .true., dim=1)
     if (k > 0) call found%add_warning(of_pressure, k, 0, ': presses inside a body, between '// &
       model%name_of(of_element, pressure(k)%given%element)//' and '//model%name_of(of_element, behind(k))// &
-      and_more(count(behind > 0), '; so do ', ' more'), 'a side that one element alone has')
+      and_more(count(behind > 0), '; so do ', ' more'), 'give an edge of one element only')
   end subroutine check_pressures
 
   !> Check that sections have mass. Those of one material are reported once.
@@ -67,7 +67,7 @@ contains
               model%sections%material_id(s))) cycle
       call found%add_error(of_section, s, item_density, ': field 6 (RHO) leaves '// &
                            model%name_of(of_section, s)//' without mass, on which GRAV and RFORCE act', &
-                           'a density above 0.0')
+                           'give a density above 0.0')
     end do
   end subroutine check_masses
 
@@ -75,7 +75,7 @@ contains
   subroutine check_ring_loads(load, found)
     type(body_load), intent(in) :: load(:)   !! in the order of their cards
     type(findings), intent(inout) :: found
-    character(len=*), parameter :: of_rings = '0.0: axisymmetric loads act along the axis, which is y'
+    character(len=*), parameter :: of_rings = 'write 0.0: axisymmetric loads act along the axis, which is y'
     integer :: k
 
     do k = 1, size(load)
@@ -84,10 +84,11 @@ contains
         call found%add_error(of_body_load, k, item_acceleration, &
                              ': field 5 (N1) points across the axis', of_rings)
       if (load(k)%centre(1) /= 0.0_wp) call found%add_error(of_body_load, k, item_centre, &
-        ': field 3 (G) lies off the axis of the rings, x = 0.0', 'a node on it, or blank')
+        ': field 3 (G) is off the axis of the axisymmetric bodies, x = 0.0', &
+        'give a node on it, or leave it blank')
       if (load(k)%spin_up /= 0.0_wp) &
         call found%add_error(of_body_load, k, item_spin_up, &
-                             ': field 12 (RACC) points round the axis', of_rings)
+                             ': field 12 (RACC) points around the axis', of_rings)
     end do
   end subroutine check_ring_loads
 
@@ -106,7 +107,7 @@ contains
       largest = maxval(abs(body_forces(model, load(k))))
       if (largest /= 0.0_wp .and. .not. (largest >= least_cause .and. largest <= farthest)) &
         call found%add_error(of_body_load, k, 0, ': its forces, up to '//short_real(largest)// &
-                             ', are too far from 1.0', 'other units: forces from '// &
+                             ', are too far from 1.0', 'use other units: forces from '// &
                              short_real(least_cause)//' to '//short_real(farthest))
       if (load(k)%spin /= 0.0_wp .and. .not. model%has_rings()) call look_at_mirrors(k)
     end do
@@ -129,10 +130,10 @@ contains
               if (.not. (holds_across(c, a) .and. holds_across(c, b))) cycle
               if (abs(model%mesh%x(c, a) - model%mesh%x(c, b)) > same_place*extent .or. &
                   abs(model%mesh%x(c, a) - centre(c)) <= same_place*max(extent, abs(centre(c)))) cycle
-              call found%add_warning(of_body_load, k, 0, ': its axis lies beside the line from '// &
-                model%name_of(of_node, a)//' to '//model%name_of(of_node, b)//', which is held across'// &
-                ' and free along itself: what is symmetric spins about a point of its line of symmetry', &
-                'a centre on that line; no harm where that is no line of symmetry')
+              call found%add_warning(of_body_load, k, 0, ': its axis is beside the line from '// &
+                model%name_of(of_node, a)//' to '//model%name_of(of_node, b)//', which is fixed across'// &
+                ' and free along itself: a symmetric body rotates about a point of its line of symmetry', &
+                'give a centre on that line; ignore this unless it is a line of symmetry')
               return
             end do
           end associate

@@ -31,7 +31,7 @@ contains
         if (a == b .or. a == 0 .or. b == 0) then
           if (a == b .and. a > 0) &
             call found%add_error(of_pair, i, 4, ': GA and GB are the same GRID', &
-                                 'a node on each side of the gap')
+                                 'give a node on each side of the gap')
           model%contact%initial_gap(i) = 0.0_wp
           cycle
         end if
@@ -42,8 +42,8 @@ contains
             normal = between/norm2(between)
           else
             call found%add_error(of_pair, i, 8, &
-                                 ': GA and GB are at one place and field 9 (CID) is blank: no direction', &
-                                 'the id of a CORD2R whose x-axis is the normal')
+                                 ': GA and GB are at one point and field 9 (CID) is blank: no direction', &
+                                 'give a CORD2R whose x-axis is the normal')
           end if
         else if (abs(norm2(normal) - 1.0_wp) > few_ulps) then
           normal = normal/norm2(normal)
@@ -64,7 +64,7 @@ contains
                                short_real(-minval(model%contact%initial_gap))
     call found%add_warning(of_pair, i, 1, ': the initial gap is '// &
                            short_real(model%contact%initial_gap(i))//others, &
-                           'a gap of 0.0 or more, unless a fit is meant')
+                           'give a gap of 0.0 or more, unless you mean an interference fit')
 
   contains
 

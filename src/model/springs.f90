@@ -22,12 +22,12 @@ contains
         bare = findloc(node > 0 .and. component == 0, .true., dim=1)
         if (all(node == 0)) then
           call found%add_error(of_spring, k, 0, ': has no node', &
-                               'a node and its direction at one end; 0 or blank: the ground')
+                               'give a node and its direction at one end; 0 or blank is the ground')
         else if (grounded > 0) then
           call found%add_error(of_spring, k, grounded, ': has a direction at the ground', &
-                               '0 or blank, or a node before it')
+                               'write 0 or blank, or give its node')
         else if (bare > 0) then
-          call found%add_error(of_spring, k, bare, ': has no direction there', 'direction 1 or 2')
+          call found%add_error(of_spring, k, bare, ': has no direction there', 'give direction 1 or 2')
         else if (node(1) == node(2) .and. component(1) == component(2)) then
           call found%add_error(of_spring, k, 0, ': has both ends at one DOF', 'use two DOFs')
         end if

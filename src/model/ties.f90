@@ -50,14 +50,14 @@ contains
       if (model%constraints%equation(k)%coefficient(1) == 0.0_wp) then
         why = ' has the coefficient 0.0'
       else if (model%constraints%sum_of(c, node) > 0 .or. model%constraints%leader(c, node) /= node) then
-        why = ' follows an RBE2 or another MPC already'
+        why = ' depends on an RBE2 or another MPC already'
       else if (model%constraints%held(c, node)) then
-        why = ' is held by a support'
+        why = ' is fixed by a support'
       else if (model%constraints%reference(c, node)) then
         why = ' is a SUPORT DOF'
       end if
       if (len(why) > 0) call found%add_error(of_equation, k, -1, ': '//freedom(model, c, node)//why// &
-        ', and cannot follow the others', 'put a DOF first that no other card fixes or moves')
+        ', and cannot depend on the others', 'put a DOF first that no other card fixes or moves')
       model%constraints%sum_of(c, node) = 1
     end associate
   end subroutine check_equation
@@ -91,8 +91,8 @@ contains
                        size(model%constraints%platen(k)%follower)))) cycle
       end if
       call found%add_error(of_node, model%constraints%platen(k)%leader, 0, &
-                           ': turns, and no node that follows it is'// &
-                           ' anywhere else', 'a node at another place for GM of its RBE2')
+                           ': rotates, and no node that depends on it is'// &
+                           ' anywhere else', 'give a GM at another point')
     end do
     do k = 1, size(model%constraints%equation)
       associate (given => model%constraints%equation(k), &
@@ -160,8 +160,8 @@ contains
         if (state(j) == begun) then
           ! The row may be that of a platen; a circle has an equation.
           call found%add_error(of_equation, maxval(equation, mask=state == begun), 0, ': '// &
-                               freedom(model, component(i), node(i))//' would follow itself', &
-                               'equations that do not go round in a circle')
+                               freedom(model, component(i), node(i))//' would depend on itself', &
+                               'remove the circle of equations')
           model%constraints%sum_of(component(i), node(i)) = 0
         else if (state(j) == untouched) then
           call resolve(j)

@@ -50,26 +50,27 @@ contains
     associate (strain => curve%strain, stress => curve%stress)
       if (size(strain) < 3) then
         what = 'has '//plural(size(strain), 'point')
-        fault = curve_fault(size(strain) + 1, what, 'at least 3: 0.0 0.0, the yield point, and one beyond it')
+        fault = curve_fault(size(strain) + 1, what, &
+                            'give at least 3: 0.0 0.0, the yield point, and one beyond it')
       else if (strain(1) /= 0.0_wp .or. stress(1) /= 0.0_wp) then
-        fault = curve_fault(1, 'the first point is not 0.0, 0.0', 'a curve from the origin')
+        fault = curve_fault(1, 'the first point is not 0.0, 0.0', 'begin the curve at the origin')
       else if (stress(2) <= 0.0_wp .or. abs(strain(2) - stress(2)/young) > &
                same_strain*abs(stress(2)/young)) then
-        remedy = 'strain = stress/E within 1 %'
-        if (stress(2) > 0.0_wp) remedy = 'strain '//short_real(stress(2)/young)//', stress/E, within 1 %'
+        remedy = 'give strain = stress/E within 1 %'
+        if (stress(2) > 0.0_wp) remedy = 'give strain '//short_real(stress(2)/young)//', stress/E, within 1 %'
         fault = curve_fault(2, 'the yield point (the second one) is not on the elastic line of the MAT1', &
                             remedy)
       else
         strain(2) = stress(2)/young
         do k = 3, size(strain)
           if (strain(k) <= strain(k - 1)) then
-            remedy = 'more than '//short_real(strain(k - 1))
+            remedy = 'give more than '//short_real(strain(k - 1))
             fault = curve_fault(k, 'the strain does not rise', remedy)
           else if (stress(k) < (1.0_wp - rounded_off)*stress(k - 1)) then
-            remedy = 'at least '//short_real(stress(k - 1))
+            remedy = 'give at least '//short_real(stress(k - 1))
             fault = curve_fault(k, 'the stress falls (softening)', remedy)
           else if (stress(k) - stress(k - 1) > young*(strain(k) - strain(k - 1))*(1.0_wp + no_effect)) then
-            fault = curve_fault(k, 'steeper than the elastic line of the MAT1', 'a slope of at most E')
+            fault = curve_fault(k, 'steeper than the elastic line of the MAT1', 'give a slope of at most E')
           end if
           if (fault%point > 0) then
             fault%what = 'point '//text_of(k)//': '//fault%what

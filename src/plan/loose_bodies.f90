@@ -78,8 +78,10 @@ contains
     end do
     body = 'the body of '//model%name_of(of_node, nodes(1))
     if (moving /= nodes(1)) body = 'a part of '//body//', with '//model%name_of(of_node, moving)//','
-    if (size(nodes) == 1) body = model%name_of(of_node, moving)//', which no element has,'
-    call found%add_error(of_body, moving, 0, body//' is free to move: '//text(3:), &
+    if (size(nodes) == 1) body = model%name_of(of_node, moving)//', a node without elements,'
+    call found%add_error(of_body, moving, 0, body//' has '// &
+                         plural(size(motion, 3), 'unconstrained rigid-body mode')// &
+                         ': it can '//text(3:), &
                          'fix it with SPC1, or solve for it with SUPORT'//cards)
   end subroutine add_loose_body
 
@@ -116,10 +118,10 @@ contains
     character(len=:), allocatable :: text
     real(wp) :: unit(directions)
 
-    text = 'it shifts'
+    text = 'translate'
     associate (mask => spread(beside, 1, directions))
       if (sum(maxval(motion, dim=2, mask=mask) - minval(motion, dim=2, mask=mask)) > no_effect) &
-        text = 'it turns, '//model%name_of(of_node, nodes(k))//' moving'
+        text = 'rotate so that '//model%name_of(of_node, nodes(k))//' moves'
     end associate
     unit = real(nint(motion(:, k)/norm2(motion(:, k))*1.0e4_wp), wp)*1.0e-4_wp   ! rounding removed
     text = text//' along ('//short_real(unit(1))//', '//short_real(unit(2))//')'

@@ -119,7 +119,8 @@ contains
       call list_figures(listing, figures, [character(len=21) :: 'max_pressure', 'total_contact_force', &
         'pairs_in_contact', 'total_friction_force', 'pairs_sticking', 'pairs_slipping', 'max_slip', &
         'approach_', 'angle_', 'moment_', 'spring_', 'plastic_elements', &
-        'max_equivalent_stress', 'max_displacement', 'lowest_temperature', 'highest_temperature', 'status'])
+        'max_equivalent_stress', 'max_plastic_strain', 'max_displacement', 'lowest_temperature', &
+        'highest_temperature', 'status'])
       call listing%heading('CERTIFICATE  (recomputed from displacements and forces alone; tolerance '// &
                            short_real(valid_to)//')')
       call list_figures(listing, figures, [character(len=25) :: 'equilibrium_residual', 'smallest_', &

@@ -172,8 +172,10 @@ contains
     if (scene%model%controls%steps_by_accuracy) &
       call plan%say('increments: as many as PARAM ACCURACY needs, each from the end of the one before')
     if (scene%iteration%load_steps > 1) &
-      call plan%say(plural(scene%iteration%load_steps, 'load step')//when(scene%model%controls%flow_theory, &
-        ', each from the end of the one before', '; elastic unloading is not modelled'))
+      call plan%say(plural(scene%iteration%load_steps, when(scene%model%controls%flow_theory, &
+        'increment', 'load step'))//when(scene%model%controls%sequence, ' in the first SUBCASE')// &
+        when(scene%model%controls%flow_theory, ', each from the end of the one before', &
+             '; elastic unloading is not modelled'))
     if (scene%model%controls%paper_ratio) call plan%say('MUP PAPER: Poisson''s ratio in the equivalent '// &
       'strain by formula (2-4): stresses up to (1 - 2 nu)/3 below the curve')
   end subroutine say_iteration

@@ -61,7 +61,7 @@ contains
       call figures%put('approach_'//motion_key(run, k), motion_unit(run, k), number, &
                        run%answer%contact%approach(k), 'approach: '//motion_name(run, k), &
                        when(run%answer%contact%motion_free(k), newline// &
-                            '    undetermined: nothing resists or drives this motion; the smallest is taken'))
+                            '    undetermined rigid-body mode: the smallest value that the gaps allow'))
       call figures%list_as(listed_number(number, run%answer%contact%approach(k), &
                                          merge(0.0_wp, farthest, run%motions%component(k) == angle)))
     end do
@@ -87,6 +87,7 @@ contains
     call figures%put_word('factorizations', text_of(run%answer%factorizations), '')
     call figures%put_word('pivots', text_of(sum(run%answer%history%pivots)), '')
     call put_largest_stress(run, figures, first_largest(run%answer%largest_stress))
+    if (allocated(run%answer%plastic_strain)) call put_plastic_strain(run, figures)
     call figures%put('max_displacement', length, number, maxval(norm2(run%answer%displacement, dim=1)), &
                      'largest displacement')
     if (allocated(run%model%loads%free_strain)) call put_temperatures(run, figures)
@@ -162,6 +163,18 @@ contains
     call figures%put('max_equivalent_stress_x', length, number, place(1))
     call figures%put('max_equivalent_stress_y', length, number, place(2))
   end subroutine put_largest_stress
+
+  !> Add the largest accumulated plastic strain of flow theory, and its element.
+  subroutine put_plastic_strain(run, figures)
+    type(run_results), intent(in) :: run
+    type(figure_list), intent(inout) :: figures
+
+    associate (strain => run%answer%plastic_strain(5, :), id => run%model%mesh%element_id)
+      call figures%put('max_plastic_strain', none, number, maxval(strain), &
+                       when(any(strain > 0.0_wp), 'largest accumulated plastic strain'), &
+                       '   in element '//text_of(id(first_largest(strain)))//' (mean)')
+    end associate
+  end subroutine put_plastic_strain
 
   !> Add the values of the certificate; in the listing, forces and gaps are relative to the largest.
   subroutine put_certificate(run, figures)

@@ -98,7 +98,7 @@ module epcont_report_tables
     column(off_curve, 'stress_error', '', 'deviation of a stress from the curve, relative', &
            'stress error', 15), &
     column(whole, 'pairs_in_contact', '', 'their number', 'in contact', 12), &
-    column(whole, 'plastic_elements', '', 'their number', 'yielded', 10), &
+    column(whole, 'plastic_elements', '', 'elements that yield in this solve', 'yielding', 10), &
     column(whole, 'pivots', '', 'of the contact solver', width=10), &
     column(number, 'load_factor', '', 'part of the loads that the iteration is for', width=0)]
 

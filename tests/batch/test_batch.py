@@ -24,8 +24,8 @@ class Whole(Case):
         (self.place / "b.dat").write_text(text)
         run = self.run_it(0, "a.dat", "b.dat", "-o", "out")
         rows = self.table()
-        self.assertEqual([("0", ""), ("1", f"{text[:text.index(blseg)].count(chr(10)) + 1}:7: warning: BLSEG 7: no BCONP names it; a BCONP "
-                                           "with it as SLAVE or MASTER, or no such line")],
+        self.assertEqual([("0", ""), ("1", f"{text[:text.index(blseg)].count(chr(10)) + 1}:7: warning: BLSEG 7: no BCONP names it; add a BCONP "
+                                           "with it as SLAVE or MASTER, or remove the line")],
                          [(row["warnings"], row["first_warning"]) for row in rows])
         self.assertIn("2 valid (1 of them with warnings)\n", run.stdout)
 
@@ -44,7 +44,7 @@ class Whole(Case):
         self.assertEqual(["b.dat", "c_rejected.dat", "a.dat", "missing.dat"], [row["deck"] for row in rows])
         self.assertEqual(["valid", "rejected", "valid", "refused"], [row["status"] for row in rows])
         self.assertEqual(["0", "2", "0", "3"], [row["exit_status"] for row in rows])
-        self.assertEqual("c_rejected.dat:77:1-4: the body of GRID 101 is free to move: it shifts along (0.0, 1.000)", rows[1]["message"])
+        self.assertEqual("c_rejected.dat:77:1-4: the body of GRID 101 has 1 unconstrained rigid-body mode: it can translate along (0.0, 1.000)", rows[1]["message"])
         self.assertEqual("missing.dat: no such file", rows[3]["message"])
         self.assertIn("4 decks in ", run.stdout)
         self.assertIn("2 valid, 1 refused, 1 rejected", run.stdout)

@@ -93,7 +93,7 @@ class Scales(Extremes):
                 self.refused(column(**scale), 2, "is too far from 1.0")
         for scale in ({"size": 1e-31}, {"size": 1e-160}, {"size": 1e-200}):
             with self.subTest(**scale):
-                self.refused(column(**scale), 2, "its sides are shorter than 1.000E-30")
+                self.refused(column(**scale), 2, "its edges are shorter than 1.000E-30")
 
     def test_all_ranges_at_their_ends(self):
         """No product of loads, lengths, moduli and thicknesses leaves the range of numbers if they are within theirs."""

@@ -150,7 +150,7 @@ class Walls(Extremes):
     def test_rollers(self):
         """Sixteen undetermined modes stay at zero."""
         result = self.by_rules(rollers(8).text())
-        self.assertEqual(16, result.listing.count("undetermined: nothing resists or drives"))
+        self.assertEqual(16, result.listing.count("undetermined rigid-body mode: the smallest value"))
 
     def test_heap(self):
         self.by_rules(heap(5).text())

@@ -307,7 +307,7 @@ class Remarks(Case):
         said, heading, lines, summary = self.solve(*cards, place="there")
         self.assertEqual("WARNINGS AND NOTES  (100 warnings, 1 note)", heading)
         self.assertEqual(["status,valid,", "warnings,100,", "notes,1,"], summary)
-        remedy = "no BCONP names it; a BCONP with it as SLAVE or MASTER, or no such line"
+        remedy = "no BCONP names it; add a BCONP with it as SLAVE or MASTER, or remove the line"
         self.assertEqual(["  9:18-19: MAT1: field 6 (RHO) has no effect (cards with it: 1)"] +
                          [f"  lines.inc:{k}:7{'-8' if k > 9 else ''}: warning: BLSEG {k}: {remedy}" for k in range(1, 51)] +
                          [f"  {k - 39}:7-{8 if k < 100 else 9}: warning: BLSEG {k}: {remedy}" for k in range(51, 101)], lines)

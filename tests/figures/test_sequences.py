@@ -237,6 +237,9 @@ class OneElement(unittest.TestCase):
         """Half of the hardening is kinematic: from 300 to -300 the bar yields by as much plastic strain as before, so none is left."""
         bar = square([(300.0, 0.0, 0.0), (-300.0, 0.0, 0.0)], [1, 1], 3, "STRESS")
         self.check(strains(with_param(bar, "HRFRAC,0.5")), [(0.004,), (-300.0 / 210000.0,)])
+        told = [float(row["value"]) for row in run(with_param(bar, "HRFRAC,0.5"))[0]["summary"] if row["key"] == "max_plastic_strain"]
+        plastic = 0.004 - 300.0 / 210000.0
+        self.check([told], [(plastic, 2.0 * plastic)])
 
     def test_temperature_that_goes(self):
         """A plate that is fixed all round yields when it is warmed to 1.5 times its yield point; back at TREF, half the yield stress is left."""

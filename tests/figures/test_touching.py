@@ -163,7 +163,7 @@ class Touching(scene.Extremes):
     def test_wall_that_no_line_names(self):
         """The block is pushed into a wall that is in no line: not certified, with a remedy."""
         self.not_certified("wall_not_in_line", "bodies pass through each other: the body of GRID 15 penetrates the body of GRID 1 by 0.01348, at "
-                           "-0.01296 0.1206 on side", "Possible fix: a BLSEG along side")
+                           "-0.01296 0.1206 on edge", "Possible fix: add a BLSEG along edge")
 
     def test_corner_at_a_corner(self):
         """A key bulges into walls that are in no line. Its corner is at that of the groove: rounding chooses the nearer edge there."""
@@ -174,7 +174,7 @@ class Touching(scene.Extremes):
         """A block is moved through a plate, and exactly into another; one is moved off its ledge."""
         self.not_certified("through_a_plate", "bodies pass through each other on their way: ")
         self.not_certified("into_its_own_outline", "bodies pass through each other")
-        self.not_certified("slid_off_a_ledge", "pair 69 presses beside the other body: at 4.100 0.9996 on side")
+        self.not_certified("slid_off_a_ledge", "pair 69 carries a force beside the other body: at 4.100 0.9996 on edge")
 
     def test_lines_in_two_contacts(self):
         result = scene.solve((FOLDER / "twice_both.dat").read_text())

@@ -192,6 +192,19 @@ class Folders(Case):
         self.deck("new", "c")
         self.judged(1, "3 decks: 2 the same, 1 differs; worst: deck c, only in the second folder")
 
+    def test_a_difference_counts_once(self):
+        """Also if the results are in a folder of the folder, or are in batch.csv too."""
+        for folder, pressure in (("old", "2.0"), ("new", "2.002")):
+            for below in ("", "/study"):
+                self.write(f"{folder}{below}/batch.csv", f"deck,status,p_max\nx/a.dat,valid,{pressure}\n")
+                self.deck(folder + below, max_pressure=pressure)
+        self.judged(1, "2 decks: 0 the same, 2 differ; worst: p_max of deck a, 1.0E-03")
+        for folder in ("old", "new"):
+            for path in (self.place / folder).glob("*.csv"):
+                path.unlink()
+        self.judged(1, "1 deck: 0 the same, 1 differs; worst: p_max of deck study/a, 1.0E-03")
+        self.assertEqual(len(self.output.splitlines()), 1)
+
     def test_load_cases(self):
         """Each is compared with its own case, and scale."""
         for folder in ("old", "new"):

@@ -52,6 +52,12 @@ class Calls(Case):
             self.assertEqual((0, ""), (run.returncode, run.stderr), tool)
             self.assertIn("usage: ", run.stdout)
 
+    def test_help_needs_no_package(self):
+        for tool in ("plots.py", "paraviews.py"):
+            run = subprocess.run([sys.executable, "-S", "-B", ROOT / "tools" / tool, "--help"], capture_output=True, text=True)
+            self.assertEqual((0, ""), (run.returncode, run.stderr), tool)
+            self.assertIn("usage: ", run.stdout)
+
     def test_closed_pipe(self):
         """A closed pipe ends a tool silently."""
         for tool in ("accept", "batch", "compare", "deceive", "decks", "fuzz", "mutate", "sweep", "verify", "convergence.py", "paraviews.py", "plots.py", "tradeoffs.py"):

@@ -22,9 +22,8 @@ def comparison(rows):
     return table(["", "nodes", "epcont, s", *figures, "CalculiX, s", *figures, "CPU ratio", "CalculiX setting"], lines)
 
 
-def settings(rows, kind):
+def settings(rows):
     """A row for each program and setting, a column for each mesh: CPU seconds."""
-    rows = [row for row in rows if row["kind"] == kind]
     nodes = sorted({row["nodes"] for row in rows})
     lines = {}
     for row in rows:
@@ -32,7 +31,7 @@ def settings(rows, kind):
         lines.setdefault(name, {})[row["nodes"]] = row["cpu"]
         if row["rest"]:
             lines.setdefault(f"{name}, without imports", {})[row["nodes"]] = row["rest"]
-    return table([f"{kind}, CPU s", *(f"{n} nodes" for n in nodes)], [[name, *(short(of.get(n)) for n in nodes)] for name, of in lines.items()])
+    return table(["elastic, CPU s", *(f"{n} nodes" for n in nodes)], [[name, *(short(of.get(n)) for n in nodes)] for name, of in lines.items()])
 
 
 def cylinders(rows):
@@ -48,11 +47,11 @@ def cylinders(rows):
         comparison(rows),
         "scikit-fem computes displacements and contact forces only. `condense` condenses the system and solves it for each active set. "
         "`splu` and `cholmod` combine its parts in the way of epcont, the fastest that we found (`scikit_fem.py`).",
-        *(settings(rows, kind) for kind in KINDS if any(row["kind"] == kind for row in rows))])
+        settings([row for row in rows if row["kind"] == "elastic"])])
 
 
 #: Numbers of pairs that the page shows.
-SHOWN = (100, 1000)
+SHOWN = (1000,)
 
 
 def contact(rows):
@@ -78,45 +77,32 @@ def factor(rows, runs):
               f"{row['rate'] / 1e9:.1f}", f"{100 * row['part']:.0f}"] for row in rows["factor"]]
     text = ["## Factorization", "Band of half-bandwidth w. Operations: n w^2 for the band, 2 n^3 for dgemm.",
             table(["nodes", "equations", "half-bandwidth", "seconds", "1e9 operations/s", "% of dgemm"], lines)]
-    text += ["## Growth", "Two cylinders, elastic. The solve part begins with the numbering and ends with the displacements.",
-             table(["equations", "process, CPU s", "wall, s", "solve part, CPU s", "peak memory, MB"],
-                   [[row["equations"], *(short(row[what]) for what in ("cpu", "wall", "solve", "memory"))] for row in rows["growth"]])]
     growth = [(f"epcont, {name}", [(row["equations"], row[what]) for row in rows["growth"]])
               for name, what in (("CPU", "cpu"), ("solve part", "solve"), ("memory", "memory"))]
     growth += [("factorization", [(row["equations"], row["seconds"]) for row in rows["factor"] if row["nodes"] and row["nodes"] > 900])]
     growth += [(f"{program}, {kind}", [(row["nodes"], row["cpu"]) for row in best(runs, kind, program) if row["nodes"] > 900])
                for program in PROGRAMS[:2] for kind in KINDS]
     growth = [(name, points) for name, points in growth if len(points) > 1]
-    text += ["Powers of the number of unknowns, by least squares, for 1 000 nodes or more:",
-             table([name for name, _ in growth], [[f"{exponent(points):.2f}" for _, points in growth]])]
+    text += ["## Growth", "Two cylinders: powers of the number of unknowns, by least squares, for 1 000 nodes or more. The solve part begins with the numbering and ends with "
+             "the displacements.", table([name for name, _ in growth], [[f"{exponent(points):.2f}" for _, points in growth]])]
     text += ["## Smallest deck", "CPU milliseconds of a whole process, and of an empty program with the same libraries.",
              table(["deck", "epcont, ms", "empty, ms", "difference, ms", "runs"],
                    [[row["deck"], *(f"{row[what]:.2f}" for what in ("cpu", "empty", "difference")), row["runs"]] for row in rows["smallest"]])]
     return "\n\n".join(text)
 
 
-#: Stages of the solve part.
-STAGES = {"ordering": "numbering", "factor": "factor", "flexibility": "F", "load_gap": "load gaps", "contact": "contact", "displacements": "displacements"}
-
-
 def solve_part(rows):
-    ratios, stages = [], []
+    ratios = []
     for row in rows:
         ours, once, more = row["ours"], row["all"], row["more"]
         ratios.append([row["equations"], milliseconds(ours["all"]), milliseconds(once["all"]), f"{once['ratio']:.2f}", once["name"],
                        milliseconds(ours["more"]), milliseconds(more["more"]), f"{more['ratio']:.2f}", more["name"]])
-        stages.append([row["equations"], "epcont", *(milliseconds(ours[stage]) for stage in STAGES), milliseconds(ours["assembly"]),
-                       milliseconds(ours["condition"])])
-        stages.append(["", once["name"], *(milliseconds(once[stage]) if stage in once else "" for stage in STAGES), "", ""])
     return "\n\n".join([
         "## Solve part",
-        "Two cylinders, elastic, CPU milliseconds. The solve part is numbering, factorization, F, contact and displacements. The libraries are the band solver of LAPACK, CHOLMOD "
-        "and MUMPS, all with OpenBLAS (`bare/`), with the fastest of 14 combinations for each size. They get the assembled matrix and the active set. Seven more: seven further "
-        "solves, from factorization to displacements, with the same ordering. Ratio below 1: epcont is faster.",
-        table(["equations", "epcont", "libraries", "ratio", "fastest library", "epcont, seven more", "libraries", "ratio", "fastest library"], ratios),
-        "Stages. The loads act on SUPORT DOFs and open no gap, so the libraries do not compute load gaps. No sum contains the assembly, which also "
-        "clears the storage of the factor, nor the condition estimate.",
-        table(["equations", "", *STAGES.values(), "assembly", "condition"], stages)])
+        "Two cylinders, elastic, CPU milliseconds. The solve part is numbering, factorization, F, contact and displacements, without assembly and condition number. The libraries are "
+        "the band solver of LAPACK, CHOLMOD and MUMPS, all with OpenBLAS (`bare/`), with the fastest of 14 combinations for each size. They get the assembled matrix and the active "
+        "set. Seven more: seven further solves, from factorization to displacements, with the same ordering. Ratio below 1: epcont is faster.",
+        table(["equations", "epcont", "libraries", "ratio", "fastest library", "epcont, seven more", "libraries", "ratio", "fastest library"], ratios)])
 
 
 def page(parts, about):

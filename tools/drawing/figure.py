@@ -2,11 +2,10 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
-from drawing import bodies, history, loading, pressures
+from drawing import KINDS, bodies, history, loading, pressures
 from drawing.run import Refused
 from drawing.style import SMALL
 
-KINDS = ("contact", "shape", "yielded", "history")
 WIDTH, HEIGHT = 9.2, 3.0  # height of a row of panels [inches]
 
 

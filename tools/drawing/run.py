@@ -10,19 +10,11 @@ import tables
 TOP = pathlib.Path(__file__).resolve().parent.parent.parent
 PROGRAM = TOP / "build/release/epcont"
 sys.path.insert(0, str(TOP / "tests" / "independent"))
-from drawing import loading  # noqa: E402
+from drawing import Refused, loading  # noqa: E402
 from deck import DeckError, at, ids, read, real  # noqa: E402
 
 #: Nodes of each element type in order around it, as positions among the nodes of its card.
 ROUND = {"CTRIA3": [0, 1, 2], "CTRAX3": [0, 1, 2], "CQUAD4": [0, 1, 2, 3], "CTRIA6": [0, 3, 1, 4, 2, 5], "CQUAD8": [0, 4, 1, 5, 2, 6, 3, 7], "CTRAX6": [0, 1, 2, 3, 4, 5]}
-
-
-class Refused(Exception):
-    """There is no picture: the message says why, `status` is the exit status."""
-
-    def __init__(self, message, status=3):
-        super().__init__(message)
-        self.status = status
 
 
 class Run:

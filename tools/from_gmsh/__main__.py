@@ -65,7 +65,7 @@ def check(path, maker):
     print(run.stdout + run.stderr, end="")
     for number in sorted({int(n) for n in re.findall(r"\bGRID (\d+)", run.stderr)}):
         print(maker.described(number))
-    for number, motions in re.findall(r"the body of GRID (\d+) is free to move: (.*)", run.stderr):
+    for number, motions in re.findall(r"the body of GRID (\d+) has \d+ unconstrained rigid-body modes?: it can (.*)", run.stderr):
         print(maker.freed(int(number), motions))
     if not run.returncode:
         return 0

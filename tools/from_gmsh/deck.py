@@ -321,8 +321,8 @@ class Maker:
         own = {node for name in bodies for _, nodes in self.mesh.bodies[name] for node in nodes}
         lines = [name for name, sides in self.mesh.lines.items() if own & set(nodes_of(sides))]
         points = [name for name, nodes in self.mesh.points.items() if own & set(nodes)]
-        axes = [axis for axis, shift in (("x", "shifts along (1.000, 0.0)"), ("y", "shifts along (0.0, 1.000)")) if shift in motions]
-        turns = "turns" in motions
+        axes = [axis for axis, shift in (("x", "translate along (1.000, 0.0)"), ("y", "translate along (0.0, 1.000)")) if shift in motions]
+        turns = "rotate" in motions
         missing = [f"in {axis}" for axis in axes] + ["in rotation"] * turns
         if axes or not turns:
             held = " and ".join(f"NAME.{axis} = 0" for axis in axes or "x")

@@ -62,9 +62,9 @@ def hertz(mesh, plastic=False, b=0.0239, increments=None):
         words.append(f"Flow theory in a sequence: loaded in {increments} increments, unloaded to a thousandth in {increments // 2}, and loaded "
                      f"again in {increments // 2}. The second loading ends in the state of the first.")
     elif plastic:
-        words.append("Known answer (converged, total theory): p_max 198.6, half-width 0.030, approach 0.00142 (half of 0.00284).")
+        words.append("Known answer (converged, total theory): p_max 198.42, half-width 0.030, approach 0.00142 (half of 0.00284).")
     else:
-        words.append("Known answer (Hertz): p_max 266.4, b 0.0239; approach 0.00132 (half of Johnson's 0.00264).")
+        words.append("Known answer (Hertz): p_max 266.27, b 0.0239; approach 0.00132 (half of Johnson's 0.00264).")
     element = {3: "", 4: "CQUAD4, ", 6: "CTRIA6, "}[len(mesh.element[0])]
     deck = Deck(f"TWO EQUAL STEEL CYLINDERS, {len(mesh.point)} NODES, {element}{kind}" + (", UNLOADED" if increments else ""), words, units="KGF-MM")
     touch = touching(mesh, (1.9 if plastic else 1.5) * b)

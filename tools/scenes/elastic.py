@@ -193,8 +193,8 @@ def patch(force_up=False, support=True):
             "says so, names the body and ends with exit status 1."]
     elif not support:
         title, words = "A BODY WITHOUT SUPORT", [
-            "The contact patch test without its SUPORT card: the upper block is free to move in 2 and nothing says that this "
-            "motion is to be solved for. A deck error that prints the SUPORT card to paste; exit status 2."]
+            "The contact patch test without its SUPORT card: the upper block can translate in direction 2, and no card says "
+            "that this mode is to be solved for. A deck error that prints the SUPORT card to paste; exit status 2."]
     else:
         title, words = "CONTACT PATCH TEST", [
             "Two blocks of different materials, one on the other, matching lines at a flat interface; pressure 10 on the upper "
