@@ -54,7 +54,7 @@ contains
              ' deformable'//when(.not. all(deformable), ', '//text_of(count(.not. deformable))//' rigid'))
     if (scene%iteration%from_first_pivot) &
       call plan%say('ORIGINAL: as in about 1980, with all pivots of the simplex in each iteration')
-    call say_iteration(plan, scene)
+    call say_iteration(plan, scene, present(of))
     call say_rule(plan, scene)
     do k = 1, min(most, size(scene%model%contact%line_contact))
       call say_contact(plan, scene, scene%model%contact%line_contact(k))
@@ -140,9 +140,10 @@ contains
   end function plan_text
 
   !> Say whether the model can yield, and how the iteration works.
-  subroutine say_iteration(plan, scene)
+  subroutine say_iteration(plan, scene, several)
     type(table_type), intent(inout) :: plan
     type(planned_model), intent(in) :: scene
+    logical, intent(in) :: several             !! the plan is for several load cases
 
     if (scene%model%contact%has_friction()) call plan%say('friction at '// &
       plural(size(scene%model%contact%sliding), 'pair')//': the answer depends on the path of the loads')
@@ -173,7 +174,7 @@ contains
       call plan%say('increments: as many as PARAM ACCURACY needs, each from the end of the one before')
     if (scene%iteration%load_steps > 1) &
       call plan%say(plural(scene%iteration%load_steps, when(scene%model%controls%flow_theory, &
-        'increment', 'load step'))//when(scene%model%controls%sequence, ' in the first SUBCASE')// &
+        'increment', 'load step'))//when(several, ' in the first of these load cases')// &
         when(scene%model%controls%flow_theory, ', each from the end of the one before', &
              '; elastic unloading is not modelled'))
     if (scene%model%controls%paper_ratio) call plan%say('MUP PAPER: Poisson''s ratio in the equivalent '// &
