@@ -14,7 +14,7 @@ module epcont_messages_attempt_text
 
 contains
 
-  !> `(1) joined bodies: no active set found; (2) simplex: valid`; empty if the first solve was the only one.
+  !> `(1) JOINED: no active set found; (2) CONRY: valid`; empty if the first solve was the only one.
   pure function attempts_text(solution) result(text)
     class(solution_type), intent(in) :: solution
     character(len=:), allocatable :: text
@@ -34,13 +34,13 @@ contains
     text = text//': '//solution%verdict%word()
   end function attempts_text
 
-  !> Name of the contact solver.
+  !> Name of the contact solver, as in PARAM RULE.
   pure function rule_text(joined) result(text)
     logical, intent(in) :: joined
     character(len=:), allocatable :: text
 
-    text = 'simplex'
-    if (joined) text = 'joined bodies'
+    text = 'CONRY'
+    if (joined) text = 'JOINED'
   end function rule_text
 
   !> Describe the change.

@@ -188,7 +188,7 @@ contains
     associate (path => run%stress_path)
       call listing%say('loading: '//when(path%falling == 0, 'no stress component falls with the load', &
         'in '//plural(path%falling, 'yielded element')//' a stress component falls with the load')// &
-        '; stress deviators turned by '//plural(nint(path%mean_turn), 'degree')// &
+        '; stress deviators rotated by '//plural(nint(path%mean_turn), 'degree')// &
         ' on average, at most '//text_of(nint(path%turn))//' in element '// &
         text_of(run%model%mesh%element_id(path%worst)))
     end associate
