@@ -2,6 +2,7 @@
 !> increment is checked, the next load case of a sequence starts from the end of this one, and a second run
 !> with another number of increments shows their error.
 module epcont_load_history
+  use epcont_base_archive, only: archive
   use epcont_base_kinds, only: wp
   use epcont_certificate_certificate, only: certificate_type
   use epcont_certificate_yielding, only: replayed_history
@@ -9,8 +10,9 @@ module epcont_load_history
   use epcont_evaluation, only: evaluated_model
   use epcont_model_load_set, only: load_set
   use epcont_plan_iteration_plan, only: iteration_plan
-  use epcont_plasticity_load_path, only: load_path, path_end
+  use epcont_plasticity_load_path, only: load_path
   use epcont_plasticity_observer, only: observer
+  use epcont_plasticity_path_end, only: path_end
   use epcont_result_answer, only: answer_type
   use epcont_result_increment, only: errors_of_increments, increment_errors, increment_of, increment_record, &
       other_number
@@ -33,6 +35,7 @@ module epcont_load_history
     logical :: unique = .true.           !! contact forces are unique, as far as the contact solver must know
     type(increment_record), allocatable :: increment(:)   !! flow theory: increments of this load case [any]
     type(increment_errors), allocatable :: increment_error   !! not allocated: unknown
+    integer, private :: increments = 0   !! in this list so far
     integer :: steps = 1                 !! flow theory: increments of this run
     integer, private :: other_steps = 1  !! of the run to compare with
     type(load_set), private :: loads     !! of the load case; the model has those of the state found
@@ -47,7 +50,11 @@ module epcont_load_history
     procedure :: follow_increments
     procedure :: end_case
     procedure :: can_start
+    procedure :: has_end
+    procedure :: pass_ends
     procedure, private :: has_memory
+    procedure, private :: follow_path
+    procedure, private :: check_increment
     procedure, private :: begin_replay
     procedure, private :: follow_others
     procedure, private :: is_fine_enough
@@ -57,6 +64,7 @@ module epcont_load_history
     procedure :: is_flow
     procedure, private :: end_of
     procedure, private :: add_increment
+    procedure, private :: make_room
   end type loaded_model
 
 contains
@@ -74,46 +82,78 @@ contains
     class(loaded_model), intent(inout) :: self
     integer, intent(in) :: load_steps    !! of this load case, if something can yield
     class(observer), intent(inout) :: watch
-    type(iteration_plan) :: plan
-    type(answer_type) :: none
-    type(certificate_type) :: no_certificate
-    type(load_path) :: path
-    integer :: refinements
+    type(certificate_type) :: none
+    logical :: complete
 
     if (allocated(self%increment)) deallocate (self%increment)
     allocate (self%increment(0))
+    self%increments = 0
+    self%certificate = none
+    call self%begin_replay()
+    call self%follow_path(load_steps, .true., watch, complete)
+    associate (rule => self%kept%linear%rule, answer => self%answer)
+      if (.not. rule%failed .and. answer%failed_body == 0 .and. answer%contact%state == contact_solved) then
+        self%unique = rule%is_unique(self%planned_model, self%kept%linear%factored_bodies)
+        call watch%lap(stage_contact)
+        if (self%unique) call self%evaluate(watch)
+        if (self%unique .and. self%is_flow() .and. complete) call self%add_increment(size(answer%history))
+      end if
+    end associate
+    call self%make_room(self%increments)
+  end subroutine follow
+
+  !> Follow the loads, until a load step does not converge. In flow theory each increment is committed.
+  subroutine follow_path(self, load_steps, is_result, watch, complete)
+    class(loaded_model), intent(inout) :: self
+    integer, intent(in) :: load_steps
+    logical, intent(in) :: is_result   !! evaluate each increment; false: only for the error of the increments
+    class(observer), intent(inout) :: watch
+    logical, intent(out) :: complete   !! all loads are applied
+    type(answer_type) :: none
+    type(iteration_plan) :: plan
+    type(load_path) :: path
+
     self%answer = none
-    self%certificate = no_certificate
     plan = self%iteration
     if (plan%follows) plan%load_steps = load_steps
     if (plan%follows) self%model%loads = self%loads
-    call self%begin_replay()
+    plan%keeps = self%kept%another .or. .not. is_result
     associate (kept => self%kept, answer => self%answer)
-      plan%keeps = kept%another
-      call path%begin(self%planned_model, plan, kept%linear, kept%virgin, self%start)
+      if (is_result) then
+        if (allocated(self%start)) call answer%begin_at(self%start, self%model%contact%pairs)
+        call path%begin(self%planned_model, plan, kept%linear, kept%virgin, self%start)
+      else
+        call path%begin(self%planned_model, plan, kept%linear, kept%virgin, self%other_start)
+      end if
       call watch%lap(stage_stiffness)
       do
         call path%advance(self%planned_model, kept%linear, answer, watch)
         if (.not. answer%converged .or. answer%lost_contact .or. path%is_complete()) exit
         if (.not. self%model%controls%flow_theory) cycle
-        call self%evaluate(watch)
-        if (self%is_unbalanced()) call self%refine(refinements, watch)
-        if (.not. self%certificate%valid) exit
-        call self%add_increment(path%iterations())
+        if (is_result) then
+          call self%check_increment(path%iterations(), watch)
+          if (.not. self%certificate%valid) exit
+        end if
         call path%commit(self%planned_model, kept%linear, answer)
-        if (allocated(self%certificate%history)) self%replayed = self%certificate%history
-        self%slid = self%certificate%slid
+        if (is_result .and. allocated(self%certificate%history)) self%replayed = self%certificate%history
+        if (is_result) self%slid = self%certificate%slid
       end do
+      complete = path%is_complete()
       call path%finish(kept%linear, kept%virgin, answer)
-      if (kept%linear%rule%failed .or. answer%failed_body > 0 .or. &
-          answer%contact%state /= contact_solved) return
-      self%unique = kept%linear%rule%is_unique(self%planned_model, kept%linear%factored_bodies)
     end associate
-    call watch%lap(stage_contact)
-    if (self%unique) call self%evaluate(watch)
-    if (self%unique .and. self%is_flow() .and. path%is_complete()) &
-      call self%add_increment(size(self%answer%history))
-  end subroutine follow
+  end subroutine follow_path
+
+  !> Evaluate and check an increment, and add it to the list.
+  subroutine check_increment(self, iterations, watch)
+    class(loaded_model), intent(inout) :: self
+    integer, intent(in) :: iterations   !! solves up to its end
+    class(observer), intent(inout) :: watch
+    integer :: refinements
+
+    call self%evaluate(watch)
+    if (self%is_unbalanced()) call self%refine(refinements, watch)
+    if (self%certificate%valid) call self%add_increment(iterations)
+  end subroutine check_increment
 
   !> Follow the loads by flow theory, in another number of increments for their error, then in that of the
   !! load case. If PARAM ACCURACY chooses the number, it is doubled until the error is small enough.
@@ -131,6 +171,7 @@ contains
         if (.not. controls%steps_by_accuracy .or. self%steps >= most_steps) exit
         if (self%is_fine_enough()) exit
         call self%take_as_other()
+        self%other_steps = self%steps
         self%steps = 2*self%steps
       end do
     end associate
@@ -159,7 +200,6 @@ contains
     class(loaded_model), intent(inout) :: self
 
     self%other = self%end_figures()
-    self%other_steps = self%steps
     self%other_end = self%end_of()
     deallocate (self%kept%linear)   ! it has the tangent of the end
   end subroutine take_as_other
@@ -183,46 +223,38 @@ contains
   subroutine follow_others(self, watch)
     class(loaded_model), intent(inout) :: self
     class(observer), intent(inout) :: watch
-    type(iteration_plan) :: plan
-    type(answer_type) :: none
-    type(load_path) :: path
+    logical :: complete
 
     if (allocated(self%other)) deallocate (self%other)
-    self%answer = none
-    plan = self%iteration
-    plan%load_steps = self%other_steps
-    plan%keeps = .true.
-    self%model%loads = self%loads
-    associate (kept => self%kept, answer => self%answer)
-      call path%begin(self%planned_model, plan, kept%linear, kept%virgin, self%other_start)
-      do
-        call path%advance(self%planned_model, kept%linear, answer, watch)
-        if (.not. answer%converged .or. answer%lost_contact .or. path%is_complete()) exit
-        call path%commit(self%planned_model, kept%linear, answer)
-      end do
-      call path%finish(kept%linear, kept%virgin, answer)
-      if (answer%converged .and. path%is_complete()) then
-        call self%find_results(watch)
-        self%other = self%end_figures()
-        self%other_end = self%end_of()
-      end if
-      deallocate (kept%linear)   ! it has the tangent of the end
-    end associate
+    call self%follow_path(self%other_steps, .false., watch, complete)
+    if (self%answer%converged .and. complete) then
+      call self%find_results(watch)
+      call self%take_as_other()
+    else
+      deallocate (self%kept%linear)   ! it has the tangent of the end
+    end if
   end subroutine follow_others
 
-  !> Add an increment to the list. gfortran 12 leaks an array constructor of such a type.
+  !> Add an increment to the list.
   pure subroutine add_increment(self, iterations)
     class(loaded_model), intent(inout) :: self
     integer, intent(in) :: iterations   !! solves up to its end
-    type(increment_record), allocatable :: more(:)
-    integer :: n
 
-    n = size(self%increment)
-    allocate (more(n + 1))
-    more(:n) = self%increment
-    more(n + 1) = increment_of(self%answer, iterations)
-    call move_alloc(more, self%increment)
+    if (self%increments == size(self%increment)) call self%make_room(max(1, 2*self%increments))
+    self%increments = self%increments + 1
+    self%increment(self%increments) = increment_of(self%answer, iterations)
   end subroutine add_increment
+
+  !> Change the length of the list. gfortran 12 leaks an array constructor of such a type.
+  pure subroutine make_room(self, length)
+    class(loaded_model), intent(inout) :: self
+    integer, intent(in) :: length   !! at least the number of increments
+    type(increment_record), allocatable :: list(:)
+
+    allocate (list(length))
+    list(:self%increments) = self%increment(:self%increments)
+    call move_alloc(list, self%increment)
+  end subroutine make_room
 
   !> End of the loads that the model has.
   type(path_end) function end_of(self) result(last)
@@ -266,11 +298,38 @@ contains
     if (allocated(self%other)) call move_alloc(self%other_end, self%other_start)
   end subroutine end_case
 
+  !> Store the ends of the last load case in an archive, or restore them as the start of the next one. They
+  !! exist if the load case has reached its end (`has_end`).
+  pure subroutine pass_ends(self, file)
+    class(loaded_model), intent(inout) :: self
+    type(archive), intent(inout) :: file
+    real(wp), allocatable :: replayed(:)
+    logical, allocatable :: other(:)
+
+    if (file%reading) allocate (self%start)
+    call self%start%pass(file)
+    if (allocated(self%start%replayed)) replayed = transfer(self%start%replayed, [0.0_wp])
+    call file%pass(replayed)
+    if (allocated(replayed)) self%start%replayed = transfer(replayed, [replayed_history()])
+    call file%pass(self%start%slid)
+    other = [allocated(self%other_start)]
+    call file%pass(other)
+    if (file%reading .and. other(1)) allocate (self%other_start)
+    if (other(1)) call self%other_start%pass(file)
+  end subroutine pass_ends
+
+  !> Is there an end of a load case for the next one to start from?
+  pure logical function has_end(self)
+    class(loaded_model), intent(in) :: self
+
+    has_end = allocated(self%start)
+  end function has_end
+
   !> Can a load case start where the one before has ended?
   pure logical function can_start(self)
     class(loaded_model), intent(in) :: self
 
-    can_start = allocated(self%start) .or. .not. self%has_memory()
+    can_start = self%has_end() .or. .not. self%has_memory()
   end function can_start
 
   !> Are the loads followed in increments: by flow theory, or with friction?

@@ -1,13 +1,14 @@
 !> Solve the load cases of a pattern one after the other. Each starts with the plan, the factors and the
 !> contact state of the previous one. Also the texts that a run prints for a load case.
 module epcont_app_case_runs
+  use epcont_app_arguments, only: word_type
   use epcont_app_process, only: print_error, print_text
   use epcont_app_progress_display, only: progress_type
   use epcont_base_diagnostic, only: place_type
   use epcont_base_error, only: error_type, status_no_answer, status_valid
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: newline, plural, shown, text_of
-  use epcont_messages_outcome, only: judge, limit_of_pressure, reason_of, remark_lines
+  use epcont_messages_outcome, only: judge, limit_of_pressure, outcome_type, reason_of, remark_lines
   use epcont_model_load_cases, only: put_case
   use epcont_report_columns, only: known, listed_number, number, right
   use epcont_report_results, only: results_type
@@ -25,6 +26,12 @@ module epcont_app_case_runs
     logical :: quiet = .false.              !! no lines on standard output
     logical :: solved = .false.             !! one load case or more
     integer :: status = status_valid        !! exit status: the largest of all load cases
+    !> Lines for standard output and standard error of each load case that is solved, and the number of load
+    !! cases for which they are printed [load cases]
+    type(word_type), allocatable, private :: line(:), remarks(:)
+    integer, private :: printed = 0
+  contains
+    procedure :: print_case
   end type deck_run
 
 contains
@@ -43,43 +50,56 @@ contains
       run%case = cases(k)
       if (run%has_cases()) call put_case(run%cases, run%case, run%model)
       run%kept%another = k < size(cases)
-      if (run%case > 1 .and. .not. run%can_start()) then
-        call skip_case(run, of_deck, results)
-        cycle
+      if (run%case == 1 .or. run%can_start()) then
+        call run%solve(of_deck%memory, watch, error)
+        if (allocated(error)) then
+          error%message = of_deck%path//': '//error%message
+          return
+        end if
+        run%outcome = judge(run)
+        if (size(cases) > 1 .and. allocated(run%as_given)) call run%outcome%found%add_note(place_type(), &
+          'nodes without a pair came near: this load case was solved again with '// &
+          plural(run%model%contact%pairs - run%as_given%model%contact%pairs, 'more pair'))
+      else
+        run%outcome = not_solved()
+        call run%attempts%begin()
       end if
-      call run%solve(of_deck%memory, watch, error)
-      if (allocated(error)) then
-        error%message = of_deck%path//': '//error%message
-        return
-      end if
-      run%outcome = judge(run)
-      if (size(cases) > 1 .and. allocated(run%as_given)) call run%outcome%found%add_note(place_type(), &
-        'nodes without a pair came near: this load case was solved again with '// &
-        plural(run%model%contact%pairs - run%as_given%model%contact%pairs, 'more pair'))
       of_deck%solved = .true.
       call results%add_case(run, error)
       if (allocated(error)) return
       call watch%erase()
-      of_deck%status = max(of_deck%status, run%outcome%status)
-      call print_error(remarks_of(run, of_deck%path))
-      if (.not. of_deck%quiet) call print_text(line_of(run, of_deck%name), of_deck%status)
+      call of_deck%print_case(run)
       if (size(cases) > 1) call run%return_to_given()
       call watch%lap(stage_writing)
     end do
   end subroutine solve_pattern
 
-  !> Skip a load case of a sequence, since the one before has not reached its end.
-  subroutine skip_case(run, of_deck, results)
-    type(run_results), intent(in) :: run
-    type(deck_run), intent(inout) :: of_deck
-    type(results_type), intent(inout) :: results
+  !> Outcome of a load case of a sequence that could not start.
+  type(outcome_type) function not_solved() result(outcome)
 
-    call results%skip_case(run)
-    of_deck%status = max(of_deck%status, status_no_answer)
-    call print_error(shown(of_deck%path)//case_name(run)// &
-      ': not solved: it starts from the end of the SUBCASE before, which was not reached'//newline)
-    if (.not. of_deck%quiet) call print_text(of_deck%name//case_name(run)//'  not solved', of_deck%status)
-  end subroutine skip_case
+    outcome%status = status_no_answer
+    outcome%word = 'not solved'
+    outcome%sentence = 'it starts from the end of the SUBCASE before, which was not reached'
+    outcome%at_load = ''
+  end function not_solved
+
+  !> Print the outcome of a load case, when those of all load cases before it in the deck are printed.
+  subroutine print_case(self, run)
+    class(deck_run), intent(inout) :: self
+    type(run_results), intent(in) :: run   !! with the outcome
+
+    if (.not. allocated(self%line)) &
+      allocate (self%line(size(run%deck%subcase)), self%remarks(size(run%deck%subcase)))
+    self%status = max(self%status, run%outcome%status)
+    self%remarks(run%case)%text = remarks_of(run, self%path)
+    self%line(run%case)%text = line_of(run, self%name)
+    do while (self%printed < size(self%line))
+      if (.not. allocated(self%line(self%printed + 1)%text)) exit
+      self%printed = self%printed + 1
+      call print_error(self%remarks(self%printed)%text)
+      if (.not. self%quiet) call print_text(self%line(self%printed)%text, self%status)
+    end do
+  end subroutine print_case
 
   !> Make lines for standard error: warnings, and the reason if the answer is not valid, each after the name
   !! of the deck.

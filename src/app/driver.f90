@@ -13,6 +13,7 @@ module epcont_app_driver
   use epcont_model_load_cases, only: load_cases
   use epcont_plan_planned_model, only: planned_model
   use epcont_report_file, only: file_lock, lock_files, unlock_files
+  use epcont_report_restart, only: restore_end, save_end
   use epcont_report_results, only: remove_results, results_type
   use epcont_report_run, only: run_results
   use epcont_system_memory, only: peak_memory
@@ -57,7 +58,7 @@ contains
     status = of_deck%status
     if (allocated(error)) then
       call print_error(shown(error%message)//newline)
-      status = error%status
+      status = max(status, error%status)
     end if
     if (arguments%asks('--timing')) call print_error(timing_text(of_deck%name, watch, peak_memory()))
 
@@ -99,6 +100,8 @@ contains
       end do
       if (writes) then
         call results%finish(run, error)
+        if (.not. allocated(error) .and. run%deck%parameter_word('SAVE') == 'YES') &
+          call save_end(stem//'.restart', run, error)
       else
         call print_text(of_deck%name//results%plan, of_deck%status)
       end if
@@ -135,6 +138,7 @@ contains
     call run%find_motions(run%faults)
     call tell(run%deck, run%faults, 1)
     call check_patterns()
+    if (run%faults%errors == 0 .and. run%deck%restart /= '') call restore_end(run)
     call watch%lap(stage_plan)
 
   contains

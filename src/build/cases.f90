@@ -1,6 +1,7 @@
 !> Load cases from case control, and the contents of their sets: FORCE, PLOADX1,
 !> GRAV, RFORCE, LOAD, SPC and SPCD.
 module epcont_build_cases
+  use epcont_base_diagnostic, only: place_type
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: new_id_index
   use epcont_base_text, only: short_real
@@ -8,8 +9,9 @@ module epcont_build_cases
   use epcont_build_mesh_cards, only: element_cards
   use epcont_build_reference, only: card_index, check_choices, check_combinations, chosen_sets, &
       named_node, nodes_of_fields, note_unnamed, note_unused, resolve
-  use epcont_deck_card_kinds, only: card_bconp, card_force, card_grav, card_load, card_mats1, card_moment, &
-      card_nlparm, card_param, card_ploadx1, card_rforce, card_spc, card_spc1, card_spcd
+  use epcont_deck_card_kinds, only: card_bconp, card_bfric, card_force, card_grav, card_load, card_mats1, &
+      card_moment, card_nlparm, card_param, card_pgap, card_ploadx1, card_rforce, card_spc, card_spc1, &
+      card_spcd
   use epcont_deck_deck, only: deck_type
   use epcont_deck_entry, only: farthest, least_cause
   use epcont_build_tie_cards, only: check_directions, digit, dof_node, find_moments, find_platens, names
@@ -59,14 +61,9 @@ contains
     call check_choices(deck, deck%subcase%contact, nint(deck%card(card_bconp)%value(1, :)), 'BCONTACT', &
                        'there is no such BCONP', 'give ALL, NONE or the id of a BCONP', found)
     call choose_load_steps()
-    associate (mats1 => deck%card(card_mats1))
-      if (cases%sequence .and. .not. data%controls%flow_theory .and. &
-          any(mats1%word(mats1%column('TYPE'), :) == 'PLASTIC')) call found%add_error(deck%sequence, &
-        'a sequence of SUBCASEs needs flow theory: total theory has no memory of earlier loads', &
-        'remove PARAM THEORY or ORIGINAL, or write CNTNLSUB = NO: each begins with the unloaded state')
-      if (deck%linear%line > 0 .and. mats1%count > 0) &
-        call found%add_note(deck%linear, 'SOL: materials with MATS1 yield, as with SOL 106')
-    end associate
+    call check_history(deck, data%controls%flow_theory, found)
+    if (deck%linear%line > 0 .and. deck%card(card_mats1)%count > 0) &
+      call found%add_note(deck%linear, 'SOL: materials with MATS1 yield, as with SOL 106')
     call note_unused(deck, load_cards, used, found)
     call note_unused(deck, [card_load], loads, found)
     call find_platens(deck, nodes, supports, used, data, found)
@@ -122,13 +119,49 @@ contains
         end do
         call check_choices(deck, choice, nint(nlparm%value(1, :)), 'NLPARM', 'there is no such NLPARM', &
                            'give the id of an NLPARM card', found)
-        call note_unnamed(deck, card_nlparm, 1, choice%id, 'load case', found)
+        if (.not. deck%is_part()) call note_unnamed(deck, card_nlparm, 1, choice%id, 'load case', found)
         row = deck%parameter_row('NLOAD')
         if (row > 0 .and. any(choice%id > 0)) call found%add_error(card_param, row, 1, &
           ': NLPARM gives the number of load steps, too', 'remove one of the two')
       end associate
     end subroutine choose_load_steps
   end subroutine read_cases
+
+  !> Check that a sequence has flow theory, and that a part of a longer history can be one.
+  subroutine check_history(deck, flow_theory, found)
+    type(deck_type), intent(in) :: deck
+    logical, intent(in) :: flow_theory
+    type(findings), intent(inout) :: found
+    type(place_type) :: place
+    character(len=:), allocatable :: name
+    logical :: slips, yields
+
+    associate (mats1 => deck%card(card_mats1), pgap => deck%card(card_pgap))
+      yields = any(mats1%word(mats1%column('TYPE'), :) == 'PLASTIC')
+      slips = deck%parameter_word('FRICTION') /= 'NO' .and. (deck%card(card_bfric)%count > 0 .or. &
+              any(pgap%value(pgap%column('MU1'), :) > 0.0_wp))
+    end associate
+    place = deck%sequence
+    if (deck%is_part()) then
+      name = 'RESTART'
+      place = deck%restart_place
+      if (place%line == 0) then
+        name = 'PARAM SAVE'
+        place = deck%place(card_param, deck%parameter_row('SAVE'), 1)
+      end if
+      if (.not. (yields .or. slips)) then
+        call found%add_error(place, name// &
+          ': load cases do not depend on those before: no MATS1 is PLASTIC, and there is no friction', &
+          'remove '//name)
+      else if (.not. deck%is_sequence()) then
+        call found%add_error(place, name//': the SUBCASEs are independent', &
+                             'write SOL 106 or CNTNLSUB = YES: each starts from the end of the one before')
+      end if
+    end if
+    if (deck%is_sequence() .and. yields .and. .not. flow_theory) call found%add_error(place, &
+      'a sequence of SUBCASEs needs flow theory: total theory has no memory of earlier loads', &
+      'remove PARAM THEORY or ORIGINAL, or write CNTNLSUB = NO: each begins with the unloaded state')
+  end subroutine check_history
 
   !> Read FORCE.
   subroutine add_forces(deck, nodes, used, cases, found)

@@ -27,7 +27,9 @@ contains
     associate (grav => deck%card(card_grav), rforce => deck%card(card_rforce))
       allocate (body(grav%count + rforce%count))
       body%set = nint([grav%value(1, :), rforce%value(1, :)])
-      body%given%factor = [(merge(1.0_wp, 0.0_wp, any(used == body(i)%set)), i=1, size(body))]
+      ! In a part of a longer history, the loads at its start or in later parts may use any of them.
+      body%given%factor = [(merge(1.0_wp, 0.0_wp, deck%is_part() .or. any(used == body(i)%set)), &
+                            i=1, size(body))]
       call read_gravity(body(:grav%count)%given)
       call read_spins(body(grav%count + 1:)%given)
     end associate

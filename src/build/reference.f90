@@ -130,7 +130,9 @@ contains
     row = [((i, i=1, deck%card(cards(c))%count), c=1, size(cards))]
     id = merge(id, 0, [(deck%card(table(i))%given(1, row(i)), i=1, size(row))])
     set = choice%id
-    if (all(choice%id == 0) .and. (size(choice) == 1 .or. word /= 'LOAD') .and. any(id > 0)) then
+    ! Without LOAD, a SUBCASE has no loads at its end; so has a deck that continues earlier loads.
+    if (all(choice%id == 0) .and. (size(choice) == 1 .and. deck%restart == '' .or. word /= 'LOAD') .and. &
+        any(id > 0)) then
       set = id(findloc(id > 0, .true., dim=1))
       i = findloc(id > 0 .and. id /= set(1), .true., dim=1)
       if (i > 0) then
@@ -241,6 +243,7 @@ contains
     type(findings), intent(inout) :: found   !! notes are added
     integer :: c, i
 
+    if (deck%is_part()) return   ! other parts of the history use them
     do c = 1, size(cards)
       associate (table => deck%card(cards(c)))
         do i = 1, table%count
@@ -250,6 +253,7 @@ contains
       end associate
     end do
   end subroutine note_unused
+
   !> Read SPC and SUPORT: nodes, each with its directions in the next field.
   function nodes_of_fields(deck, card, columns, nodes, found) result(named)
     type(deck_type), intent(in) :: deck

@@ -166,6 +166,7 @@ contains
     integer, allocatable :: heard(:)
     integer :: c, i, k
 
+    if (deck%is_part()) return   ! other parts of the history use them
     heard = used
     do c = 1, size(card)
       associate (table => deck%card(card(c)))

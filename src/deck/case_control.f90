@@ -34,16 +34,17 @@ module epcont_deck_case_control
     type(subcase_control), allocatable :: subcase(:)         !! at least one
     type(place_type) :: sequence   !! statement that makes the load cases a sequence; line 0: absent
     type(place_type) :: linear     !! SOL of a linear solution, such as 101; line 0: absent
+    !> File with the end of earlier loads, from which the first load case starts; empty if not given
+    character(len=:), allocatable :: restart
+    type(place_type) :: restart_place                        !! of its name
     logical :: echo_unsorted = .false., echo_sorted = .false.   !! list the cards as they are, sorted by name
-  contains
-    procedure :: is_sequence
   end type case_control
 
   !> Keywords. Beginning with `first_own`, all may be given for a single load case.
-  character(len=*), parameter, public :: keyword(17) = [character(len=12) :: &
-    'SOL', 'CEND', 'TITLE', 'ECHO', 'CNTNLSUB', 'SUBCASE', 'SUBTITLE', 'LABEL', 'SPC', 'LOAD', 'MPC', &
-    'BCONTACT', 'DISPLACEMENT', 'STRESS', 'SPCFORCES', 'NLPARM', 'TEMPERATURE']
-  integer, parameter :: first_own = 7
+  character(len=*), parameter, public :: keyword(18) = [character(len=12) :: &
+    'SOL', 'CEND', 'TITLE', 'ECHO', 'CNTNLSUB', 'RESTART', 'SUBCASE', 'SUBTITLE', 'LABEL', 'SPC', 'LOAD', &
+    'MPC', 'BCONTACT', 'DISPLACEMENT', 'STRESS', 'SPCFORCES', 'NLPARM', 'TEMPERATURE']
+  integer, parameter :: first_own = 8
   !> Statements without effect: requests for output, and limits of a run.
   character(len=*), parameter :: idle(*) = [character(len=9) :: &
     'ANALYSIS', 'BCRESULTS', 'BOUTPUT', 'ELFORCE', 'ESE', 'FORCE', 'GPFORCE', 'GPSTRESS', 'ID', 'LINE', &
@@ -82,6 +83,7 @@ contains
     bulk = behind_begin_bulk(lines)
     allocate (control%subcase(max(1, count([(is_subcase(lines, line), line=1, bulk - 2)]))))
     control%title = ''
+    control%restart = ''
     now%subtitle = ''
     now%label = ''
     cases = 0
@@ -123,6 +125,13 @@ contains
           call refuse(parts, 'a word', ' known to epcont', &
                       'give NO or YES: a list of SUBCASEs (SID) is not supported', faults)
         end if
+      case ('RESTART')
+        control%restart = trim(parts%value)
+        if (scan(parts%value, '''"') == 1) control%restart = parts%value(2:len(parts%value) - 1)
+        control%restart_place = parts%value_place
+        if (control%restart == '') &
+          call refuse(parts, 'the name of a file', '', 'give the DECK.restart that PARAM SAVE YES writes', &
+                      faults)
       case ('SUBCASE')
         call begin_subcase()
       case ('TITLE')
@@ -179,13 +188,6 @@ contains
       stated(first_own:) = .false.
     end subroutine begin_subcase
   end subroutine read_case_control
-
-  !> Does each load case start from the end of the one before?
-  pure logical function is_sequence(self)
-    class(case_control), intent(in) :: self
-
-    is_sequence = self%sequence%line > 0 .and. size(self%subcase) > 1
-  end function is_sequence
 
   !> Report a value that is missing or not accepted.
   subroutine refuse(parts, needed, which, remedy, faults)

@@ -316,6 +316,8 @@ module epcont_deck_catalogue
     'ORIGINAL; word NO YES; methods of about 1980: SOLVER BAND, FLEXIB INVERT, RULE CONRY, METHOD'// &
     ' SECANT, TOL 0.01, NLOAD 1, THEORY TOTAL, MUP PAPER, no ACCURACY; default NO', &
     'NLOAD; whole from=1 to=10000 for=MATS1; load steps; default 1', &
+    'SAVE; word NO YES; YES saves the end of the last load case in DECK.restart, from which'// &
+    ' another deck continues (RESTART); default NO', &
     'SEARCH; real positive for=BCONP; search distance of BCONP; default twice the longest'// &
     ' edge of the two lines [length]', &
     'SOLVER; word AUTO BAND FRONTAL; matrices of the bodies: panels of a band, or nested fronts;'// &

@@ -22,6 +22,8 @@ module epcont_deck_deck
     type(card_table), allocatable :: card(:)  !! cards by kind, with their catalogue entries [card_kinds]
   contains
     procedure :: place
+    procedure :: is_part
+    procedure :: is_sequence
     procedure :: parameter_row
     procedure :: parameter_word
     procedure :: parameter_value
@@ -42,7 +44,8 @@ contains
     if (allocated(error)) return
     deck%whole = faults%errors == 0
     call read_case_control(deck%source, deck%case_control, bulk, faults)
-    call read_bulk(deck%source, bulk, any(deck%subcase%temperature%id > 0), deck%card, faults)
+    call read_bulk(deck%source, bulk, any(deck%subcase%temperature%id > 0) .or. deck%restart /= '', &
+                   deck%card, faults)
     if (.not. deck%source%ended) call check_end(deck, faults)
   end subroutine read_deck
 
@@ -121,6 +124,21 @@ contains
       place = fields%place(field)
     end if
   end function place
+
+  !> Are the load cases part of a longer history: does it continue earlier loads, or is its end saved?
+  pure logical function is_part(self)
+    class(deck_type), intent(in) :: self
+
+    is_part = self%restart /= '' .or. self%parameter_word('SAVE') == 'YES'
+  end function is_part
+
+  !> Does each load case start from the end of the one before?
+  pure logical function is_sequence(self)
+    class(deck_type), intent(in) :: self
+
+    if (size(self%subcase) > 1) is_sequence = self%sequence%line > 0
+    if (size(self%subcase) == 1) is_sequence = self%is_part()
+  end function is_sequence
 
   !> Row of the first PARAM card of a name; 0 if there is no such card.
   pure integer function parameter_row(self, name) result(row)

@@ -31,6 +31,7 @@ module epcont_messages_array_words
     'MUP EXACT (ORIGINAL takes PAPER)', '.false.', 'MUP EXACT', '.false.', &
     'THEORY TOTAL', '.false.', 'MUP PAPER', 'paper_ratio', &
     'PARAM MAXIT', 'controls%most_iterations', 'METHOD', 'controls%method', '--memory', 'memory', &
+    'load steps (NLPARM)', 'controls%load_steps', &
     '`force not unique` in CONTACT', 'answer%contact%indeterminate']
 
   !> Items that are known by their position in a list, and the names of these lists.

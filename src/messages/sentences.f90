@@ -11,6 +11,7 @@ module epcont_messages_sentences
   use epcont_messages_names, only: first_grid, joined, motion_name, when
   use epcont_messages_scene_text, only: scene_sentence, unsound
   use epcont_model_arrays, only: angle
+  use epcont_model_controls, only: method_newton
   use epcont_model_finding, only: of_node
   use epcont_solution, only: solution_type
   implicit none
@@ -129,11 +130,23 @@ contains
              when(run%answer%runs_away, ': displacements grow without bound (perfectly plastic material)', &
                   ' after '//plural(last%iteration, 'iteration')//' displacements still change by '// &
                   short_real(last%change)//' of the largest (increase PARAM MAXIT, or '// &
-                  when(run%model%controls%original, 'remove ORIGINAL', 'choose another METHOD')//')')// &
-             when(run%answer%carried, '. Results are for load factor '// &
-                  short_real(run%answer%load_factor)//', the last converged load step')
+                  other_way(run)//')')// &
+             when(run%answer%carried, '. Results are '//when(run%answer%load_factor > 0.0_wp, &
+                  'for load factor '//short_real(run%answer%load_factor)//', the last converged load step', &
+                  'those at the end of the load case before'))
     end associate
   end function unconverged
+
+  !> What can be done, besides more iterations, if an iteration does not converge.
+  pure function other_way(run) result(text)
+    class(solution_type), intent(in) :: run
+    character(len=:), allocatable :: text
+
+    text = 'use METHOD NEWTON'
+    if (run%iteration%method == method_newton) text = 'use more load steps (NLPARM)'
+    if (run%model%controls%paper_ratio) text = 'choose another METHOD'
+    if (run%model%controls%original) text = 'remove ORIGINAL'
+  end function other_way
 
   !> Load factors of a limit load, for standard output; empty if the limit load was not exceeded.
   pure function limit_load(run) result(text)

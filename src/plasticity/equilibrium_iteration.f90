@@ -7,7 +7,6 @@ module epcont_plasticity_equilibrium_iteration
   use epcont_linear_linear_problem, only: linear_problem, new_linear_problem
   use epcont_linear_solved_state, only: solved_state
   use epcont_material_linear_law, only: elastic_law
-  use epcont_material_material_law, only: plastic_history
   use epcont_model_expansion, only: find_free_strains
   use epcont_model_load_set, only: load_set
   use epcont_model_controls, only: method_inistr, method_newton, method_secant
@@ -18,6 +17,7 @@ module epcont_plasticity_equilibrium_iteration
   use epcont_plasticity_law_of_state, only: factor_law, linearise
   use epcont_plasticity_newton, only: newton_method
   use epcont_plasticity_observer, only: iteration_record, observer
+  use epcont_plasticity_path_end, only: path_end
   use epcont_plasticity_secant, only: secant_method
   use epcont_system_stopwatch, only: stage_yielding
   implicit none
@@ -87,19 +87,16 @@ contains
 
   !> Begin at the start of the path. The first load case is one without `linear`; the others have it from the
   !! one before, and the factors of the unloaded state.
-  subroutine begin(self, scene, loads, history, state)
+  subroutine begin(self, scene, from)
     class(equilibrium_iteration), intent(inout) :: self
     type(planned_model), intent(inout) :: scene     !! gets the loads of the first load step
-    ! Start of the path; absent: unloaded
-    type(load_set), intent(in), optional :: loads
-    type(plastic_history), intent(in), optional :: history(:)   !! [points]
-    type(solved_state), intent(in), optional :: state
+    class(path_end), intent(in), optional :: from   !! start of the path; absent: unloaded
 
-    if (self%plan%load_steps > 1 .or. present(loads)) self%last = scene%model%loads
-    if (present(loads)) self%start = loads
+    if (self%plan%load_steps > 1 .or. present(from)) self%last = scene%model%loads
+    if (present(from)) self%start = from%loads
     associate (contact => scene%model%contact)
       contact%slipped = spread(0.0_wp, 1, size(contact%sliding))
-      if (present(state)) contact%slipped = contact%slides(state%displacement)
+      if (present(from)) contact%slipped = contact%slides(from%state%displacement)
     end associate
     call self%put_loads(scene, 1.0_wp/self%plan%load_steps)
     if (allocated(self%virgin)) self%linear = self%virgin
@@ -116,9 +113,9 @@ contains
       self%factored_before = linear%factorizations
       linear%rule%keeps = self%plan%keeps .and. .not. linear%materials%yields
       if (allocated(linear%materials%committed)) deallocate (linear%materials%committed)   ! of another case
-      if (present(history)) linear%materials%committed = history
-      if (present(state)) then
-        self%committed = state
+      if (present(from)) then
+        linear%materials%committed = from%history
+        self%committed = from%state
       else
         allocate (self%committed%displacement(directions, model%mesh%nodes), source=0.0_wp)
         allocate (self%committed%strain(components, model%mesh%points), source=0.0_wp)

@@ -7,17 +7,16 @@ module epcont_plasticity_load_path
   use epcont_contact_problem, only: contact_no_equilibrium, contact_solved, pivot_record
   use epcont_linear_linear_problem, only: linear_problem
   use epcont_linear_solved_state, only: solved_state
-  use epcont_material_material_law, only: plastic_history
-  use epcont_model_load_set, only: load_set
   use epcont_plan_iteration_plan, only: iteration_plan
   use epcont_plan_planned_model, only: planned_model
   use epcont_plasticity_equilibrium_iteration, only: equilibrium_iteration
   use epcont_plasticity_observer, only: iteration_record, observer
+  use epcont_plasticity_path_end, only: path_end
   use epcont_plasticity_unloading, only: find_unloaded
   use epcont_system_stopwatch, only: stage_yielding
   implicit none
   private
-  public :: followed_loads, load_path, path_end
+  public :: followed_loads, load_path
 
   !> Contact is lost if its last force was at most this part of the largest: an increment is small enough.
   real(wp), parameter :: little = 0.05_wp
@@ -46,15 +45,9 @@ module epcont_plasticity_load_path
                                            !! grew
     integer :: first_unloaded = 0          !! one of them
   contains
+    procedure :: begin_at
     procedure, private :: keep_step
   end type followed_loads
-
-  !> End of a path, from which another one can start.
-  type :: path_end
-    type(load_set) :: loads
-    type(plastic_history), allocatable :: history(:)   !! [points]
-    type(solved_state) :: state
-  end type path_end
 
   type :: load_path
     private
@@ -90,11 +83,7 @@ contains
     self%iteration%plan = plan
     call move_alloc(linear, self%iteration%linear)
     call move_alloc(virgin, self%iteration%virgin)
-    if (present(from)) then
-      call self%iteration%begin(scene, from%loads, from%history, from%state)
-    else
-      call self%iteration%begin(scene)
-    end if
+    call self%iteration%begin(scene, from)
     call move_alloc(self%iteration%linear, linear)
     allocate (self%strained(scene%model%mesh%points), source=0.0_wp)
   end subroutine begin
@@ -179,6 +168,19 @@ contains
     if (answer%failed_body == 0 .and. answer%contact%state == contact_solved) &
       call move_alloc(self%iteration%touching, linear%touching)
   end subroutine finish
+
+  !> Begin at the end of the loads before, which is the result as long as no load step is carried. If there
+  !! are other pairs now, the end is not an equilibrium.
+  pure subroutine begin_at(self, from, pairs)
+    class(followed_loads), intent(inout) :: self
+    class(path_end), intent(in) :: from
+    integer, intent(in) :: pairs   !! of the model
+
+    if (size(from%state%contact%force) /= pairs) return
+    self%solved_state = from%state
+    self%carried = .true.
+    self%largest_force = sum(from%state%contact%force)
+  end subroutine begin_at
 
   !> Store the result of a load step. If it was not carried, nothing is stored, unless it is the first.
   subroutine keep_step(self, scene, iteration, watch)

@@ -17,7 +17,7 @@ module epcont_report_case_table
     logical :: has_answer = .false.            !! false: only the status is known
     character(len=20) :: status = ''           !! in one word
     character(len=16) :: limit = ''            !! bounded, singular ... (largest pressure)
-    integer :: touching = 0, plastic = 0       !! pairs, elements
+    integer :: touching = -1, plastic = -1     !! pairs, elements
     real(wp) :: pressure = -1.0_wp, pressure_error = -1.0_wp   !! largest [stress]
     real(wp) :: half_width = -1.0_wp           !! of the zone with this pressure [length]
     real(wp) :: approach = unknown             !! of the first rigid-body mode [length]
@@ -34,7 +34,7 @@ module epcont_report_case_table
     column(estimate, 'mesh_error_max_pressure', stress, 'empty if unknown', 'p_max error', 13), &
     column(word, 'max_pressure_is', '', 'bounded, singular, mesh too coarse, no contact', 'p_max is', 17), &
     column(known, 'half_width', length, 'of the zone with that pressure; empty if unknown', 'half-width'), &
-    column(number, 'approach', length, 'of the first SUPORT DOF'), &
+    column(number, 'approach', length, 'the first one in the summary'), &
     column(rounding, 'equilibrium_residual', '', 'of the certificate, relative', 'residual', 11), &
     column(part, 'mesh_error_energy_norm', '', 'relative', 'energy error', 14)]
 

@@ -106,7 +106,7 @@ contains
   !> Write a row.
   subroutine row(self, wholes, numbers, words)
     class(table_type), intent(inout) :: self
-    integer, intent(in) :: wholes(:)           !! ids and counts, in the order of the columns
+    integer, intent(in) :: wholes(:)           !! ids and counts, in this order; negative: unknown
     real(wp), intent(in) :: numbers(:)         !! in the order of the columns
     character(len=*), intent(in), optional :: words(:)   !! in the order of the columns; absent if no column
                                                          !! has words
@@ -118,7 +118,8 @@ contains
       if (self%listed .and. self%column(i)%width == 0) cycle
       associate (kind => self%column(i)%kind, n => self%nth(i))
         if (kind == whole) then
-          cell(i) = text_of(wholes(n))
+          if (wholes(n) >= 0) cell(i) = text_of(wholes(n))
+          if (wholes(n) < 0 .and. self%listed) cell(i) = '-'
         else if (kind < whole) then
           cell(i) = words(n)
         else if (self%listed) then

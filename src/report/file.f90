@@ -20,6 +20,7 @@ module epcont_report_file
     type(c_ptr), private :: stream = c_null_ptr
     character(len=:), allocatable, private :: path
   contains
+    procedure :: characters => put
     procedure :: line
     procedure :: say
     procedure :: heading
@@ -208,7 +209,7 @@ contains
     call self%line('  '//text)
   end subroutine say
 
-  !> Append characters.
+  !> Append characters, of any kind.
   subroutine put(self, text)
     class(text_file), intent(inout) :: self
     character(len=*), intent(in) :: text

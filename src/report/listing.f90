@@ -55,6 +55,9 @@ contains
       units = run%deck%parameter_word('UNITS')
       if (units == '') units = 'those of the deck'
       call listing%say('units: '//units)
+      if (run%deck%restart /= '') call listing%say('starts from the end of '// &
+        when(run%from_subcase > 0, 'SUBCASE '//text_of(run%from_subcase), 'its load case')//' in '// &
+        printable(run%deck%restart))
       call listing%heading('DECK')
       do k = 1, size(run%deck%card)
         if (run%deck%card(k)%count > 0) &

@@ -39,6 +39,7 @@ module epcont_report_results
     result_file('.elements.csv', 'the elements, if the deck or --tables all asks for them'), &
     result_file('.plastic.csv', 'plastic strains of flow theory, with the table of elements'), &
     result_file('.cases.csv', 'the load cases, if there are several'), &
+    result_file('.restart', 'the end of the last load case, with PARAM SAVE YES'), &
     result_file('.vtu', 'the bodies, for ParaView, with --vtk: displacements, stresses, states'), &
     result_file('.contact.vtu', 'the boundary in contact, for ParaView, with --vtk: pressures, gaps'), &
     result_file('.pvd', 'for ParaView: index of DECK.caseN.vtu and .caseN.contact.vtu of load cases')]
@@ -64,7 +65,6 @@ module epcont_report_results
     procedure :: begin
     procedure :: add_plan
     procedure :: add_case
-    procedure :: skip_case
     procedure :: finish
   end type results_type
 
@@ -122,15 +122,6 @@ contains
     if (self%vtk .and. run%outcome%has_answer .and. .not. allocated(error)) &
       call write_vtk(run, self%stem//run%case_suffix(), error)
   end subroutine add_case
-
-  !> Skip a load case that could not start.
-  subroutine skip_case(self, run)
-    class(results_type), intent(inout) :: self
-    type(run_results), intent(in) :: run
-
-    self%case(run%case)%row%subcase = run%deck%subcase(run%case)%id
-    self%case(run%case)%row%status = 'not solved'
-  end subroutine skip_case
 
   !> Has the load case this file, and is it requested?
   pure logical function is_wanted(self, run, suffix)

@@ -15,6 +15,7 @@ module epcont_report_run
     type(deck_type), pointer :: deck => null()    !! shared by its load cases
     type(load_cases), pointer :: cases => null()  !! shared too
     integer :: case = 1                           !! number of the current load case
+    integer :: from_subcase = 0                   !! SUBCASE whose saved end the first one starts from; or 0
     type(diagnostics) :: faults
     character(len=:), allocatable :: deck_notes   !! its warnings and notes, in lines
     type(outcome_type) :: outcome

@@ -229,17 +229,19 @@ contains
   subroutine put_iteration(run, figures)
     type(run_results), intent(in) :: run
     type(figure_list), intent(inout) :: figures
-    integer :: last   ! the solve for the loads of the answer
+    integer :: last   ! the solve for the loads of the answer; 0 if they are those at the start
 
     last = findloc(run%answer%history%load_factor, run%answer%load_factor, dim=1, back=.true.)
     call figures%put('condition', none, size_of, run%answer%condition, &
                      'condition number of the stiffness (1-norm)')
     call figures%put('load_factor', none, number, run%answer%load_factor)
-    call figures%put('iteration_error_displacement', none, rounding, run%answer%history(last)%error, &
-                     when(size(run%answer%history) > 1, 'iteration error / largest displacement'))
-    call figures%put('iteration_error_force', none, rounding, run%answer%history(last)%force_error, &
-                     when(size(run%answer%history) > 1 .and. run%model%contact%pairs > 0, &
-                          'iteration error / largest force'))
+    if (last > 0) then
+      call figures%put('iteration_error_displacement', none, rounding, run%answer%history(last)%error, &
+                       when(size(run%answer%history) > 1, 'iteration error / largest displacement'))
+      call figures%put('iteration_error_force', none, rounding, run%answer%history(last)%force_error, &
+                       when(size(run%answer%history) > 1 .and. run%model%contact%pairs > 0, &
+                            'iteration error / largest force'))
+    end if
     if (run%model%controls%paper_ratio .and. run%iteration%yields) &
       call figures%put('stress_below_curve', none, part, run%answer%shortfall)
   end subroutine put_iteration

@@ -108,7 +108,7 @@ module epcont_report_tables
            'load factor'), &
     column(known, 'max_pressure', stress, 'empty if there is no boundary', 'p_max'), &
     column(known, 'half_width', length, 'of the zone with that pressure; empty if unknown', 'half-width'), &
-    column(number, 'approach', length, 'of the first SUPORT DOF'), &
+    column(number, 'approach', length, 'the first one in the summary'), &
     column(number, 'total_contact_force', force, 'sum over the pairs', 'total force'), &
     column(whole, 'pairs_in_contact', '', 'their number', 'in contact', 12), &
     column(whole, 'plastic_elements', '', 'elements that have yielded', 'yielded', 10), &

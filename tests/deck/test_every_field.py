@@ -150,7 +150,7 @@ CARDS = {
 PARAMETERS = {
     "PLANE": ("ctria3", "STRAIN", CHANGES), "RULE": ("plane", "JOINED", LISTED), "GAPGEOM": ("plane", "YES", CHANGES), "UNITS": ("plane", "MM", LISTED),
     "METHOD": ("yield", "SECANT", LISTED), "TOL": ("yield", ".1", LISTED), "MAXIT": ("yield", "7", LISTED), "MUP": ("yield", "PAPER", LISTED),
-    "ORIGINAL": ("plane", "YES", LISTED), "NLOAD": ("yield", "2", LISTED), "SEARCH": ("feet", ".1", CHANGES), "SOLVER": ("plane", "FRONTAL", LISTED),
+    "ORIGINAL": ("plane", "YES", LISTED), "NLOAD": ("yield", "2", LISTED), "SAVE": ("yield", "YES", LISTED), "SEARCH": ("feet", ".1", CHANGES), "SOLVER": ("plane", "FRONTAL", LISTED),
     "FLEXIB": ("strip", "INVERT", LISTED), "ACCURACY": ("plane", ".1", LISTED), "THEORY": ("flow", "TOTAL", CHANGES), "HRFRAC": ("mixed", ".9", CHANGES), "CORNER": ("lines", "170.", LISTED),
     "WTMASS": ("plane", "2.", CHANGES), "FRICTION": ("lines", "MAYBE", error("field 3 (VALUE)")), "LGDISP": ("plane", "-1", NOTED), "INREL": ("plane", "0", NOTED)}
 WITHOUT = {"PLANE": "ctrax3", "RULE": "yield", "GAPGEOM": "lines", "METHOD": "plane", "TOL": "plane", "MAXIT": "plane", "MUP": "plane", "NLOAD": "plane", "HRFRAC": "yield", "THEORY": "plane",
@@ -158,7 +158,7 @@ WITHOUT = {"PLANE": "ctrax3", "RULE": "yield", "GAPGEOM": "lines", "METHOD": "pl
 #: The same for each statement of case control, put before the others of `plane` or in place of the one with its name.
 STATEMENTS = {
     "SOL": ("SOL 103", note("SOL: epcont solves for static loads")), "CEND": ("CEND 1", error("CEND takes no value")), "TITLE": ("TITLE = X", LISTED), "ECHO": ("ECHO = SORT", LISTED),
-    "CNTNLSUB": ("CNTNLSUB = YES", LISTED), "SUBCASE": ("SUBCASE 9", CHANGES), "SUBTITLE": ("SUBTITLE = X", LISTED),
+    "CNTNLSUB": ("CNTNLSUB = YES", LISTED), "RESTART": ("RESTART = none.restart", error("RESTART: load cases do not depend on those before")), "SUBCASE": ("SUBCASE 9", CHANGES), "SUBTITLE": ("SUBTITLE = X", LISTED),
     "LABEL": ("LABEL = X", LISTED), "SPC": ("SPC = 9", error("SPC = 9: the deck has no such set")), "LOAD": ("LOAD = 12", CHANGES),
     "MPC": ("MPC = 5", CHANGES), "BCONTACT": ("BCONTACT = NONE", CHANGES), "DISPLACEMENT": ("DISPLACEMENT = NONE", CHANGES),
     "STRESS": ("STRESS = NONE", CHANGES), "SPCFORCES": ("SPCFORCES = ALL", CHANGES), "NLPARM": ("NLPARM = 5", error("NLPARM = 5: there is no such NLPARM")),

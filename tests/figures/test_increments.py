@@ -13,8 +13,8 @@ PROGRAM = os.environ["EPCONT_PROGRAM"]
 LIMIT = {"max_pressure": 192.98, "approach_865_2": -0.0014050}
 
 
-def run(cases, cards):
-    """hertz900 with these SUBCASEs: {table: rows}, standard output, exit status."""
+def run(cases, cards, errors=False):
+    """hertz900 with these SUBCASEs: {table: rows}, standard output or errors, exit status."""
     head, _, bulk = (ROOT / "input/hertz/hertz900.dat").read_text().partition("BEGIN BULK\n")
     with tempfile.TemporaryDirectory() as folder:
         deck = pathlib.Path(folder) / "deck.dat"
@@ -24,7 +24,7 @@ def run(cases, cards):
         for path in deck.parent.glob("deck.*.csv"):
             with open(path) as file:
                 tables[path.name.split(".")[1]] = list(csv.DictReader(line for line in file if not line.startswith("#")))
-        return tables, done.stdout, done.returncode
+        return tables, done.stderr if errors else done.stdout, done.returncode
 
 
 class Increments(unittest.TestCase):
@@ -62,6 +62,28 @@ class Increments(unittest.TestCase):
         self.assertGreater(float(second[-1]["load_factor"]), 1 / 1.1 - 1 / 640)
         self.assertIn("SUBCASE 2  contact lost after load factor 0.90", said)
         self.assertIn("SUBCASE 3  not solved", said)
+
+    def test_no_increment_converges(self):
+        """The results are those at the end of the SUBCASE before; those of the next one do not exist."""
+        tables, said, status = run("SUBCASE 1\nLOAD = 1\nNLPARM = 1\nSUBCASE 2\nLOAD = 2\nNLPARM = 2\nSUBCASE 3\nLOAD = 1\n",
+                                   "NLPARM,1,4\nNLPARM,2,4,,,,1\nLOAD,2,1.,1.5,1\n")
+        self.assertEqual(1, status)
+        self.assertEqual(["valid", "not converged", "not solved"], [row["status"] for row in tables["cases"]])
+        one, two = ([(row["force"], row["pressure"], row["gap"]) for row in tables["contact"] if row["subcase"] == case] for case in "12")
+        self.assertEqual(one, two)
+        self.assertEqual({"1"}, {row["subcase"] for row in tables["increments"]})
+        third = tables["cases"][2]
+        self.assertEqual({"3", "not solved", ""}, set(third.values()))
+        self.assertEqual([("3", "status", "not solved"), ("3", "warnings", "0"), ("3", "notes", "0")],
+                         [(row["subcase"], row["key"], row["value"]) for row in tables["summary"] if row["subcase"] == "3"])
+        self.assertIn("SUBCASE 2  not converged  p_max", said)
+
+    def test_what_to_do(self):
+        """Limits of iterations, and INISTR with little hardening; INISTR needs many iterations after yielding."""
+        for method, remedy in ("NEWTON", "use more load steps (NLPARM)"), ("INISTR", "use METHOD NEWTON"):
+            _, said, status = run("LOAD = 1\nNLPARM = 1\n", f"PARAM,THEORY,FLOW\nPARAM,METHOD,{method}\nNLPARM,1,1,,,,2\n", errors=True)
+            self.assertEqual(1, status)
+            self.assertIn(f"of the largest (increase PARAM MAXIT, or {remedy})", said)
 
 
 if __name__ == "__main__":

@@ -221,6 +221,22 @@ class LoadCases(unittest.TestCase):
         touching = [row for row in tables["contact"] if row["status"] == "touching"]
         self.assertEqual({row["subcase"] for row in touching}, {"1", "3"})
 
+    def test_order(self):
+        """Lines on standard output and in the tables have the order of the deck, although the second case is solved last."""
+        cards, loads = bulk(INPUT / "hertz/hertz44_elastic.dat")
+        held = "".join(line + "\n" for line in cards.replace("SPC1    1", "SPC1    2").split("\n") if line.startswith("SPC1"))
+        deck = (f"SPC = 1\nSUBCASE 8\nLOAD = {loads}\nSUBCASE 3\nSPC = 2\nLOAD = 50\nSUBCASE 5\nLOAD = 51\n"
+                f"BEGIN BULK\nSPC,2,41,2,0.0\nSPCD,50,41,2,-1.0-2\nLOAD,51,-1.0,1.0,{loads}\n{held}{cards}")
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "deck.dat"
+            path.write_text(deck)
+            done = subprocess.run([PROGRAM, path], capture_output=True, text=True, cwd=folder, check=False)
+            self.assertEqual([line.split()[:4] for line in done.stdout.splitlines()],
+                             [["deck", "SUBCASE", "8", "valid"], ["deck", "SUBCASE", "3", "valid"], ["deck", "SUBCASE", "5", "no"]])
+            cases = list(csv.DictReader(path.with_suffix(".cases.csv").open()))
+        self.assertEqual(["8", "3", "5"], [row["subcase"] for row in cases])
+        self.assertEqual([True, True, False], [bool(row["pairs_in_contact"] and row["plastic_elements"]) for row in cases])
+
     def test_files_of_an_earlier_run(self):
         """ParaView's steps are the cases with an answer; the next run of the deck, with other cases or none, leaves none of them."""
         cards, loads = bulk(INPUT / "hertz/hertz44_elastic.dat")

@@ -150,7 +150,7 @@ def run(program, path, tolerance):
             return [(None, DIFFER, f"exit status {done.returncode}\n{done.stdout}{done.stderr}")]
         verdicts = []
         for case, found, _ in cases:
-            if f"SUBCASE {case}: not solved: it starts from the end" in done.stderr:
+            if f"SUBCASE {case}: it starts from the end" in done.stderr:
                 verdicts.append((case, verdicts[-1][1], "not solved, like the load case before"))
             else:
                 verdicts.append((case, *verdict(path, pathlib.Path(place), done.stderr, case, found, tolerance)))

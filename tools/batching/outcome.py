@@ -14,7 +14,6 @@ TAKEN = ("status", "warnings", "max_pressure", "max_pressure_is")
 ANSWERED = {"valid", "no equilibrium", "overlap", "not converged", "limit load", "singular stiffness", "contact not found", "ill-conditioned",
             "not certified", "contact lost", "not solved"}   # last words of a complete listing
 VALID = ("valid", "contact lost")   # exit status 0
-NOT_SOLVED = re.compile(r" SUBCASE (\d+): (not solved): ")   # on standard error; the summary does not have such load cases
 NOT_RUN = "not run"
 KILLED = "killed"              # sent from outside: the deck may be run again
 NO_FAULT = re.compile(r": warning: |: \d+ warnings?(?: \(\d+ shown\))?$")
@@ -29,7 +28,6 @@ def row_of(deck, stem, ended, one_table=False):
     row.update(deck=deck.path, exit_status=ended.code if ended.code >= 0 else "",
                seconds=f"{ended.seconds:.3f}", memory_MB=f"{ended.memory / 1024:.1f}" if ended.memory else "")
     listing, cases = read_text(stem + ".lst"), read_summary(stem + ".summary.csv")
-    cases.update((case, {"status": word}) for case, word in NOT_SOLVED.findall(ended.said))
     words = sorted([summary.get("status", "") for summary in cases.values()] or [""], key=lambda word: (word in VALID, word == "valid"))
     row["status"], row["message"] = judge(ended, listing, words[0])
     if row["status"] in ANSWERED:
@@ -105,8 +103,6 @@ def whole(listing, word):
     """Is the listing complete? The program renames it when it is finished, so an incomplete one is from another writer."""
     if word not in ANSWERED or not listing.startswith("epcont ") or not listing.endswith("\n"):
         return False
-    if word == "not solved":
-        return f"  {word}  " in listing
     return "\nACCURACY" in listing if word in VALID else "\n  *NOT VALID*  " in listing
 
 
