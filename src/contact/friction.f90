@@ -1,43 +1,43 @@
 !> Coulomb friction in two dimensions: a linear complementarity problem, solved exactly.
 !>
-!> The attempts, in this order, are exchanges of all wrong pairs from the last states; problems with given
-!> bounds, which are mu R of the problem before; and paths from sticking pairs to Coulomb friction. Each ends
-!> with the equations of Coulomb friction and their test.
+!> Several solutions are possible if normal forces depend strongly on friction: the matrix mu |dR/dT| of all
+!> pairs, all closed, then has a spectral radius of at least one (measured for three pairs or more, not
+!> proved). Then other solutions are sought from states that differ from the solution in one pair, and from
+!> random states. A few pairs are always searched.
 module epcont_contact_friction
   use epcont_base_kinds, only: i8, wp
-  use epcont_base_tolerances, only: negligible, solved_to
+  use epcont_base_tolerances, only: negligible, no_effect
   use epcont_contact_equilibrium, only: find_rigid_start, rigid_start
-  use epcont_contact_friction_state, only: flip, friction_bounds, friction_equations, friction_problem, &
-    friction_state, new_equations, new_friction_problem, pair_states, solve_states, wrong_signs
+  use epcont_contact_friction_attempts, only: exchange, find_states, random_limit, &
+    random_states, set_limit, sticking
+  use epcont_contact_friction_state, only: friction_bounds, friction_equations, friction_problem, &
+    friction_state, new_equations, new_friction_problem, pair_states
   use epcont_contact_problem, only: contact_no_equilibrium, contact_problem, contact_solution, &
     contact_solved, contact_stalled, new_solution
-  use epcont_contact_state, only: guess_tolerance
   use epcont_contact_uniqueness, only: find_undetermined_motions
   use epcont_flexibility_motion_matrix, only: dense_motions
+  use epcont_linalg_dense, only: lu_substitute
   implicit none
   private
   public :: solve_friction
 
-  !> Maximum number of sets of states in an exchange, and of problems with given bounds.
-  integer, parameter :: set_limit = 60, bounds_limit = 40
-  !> Number of these problems after which the bounds are averaged with those before.
-  integer, parameter :: plain_bounds = 5
-  !> Number of further paths and of exchanges from random states, for at most this number of pairs.
-  integer, parameter :: path_limit = 10, random_limit = 40, few_pairs = 50
-  !> Bound of the forces of sticking pairs, far above all forces in scaled units.
-  real(wp), parameter :: unbounded = 1.0e30_wp
   !> Displacement, in scaled units, of a body that only the springs restrain.
   real(wp), parameter :: escaped = 1.0e4_wp
-  !> Events on a path after which it is given up; paths took up to 2.
-  integer, parameter :: events_per_pair = 10
+  !> Maximum number of pairs for which other solutions are sought: the time grows with its fourth power.
+  integer, parameter :: search_limit = 100
+  !> Number of pairs that are searched whatever the spectral radius.
+  integer, parameter :: few_pairs = 10
+  !> Steps of the power iteration for the spectral radius.
+  integer, parameter :: power_steps = 30
 
 contains
 
   !> Find forces, gaps and modes of a problem with friction, or the mode that nothing restrains.
-  subroutine solve_friction(problem, solution, start)
+  subroutine solve_friction(problem, solution, start, any_forces)
     type(contact_problem), intent(in), target :: problem   !! in the deck's units
     type(contact_solution), intent(out) :: solution   !! its state says if there is a solution
     logical, intent(in), optional :: start(:)   !! guess of the pairs in contact [pairs or rows]
+    logical, intent(in), optional :: any_forces   !! true: do not search for other solutions
     type(friction_problem) :: own
     type(friction_state) :: state
     type(rigid_start) :: rigid
@@ -51,6 +51,7 @@ contains
       call find_states(own, first_states(problem, own, start), state, solution%sets, found)
       if (found) then
         call take_state(own, state, solution)
+        if (.not. present(any_forces)) call find_others(own, state, solution)
         return
       end if
       rigid%escape = state%approach
@@ -103,213 +104,6 @@ contains
     end do
   end function first_states
 
-  !> Make the attempts in turn.
-  subroutine find_states(problem, first, state, sets, found)
-    type(friction_problem), intent(in) :: problem
-    type(pair_states), intent(in) :: first
-    type(friction_state), intent(out) :: state   !! the solution, else that at the end of the first path
-    integer, intent(inout) :: sets               !! number of sets of states tried
-    logical, intent(out) :: found
-    type(friction_state) :: trial
-    type(friction_bounds) :: coulomb
-    type(pair_states) :: states
-    integer(i8) :: seed
-    integer :: attempt
-
-    coulomb%given = spread(0.0_wp, 1, problem%pairs)
-    call exchange(problem, coulomb, first, set_limit, state, sets, found)
-    if (.not. found) call update_bounds(problem, state, sets, found)
-    seed = 1
-    do attempt = 0, merge(path_limit, 0, problem%pairs <= few_pairs)
-      if (found) return
-      call follow_path(problem, seed, trial, sets, found)
-      if (attempt == 0 .or. found) state = trial
-    end do
-    do attempt = 1, merge(random_limit, 0, problem%pairs <= few_pairs)
-      if (found) return
-      states = random_states(problem%pairs, seed)
-      call exchange(problem, coulomb, states, set_limit, trial, sets, found)
-      if (found) state = trial
-    end do
-  end subroutine find_states
-
-  !> Exchange all wrong variables at once until no variable is wrong, or the sets repeat. With given bounds,
-  !! the first wrong one is exchanged after a repetition, which cannot cycle (Murty).
-  subroutine exchange(problem, bounds, first, limit, state, sets, found)
-    type(friction_problem), intent(in) :: problem
-    type(friction_bounds), intent(in) :: bounds
-    type(pair_states), intent(in) :: first
-    integer, intent(in) :: limit                  !! maximum number of sets
-    type(friction_state), intent(out) :: state    !! of the last set
-    integer, intent(inout) :: sets
-    logical, intent(out) :: found                 !! no variable is wrong; Coulomb friction: balanced
-    type(pair_states) :: states
-    logical, allocatable :: wrong(:, :)
-    integer :: seen(problem%pairs, limit), step
-    logical :: repeats
-
-    states = first
-    repeats = .false.
-    do step = 1, limit
-      sets = sets + 1
-      call solve_states(problem, new_equations(problem, bounds, states), bounds, state)
-      seen(:, step) = states%slip + merge(10, 0, states%closed)
-      repeats = repeats .or. any(all(seen(:, :step - 1) == spread(seen(:, step), 2, step - 1), dim=1))
-      wrong = wrong_signs(problem, state, merge(solved_to, guess_tolerance, repeats))
-      found = .not. any(wrong)
-      if (found .or. repeats .and. bounds%coulomb) exit
-      call exchange_wrong(wrong, repeats, bounds%coulomb, states)
-    end do
-    if (bounds%coulomb) found = found .and. state%balanced
-  end subroutine exchange
-
-  !> Exchange the wrong variables, or the first one.
-  pure subroutine exchange_wrong(wrong, one, sticks, states)
-    logical, intent(in) :: wrong(:, :)          !! [n, 3]
-    logical, intent(in) :: one                  !! only the first
-    logical, intent(in) :: sticks               !! pairs that close stick
-    type(pair_states), intent(inout) :: states
-    integer :: k, variable
-
-    do k = 1, size(wrong, 1)
-      variable = findloc(wrong(k, :), .true., dim=1)
-      if (variable == 0) cycle
-      call flip(states, k, variable)
-      if (sticks .and. variable == 1 .and. states%closed(k)) states%slip(k) = 0
-      if (one) return
-    end do
-  end subroutine exchange_wrong
-
-  !> Solve problems with given bounds, which are mu R of the problem before; at first those without friction.
-  subroutine update_bounds(problem, state, sets, found)
-    type(friction_problem), intent(in) :: problem
-    type(friction_state), intent(out) :: state
-    integer, intent(inout) :: sets
-    logical, intent(out) :: found
-    type(friction_bounds) :: bounds, coulomb
-    type(friction_state) :: given
-    type(pair_states) :: states
-    real(wp) :: bound(problem%pairs)
-    integer :: step
-
-    bounds%coulomb = .false.
-    bounds%given = 0*problem%mu
-    coulomb%given = bounds%given
-    states = sticking(problem)
-    do step = 0, bounds_limit
-      call exchange(problem, bounds, states, set_limit + problem%pairs, given, sets, found)
-      states = given%states
-      bound = problem%mu*max(given%force(:problem%pairs), 0.0_wp)
-      if (step <= plain_bounds) bounds%given = bound
-      if (step > plain_bounds) bounds%given = 0.5_wp*(bounds%given + bound)
-      if (step == 0) cycle
-      call exchange(problem, coulomb, states, 1, state, sets, found)
-      if (found) return
-    end do
-  end subroutine update_bounds
-
-  !> Follow the solution with the bounds mu R + z h from sticking pairs to z = 0. At each event one variable
-  !! becomes zero and its partner replaces it; z grows if the partner would decrease otherwise.
-  subroutine follow_path(problem, seed, state, sets, found)
-    type(friction_problem), intent(in) :: problem
-    integer(i8), intent(inout) :: seed           !! of the random numbers
-    type(friction_state), intent(out) :: state   !! the solution, or that with springs at the end of the path
-    integer, intent(inout) :: sets
-    logical, intent(out) :: found
-    type(friction_bounds) :: coulomb
-    type(friction_state) :: trial
-    type(pair_states) :: states
-    real(wp), dimension(problem%pairs, 3) :: length, rate
-    real(wp) :: h(problem%pairs), way, z
-    integer :: event(2), k, step
-
-    h = [(0.5_wp + uniform(seed), k=1, size(h))]
-    call begin_path(problem, h, state, z, sets)
-    states = state%states
-    way = -1.0_wp
-    do step = 0, events_per_pair*problem%pairs
-      if (z <= 0.0_wp) exit
-      sets = sets + 1
-      call solve_at(problem, states, z, h, state, rate)
-      if (step > 0) way = sign(1.0_wp, rate(event(1), event(2)))
-      length = huge(1.0_wp)
-      where (way*rate < -negligible*maxval(abs(rate))) length = max(state%margin, 0.0_wp)/abs(rate)
-      if (way > 0.0_wp .and. all(length >= huge(1.0_wp))) exit
-      z = z + way*minval(length)
-      event = minloc(length)
-      if (z > 0.0_wp) call flip(states, event(1), event(2))
-    end do
-    coulomb%given = 0*h
-    call exchange(problem, coulomb, states, set_limit, trial, sets, found)
-    if (found) state = trial
-  end subroutine follow_path
-
-  !> Find the solution if all pairs stick, and the least z at which it satisfies the bounds mu R + z h.
-  subroutine begin_path(problem, h, state, z, sets)
-    type(friction_problem), intent(in) :: problem
-    real(wp), intent(in) :: h(:)                 !! [n]
-    type(friction_state), intent(out) :: state
-    real(wp), intent(out) :: z
-    integer, intent(inout) :: sets
-    type(friction_bounds) :: bounds
-    logical :: found
-    integer :: k
-
-    bounds%coulomb = .false.
-    bounds%given = spread(unbounded, 1, size(h))
-    call exchange(problem, bounds, sticking(problem), set_limit + problem%pairs, state, sets, found)
-    z = 0.0_wp
-    do k = 1, size(h)
-      if (problem%tangent(k) == 0) cycle
-      z = max(z, (abs(state%force(problem%tangent(k))) - problem%mu(k)*state%force(k))/h(k))
-    end do
-  end subroutine begin_path
-
-  !> Solve with the bounds mu R + z h and the springs, and find the change of the margins with z.
-  subroutine solve_at(problem, states, z, h, state, rate)
-    type(friction_problem), intent(in) :: problem
-    type(pair_states), intent(in) :: states
-    real(wp), intent(in) :: z, h(:)
-    type(friction_state), intent(out) :: state
-    real(wp), intent(out) :: rate(:, :)          !! [n, 3]
-    type(friction_bounds) :: bounds
-    type(friction_equations) :: equations
-    type(friction_state) :: other
-
-    bounds%given = z*h
-    equations = new_equations(problem, bounds, states)
-    call solve_states(problem, equations, bounds, state, sprung=.true.)
-    bounds%given = 0.5_wp*bounds%given
-    call solve_states(problem, equations, bounds, other, sprung=.true.)
-    rate = (state%margin - other%margin)/(0.5_wp*z)
-  end subroutine solve_at
-
-  !> All pairs closed and sticking.
-  pure type(pair_states) function sticking(problem) result(states)
-    type(friction_problem), intent(in) :: problem
-
-    states%closed = spread(.true., 1, problem%pairs)
-    states%slip = spread(0, 1, problem%pairs)
-  end function sticking
-
-  !> Random states.
-  type(pair_states) function random_states(pairs, seed) result(states)
-    integer, intent(in) :: pairs
-    integer(i8), intent(inout) :: seed
-    integer :: k
-
-    states%closed = [(uniform(seed) < 0.75_wp, k=1, pairs)]
-    states%slip = [(int(3*uniform(seed)) - 1, k=1, pairs)]
-  end function random_states
-
-  !> Random number between 0 and 1, the same in every run (Lehmer, 48271 modulo 2**31 - 1).
-  real(wp) function uniform(seed) result(number)
-    integer(i8), intent(inout) :: seed
-
-    seed = mod(48271_i8*seed, 2147483647_i8)
-    number = real(seed, wp)/2147483647.0_wp
-  end function uniform
-
   !> Copy a solution, in the deck's units and without rounding.
   subroutine take_state(problem, state, solution)
     type(friction_problem), intent(in) :: problem
@@ -336,7 +130,95 @@ contains
       end do
       where (solution%touching) solution%gap = 0.0_wp
       solution%approach = state%approach*scaled%gap_unit/scaled%motion_size
+      do k = 1, n
+        if (problem%inert(k) == 0) cycle
+        solution%touching(problem%inert(k)) = state%states%closed(k)
+        solution%indeterminate(problem%inert(k)) = state%states%closed(k)
+      end do
       solution%motion_free = find_undetermined_motions(scaled%motion, solution%touching, solution%touching)
     end associate
   end subroutine take_state
+
+  !> Search for other solutions, and mark the pairs whose states differ.
+  subroutine find_others(problem, state, solution)
+    type(friction_problem), intent(in) :: problem
+    type(friction_state), intent(in) :: state           !! the solution
+    type(contact_solution), intent(inout) :: solution
+    type(pair_states) :: first
+    integer(i8) :: seed
+    integer :: code, from, k, to
+
+    solution%several = spread(.false., 1, problem%pairs)
+    if (problem%pairs > few_pairs) then
+      if (coupling_radius(problem) < 1.0_wp) return
+    end if
+    solution%searched = problem%pairs <= search_limit
+    if (.not. solution%searched) return
+    do k = 0, problem%pairs   ! 0: all pairs
+      from = max(k, 1)
+      to = merge(k, problem%pairs, k > 0)
+      do code = -1, 2         ! the slip; 2: open
+        first = state%states
+        first%closed(from:to) = code < 2
+        first%slip(from:to) = mod(code, 2)
+        call compare_from(problem, state, first, solution%several)
+      end do
+    end do
+    seed = 1
+    do k = 1, random_limit
+      first = random_states(problem%pairs, seed)
+      call compare_from(problem, state, first, solution%several)
+    end do
+  end subroutine find_others
+
+  !> Find the solution from given states; if it differs, mark the pairs whose states differ.
+  subroutine compare_from(problem, state, first, several)
+    type(friction_problem), intent(in) :: problem
+    type(friction_state), intent(in) :: state
+    type(pair_states), intent(in) :: first
+    logical, intent(inout) :: several(:)      !! [n]
+    type(friction_bounds) :: coulomb
+    type(friction_state) :: other
+    integer :: sets
+    logical :: found
+
+    coulomb%given = 0*problem%mu
+    sets = 0
+    call exchange(problem, coulomb, first, set_limit, other, sets, found)
+    if (.not. found) return
+    if (all(abs(other%force - state%force) <= no_effect*maxval(abs(state%force)))) return
+    several = several .or. (other%states%closed .neqv. state%states%closed) .or. &
+              state%states%closed .and. other%states%slip /= state%states%slip
+  end subroutine compare_from
+
+  !> Spectral radius of the matrix mu |dR/dT| of all pairs, all closed.
+  real(wp) function coupling_radius(problem) result(radius)
+    type(friction_problem), intent(in) :: problem
+    type(friction_bounds) :: without
+    type(friction_equations) :: equations
+    real(wp), allocatable :: closing(:, :), response(:, :), vector(:)
+    integer, allocatable :: pair(:)      ! pairs with friction
+    integer :: k, step
+
+    pair = pack([(k, k=1, problem%pairs)], problem%tangent > 0)
+    closing = problem%scaled%motion%dense()
+    without%coulomb = .false.
+    without%given = 0*problem%mu
+    equations = new_equations(problem, without, sticking(problem))
+    allocate (response(size(equations%pivots), size(pair)))
+    associate (n => problem%pairs, row => problem%tangent(pair))
+      response(:n, :) = problem%scaled%flexibility_scale*problem%scaled%flexibility(:n, row)
+      response(n + 1:, :) = -transpose(closing(row, :))
+    end associate
+    call lu_substitute(equations%factor, equations%pivots, response)
+    response = abs(response(pair, :))*spread(problem%mu(pair), 2, size(pair))
+    radius = 0.0_wp
+    vector = spread(1.0_wp, 1, size(pair))
+    do step = 1, power_steps
+      vector = matmul(response, vector)
+      radius = norm2(vector)
+      if (radius <= 0.0_wp) return
+      vector = vector/radius
+    end do
+  end function coupling_radius
 end module epcont_contact_friction

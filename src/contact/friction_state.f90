@@ -13,7 +13,7 @@
 !> flexibility on the diagonal does the same for forces that are not unique.
 module epcont_contact_friction_state
   use epcont_base_kinds, only: wp
-  use epcont_base_tolerances, only: cancelled, solved_to
+  use epcont_base_tolerances, only: cancelled, negligible, solved_to
   use epcont_contact_problem, only: contact_problem
   use epcont_contact_scaling, only: gaps_by_forces, scale_problem, scaled_problem
   use epcont_contact_state, only: gaps_under
@@ -34,6 +34,8 @@ module epcont_contact_friction_state
     integer :: pairs = 0                    !! n
     integer, allocatable :: tangent(:)      !! tangential row of each pair; 0 if it has no friction [n]
     real(wp), allocatable :: mu(:)          !! coefficient of friction of each pair [n]
+    !> Tangential row of each pair whose slip is zero and depends on no force and no mode; else 0 [n]
+    integer, allocatable :: inert(:)
   end type friction_problem
 
   !> Bounds of the tangential forces: mu R if `coulomb`, plus given ones.
@@ -74,14 +76,26 @@ contains
   !> Scale a problem with friction.
   type(friction_problem) function new_friction_problem(problem) result(new)
     type(contact_problem), intent(in), target :: problem   !! in the deck's units; it must remain
+    real(wp) :: closing(size(problem%initial_gap))
     integer :: k
 
     new%scaled = scale_problem(problem)
     new%pairs = size(problem%initial_gap) - size(problem%friction)
     new%tangent = spread(0, 1, new%pairs)
     new%mu = spread(0.0_wp, 1, new%pairs)
-    new%tangent(problem%pair_of) = [(new%pairs + k, k=1, size(problem%friction))]
-    new%mu(problem%pair_of) = problem%friction
+    new%inert = new%tangent
+    closing = new%scaled%motion%times(spread(1.0_wp, 1, size(problem%resultant)), magnitudes=.true.)
+    do k = 1, size(problem%friction)
+      associate (pair => problem%pair_of(k), row => new%pairs + k)
+        if (max(problem%flexibility(row, row)*new%scaled%flexibility_scale, closing(row), &
+                abs(new%scaled%gap(row))) <= negligible) then
+          new%inert(pair) = row
+        else
+          new%tangent(pair) = row
+          new%mu(pair) = problem%friction(k)
+        end if
+      end associate
+    end do
   end function new_friction_problem
 
   !> Factor the equations of given states.

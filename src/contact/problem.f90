@@ -81,7 +81,11 @@ module epcont_contact_problem
     logical, allocatable :: indeterminate(:)
     !> Undetermined modes; `approach` is one choice of many [m]
     logical, allocatable :: motion_free(:)
-    integer :: sets = 0                      !! active sets that RULE JOINED has tried; 0 with CONRY
+    !> With friction: pairs whose state differs in another solution; not allocated if none was sought [pairs]
+    logical, allocatable :: several(:)
+    !> False: other solutions are possible, but were not sought because of the number of pairs
+    logical :: searched = .true.
+    integer :: sets = 0                      !! active sets tried by RULE JOINED, or with friction; else 0
     integer :: pivots = 0                    !! pairs exchanged by the contact solver that found the set
     integer :: restarts = 0                  !! fresh starts after a set failed the test at full load
     type(pivot_record), allocatable :: history(:)  !! the first pivots of CONRY, at most `history_limit`

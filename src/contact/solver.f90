@@ -37,7 +37,7 @@ contains
     real(wp), allocatable :: loose(:, :), ray(:)
 
     if (allocated(problem%friction)) then
-      call solve_friction(problem, solution, start)
+      call solve_friction(problem, solution, start, any_forces)
       return
     end if
     scaled = scale_problem(problem)
