@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Check the words of documents, comments and messages: standard terms, and sentences that are read once.
+"""Check the words of documents, comments and messages: standard terms, sentences that are read once, and imperative remedies.
 
 Prints `file:line: fault` for each fault; exit status 1 if there is any. Code, file names and text between backquotes are not checked.
 Comments and messages are those of Fortran (.f90, .pf), Python, shell and CMake in src, tests and tools. A message is a string that has a blank.
@@ -32,6 +32,10 @@ EXCEPTIONS = {
     ("tests/lint/check_words.py", ""),   # the list itself
     ("tools/decks", "tools/decks SCENE"), ("tools/tradeoffs.py", "scene element size")}   # identifiers
 FILE_NAME = re.compile(r"\b\w+(?:\.\w+)*\.(?:py|toml|dat|geo|bdf)\b")
+#: First words of remedies: imperatives, or a word of the deck.
+IMPERATIVES = {"add", "begin", "continue", "copy", "end", "exchange", "fix", "free", "give", "increase", "keep", "leave", "let", "mesh", "move", "name", "pair", "put", "remove", "repeat",
+               "run", "use", "write"}
+REPORT = re.compile(r"call (?:\w+%)*(?:add_error|add_warning|refuse)\(")
 STRING = re.compile(r"'[^']*'|\"[^\"]*\"")
 SENTENCE_END = re.compile(r"(?<=[.!?:;])\s+(?=[A-Z`*(\[0-9])")
 
@@ -88,6 +92,32 @@ def fortran_texts(text):
             yield from ((number, found[0][1:-1]) for found in STRING.finditer(line) if " " in found[0].strip("' \""))
 
 
+def arguments(text, start):
+    """Arguments of a Fortran call, from the position behind its parenthesis."""
+    found, depth, quoted, begin = [], 1, False, start
+    for k in range(start, len(text)):
+        if text[k] == "'":
+            quoted = not quoted
+        elif not quoted:
+            depth += (text[k] in "([") - (text[k] in ")]")
+            if depth == 0 or depth == 1 and text[k] == ",":
+                found.append(text[begin:k].strip())
+                begin = k + 1
+            if depth == 0:
+                break
+    return found
+
+
+def remedy_faults(text):
+    """(line number, fault) of each remedy of an error or a warning that does not begin with an imperative."""
+    joined = re.sub(r"&[ ]*\n", lambda line: " " * len(line[0]), text)   # the same positions
+    for call in REPORT.finditer(joined):
+        given = [argument for argument in arguments(joined, call.end()) if argument not in ("found", "faults")]
+        word = re.match(r"'([^' ]+)", given[-1]) if len(given) > 2 else None
+        if word and word[1] not in IMPERATIVES:
+            yield text[:call.start()].count("\n") + 1, f"a remedy that begins with `{word[1]}`: begin with an imperative such as give, add or write"
+
+
 def script_texts(text):
     """(line number, text) of each comment and string of shell or CMake."""
     for number, line in enumerate(text.splitlines(), 1):
@@ -127,6 +157,8 @@ def main(top):
     for source in sorted(path for folder in ("src", "tests", "tools") for path in (top / folder).rglob("*") if path.is_file()):
         name = source.relative_to(top).as_posix()
         faults += [(name, number, fault) for number, part in texts(source) for fault in retired(part) if not is_excused(name, part)]
+        if name.startswith("src/") and source.suffix == ".f90":
+            faults += [(name, *fault) for fault in remedy_faults(source.read_text(encoding="utf-8"))]
     for name, number, fault in faults:
         print(f"{name}:{number}: {fault}")
     return 1 if faults else 0
