@@ -6,14 +6,14 @@
 !> random states. A few pairs are always searched.
 module epcont_contact_friction
   use epcont_base_kinds, only: i8, wp
-  use epcont_base_tolerances, only: negligible, no_effect
+  use epcont_base_tolerances, only: cancelled, negligible, no_effect
   use epcont_contact_equilibrium, only: find_rigid_start, rigid_start
   use epcont_contact_friction_attempts, only: exchange, find_states, random_limit, &
     random_states, set_limit, sticking
   use epcont_contact_friction_state, only: friction_bounds, friction_equations, friction_problem, &
     friction_state, new_equations, new_friction_problem, pair_states
-  use epcont_contact_problem, only: contact_no_equilibrium, contact_problem, contact_solution, &
-    contact_solved, contact_stalled, new_solution
+  use epcont_contact_problem, only: contact_no_equilibrium, contact_overlap, contact_problem, &
+    contact_solution, contact_solved, contact_stalled, new_solution
   use epcont_contact_uniqueness, only: find_undetermined_motions
   use epcont_flexibility_motion_matrix, only: dense_motions
   use epcont_linalg_dense, only: lu_substitute
@@ -23,6 +23,8 @@ module epcont_contact_friction
 
   !> Displacement, in scaled units, of a body that only the springs restrain.
   real(wp), parameter :: escaped = 1.0e4_wp
+  !> Force, in scaled units, of a pair that overlaps and cannot deform.
+  real(wp), parameter :: crushed = 1.0e8_wp
   !> Maximum number of pairs for which other solutions are sought: the time grows with its fourth power.
   integer, parameter :: search_limit = 100
   !> Number of pairs that are searched whatever the spectral radius.
@@ -54,9 +56,10 @@ contains
         if (.not. present(any_forces)) call find_others(own, state, solution)
         return
       end if
-      rigid%escape = state%approach
-      solution%state = contact_stalled
+      solution%overlapping(:own%pairs) = state%force(:own%pairs) > crushed
+      solution%state = merge(contact_overlap, contact_stalled, any(solution%overlapping))
       if (maxval([abs(state%approach), 0.0_wp]) < escaped) return
+      rigid%escape = state%approach
     end if
     solution%state = contact_no_equilibrium
     solution%escape = rigid%escape/maxval(abs(rigid%escape))/own%scaled%motion_size
@@ -104,7 +107,7 @@ contains
     end do
   end function first_states
 
-  !> Copy a solution, in the deck's units and without rounding.
+  !> Copy a solution, in the deck's units and without rounding. T of inert rows is zero.
   subroutine take_state(problem, state, solution)
     type(friction_problem), intent(in) :: problem
     type(friction_state), intent(in) :: state
@@ -117,24 +120,23 @@ contains
       solution%force = state%force*scaled%force_unit
       solution%change = state%change*scaled%force_unit
       solution%gap = state%gap*scaled%gap_unit
-      where (.not. state%states%closed) solution%force(:n) = 0.0_wp
-      solution%force(:n) = max(solution%force(:n), 0.0_wp)
+      where (state%force(:n) <= cancelled) solution%force(:n) = 0.0_wp
       do k = 1, n
-        if (problem%tangent(k) == 0) cycle
-        associate (row => problem%tangent(k), bound => problem%mu(k)*solution%force(k))
-          solution%touching(row) = state%states%closed(k) .and. slip(k) == 0
-          solution%at_upper(row) = state%states%closed(k) .and. slip(k) < 0
-          if (.not. solution%touching(row)) solution%force(row) = 0.0_wp
-          if (state%states%closed(k) .and. slip(k) /= 0) solution%force(row) = -slip(k)*bound
+        associate (row => problem%tangent(k) + problem%inert(k), bound => problem%mu(k)*solution%force(k), &
+                   closed => state%states%closed(k))
+          if (row == 0) cycle
+          solution%touching(row) = closed .and. slip(k) == 0
+          solution%at_upper(row) = closed .and. slip(k) < 0
+          solution%indeterminate(row) = closed .and. problem%inert(k) > 0
+          if (solution%touching(row)) then
+            solution%force(row) = max(-bound, min(bound, solution%force(row)))
+          else
+            solution%force(row) = -slip(k)*bound
+          end if
         end associate
       end do
       where (solution%touching) solution%gap = 0.0_wp
       solution%approach = state%approach*scaled%gap_unit/scaled%motion_size
-      do k = 1, n
-        if (problem%inert(k) == 0) cycle
-        solution%touching(problem%inert(k)) = state%states%closed(k)
-        solution%indeterminate(problem%inert(k)) = state%states%closed(k)
-      end do
       solution%motion_free = find_undetermined_motions(scaled%motion, solution%touching, solution%touching)
     end associate
   end subroutine take_state

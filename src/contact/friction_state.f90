@@ -15,7 +15,7 @@ module epcont_contact_friction_state
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: cancelled, negligible, solved_to
   use epcont_contact_problem, only: contact_problem
-  use epcont_contact_scaling, only: gaps_by_forces, scale_problem, scaled_problem
+  use epcont_contact_scaling, only: diagonal_of, scale_problem, scaled_problem
   use epcont_contact_state, only: gaps_under
   use epcont_linalg_dense, only: lu_factor, lu_substitute
   implicit none
@@ -157,7 +157,7 @@ contains
     type(friction_bounds), intent(in) :: bounds   !! those of the equations; h may differ, if positive
     type(friction_state), intent(out) :: state
     logical, intent(in), optional :: sprung       !! true: keep the springs in any case
-    real(wp) :: rest, before
+    real(wp) :: rest(2), before, force, gap, noise
     integer :: step
 
     state%states = equations%states
@@ -166,10 +166,11 @@ contains
       before = huge(before)
       do step = 0, refinements
         call correct(problem, equations, state, 0.0_wp, rest)
-        if (rest > 0.5_wp*before .and. step > 1) exit
-        before = rest
+        if (maxval(rest) > 0.5_wp*before .and. step > 1) exit
+        before = maxval(rest)
       end do
-      state%balanced = rest <= residual_tolerance(problem, state)
+      call find_sizes(problem, state, force, gap, noise)
+      state%balanced = rest(1) <= solved_to*gap + noise .and. rest(2) <= solved_to*force
     end if
     if (.not. state%balanced) then
       call begin(problem, equations, bounds, state)
@@ -204,20 +205,21 @@ contains
     state%gap = gaps_under(problem%scaled, problem%scaled%gap, state%change, state%approach)
   end subroutine begin
 
-  !> Correct forces and modes by the residual of their equations, and find the largest residual before.
+  !> Correct forces and modes by the residual of their equations, and find the largest residual of gaps and
+  !! of loads before.
   pure subroutine correct(problem, equations, state, stiffness, rest)
     type(friction_problem), intent(in) :: problem
     type(friction_equations), intent(in) :: equations
     type(friction_state), intent(inout) :: state
     real(wp), intent(in) :: stiffness      !! of the springs in the residual
-    real(wp), intent(out) :: rest
+    real(wp), intent(out) :: rest(2)
     real(wp) :: x(size(equations%pivots), 1)
     integer :: k
 
     associate (rows => equations%rows, s => size(equations%rows), scaled => problem%scaled)
       x(:s, 1) = -state%gap(rows)
       x(s + 1:, 1) = scaled%motion%carried(state%force) + stiffness*state%approach - scaled%resultant
-      rest = maxval([abs(x), 0.0_wp])
+      rest = [maxval([abs(x(:s, 1)), 0.0_wp]), maxval([abs(x(s + 1:, 1)), 0.0_wp])]
       call lu_substitute(equations%factor, equations%pivots, x)
       state%change(rows) = state%change(rows) + x(:s, 1)
       do k = 1, count(equations%states%closed)
@@ -234,14 +236,18 @@ contains
     end associate
   end subroutine correct
 
-  !> Largest residual that may be rounding.
-  pure real(wp) function residual_tolerance(problem, state) result(tolerance)
+  !> Largest force, and largest gap that one force causes, but at least one; and rounding of the gaps.
+  pure subroutine find_sizes(problem, state, force, gap, noise)
     type(friction_problem), intent(in) :: problem
     type(friction_state), intent(in) :: state
+    real(wp), intent(out) :: force, gap, noise
 
-    tolerance = solved_to*maxval([abs(state%force), 1.0_wp]) + &
-                cancelled*maxval([abs(problem%scaled%gap), 0.0_wp])
-  end function residual_tolerance
+    associate (scaled => problem%scaled)
+      force = maxval([abs(state%force), 1.0_wp])
+      gap = maxval([scaled%flexibility_scale*diagonal_of(scaled%flexibility)*abs(state%force), 1.0_wp])
+      noise = cancelled*maxval([abs(scaled%gap), abs(state%approach), 0.0_wp])
+    end associate
+  end subroutine find_sizes
 
   !> Find the margins of a solution.
   pure subroutine find_margins(problem, equations, bounds, state)
@@ -273,11 +279,12 @@ contains
     real(wp), intent(in) :: tolerance      !! fraction of the largest force
     logical, allocatable :: wrong(:, :)
     real(wp) :: force, gap      ! tolerances of forces and, in units of the softness, of gaps
-    real(wp) :: row
+    real(wp) :: noise, row
     integer :: k
 
-    force = tolerance*maxval([abs(state%force), 1.0_wp])
-    gap = force + cancelled*maxval([abs(problem%scaled%gap), abs(state%approach), 0.0_wp])
+    call find_sizes(problem, state, force, gap, noise)
+    force = tolerance*force
+    gap = tolerance*gap + noise
     associate (softness => problem%scaled%softness, closed => state%states%closed)
       allocate (wrong(problem%pairs, 3))
       do k = 1, problem%pairs
