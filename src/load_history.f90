@@ -15,7 +15,7 @@ module epcont_load_history
   use epcont_plasticity_path_end, only: path_end
   use epcont_result_answer, only: answer_type
   use epcont_result_increment, only: errors_of_increments, increment_errors, increment_of, increment_record, &
-      other_number
+      other_number, state_to_draw
   use epcont_system_stopwatch, only: stage_contact, stage_stiffness
   implicit none
   private
@@ -36,6 +36,7 @@ module epcont_load_history
     type(increment_record), allocatable :: increment(:)   !! flow theory: increments of this load case [any]
     type(increment_errors), allocatable :: increment_error   !! not allocated: unknown
     integer, private :: increments = 0   !! in this list so far
+    logical :: keeps_states = .false.    !! keep the state after each increment, for a drawing
     integer :: steps = 1                 !! flow theory: increments of this run
     integer, private :: other_steps = 1  !! of the run to compare with
     type(load_set), private :: loads     !! of the load case; the model has those of the state found
@@ -243,6 +244,7 @@ contains
     if (self%increments == size(self%increment)) call self%make_room(max(1, 2*self%increments))
     self%increments = self%increments + 1
     self%increment(self%increments) = increment_of(self%answer, iterations)
+    if (self%keeps_states) self%increment(self%increments)%state = state_to_draw(self%answer)
   end subroutine add_increment
 
   !> Change the length of the list. gfortran 12 leaks an array constructor of such a type.

@@ -90,7 +90,8 @@ contains
       results%stem = stem
       results%all_tables = arguments%asks('--tables')
       results%brief = arguments%asks('--brief')
-      results%vtk = arguments%asks('--vtk')
+      run%keeps_states = arguments%asks('--vtk-all')
+      results%vtk = arguments%asks('--vtk') .or. run%keeps_states
       call results%begin(run)
       do p = 1, run%cases%patterns
         call plan_pattern(p)

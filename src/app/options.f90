@@ -28,6 +28,9 @@ module epcont_app_options
                 more='For many small decks. The listing then contains the requested tables of nodes and '// &
                      'elements.'), &
     option_type('--vtk', 'write DECK.vtu and DECK.contact.vtu for ParaView'), &
+    option_type('--vtk-all', 'the same after each increment of flow theory, and DECK.pvd for all', &
+                more='Of increment 1: DECK.inc1.vtu, or DECK.case2.inc1.vtu with several load cases. '// &
+                     'The time in DECK.pvd is the load factor, plus the number of the load case less 1.'), &
     option_type('--memory', 'reject decks that need more memory (default 16)', 'GB'), &
     option_type('--progress', 'report every solve on standard error, even without a terminal', &
                 more='Default: runs of more than a second show one line on a terminal, erased at the '// &

@@ -1,7 +1,7 @@
 !> All files of a run: the listing (ASCII, at most 132 columns, without data that varies from run to run) and
 !> the tables. Several load cases are added one by one, and written after the last.
 module epcont_report_results
-  use epcont_base_error, only: error_type
+  use epcont_base_error, only: error_type, status_valid
   use epcont_base_kinds, only: wp
   use epcont_report_case_table, only: case_row, put_cases, put_worst_case, row_of_case
   use epcont_base_text, only: text_of
@@ -13,7 +13,7 @@ module epcont_report_results
   use epcont_report_run, only: run_results
   use epcont_report_summary, only: figure_type, summarise
   use epcont_report_tables, only: put_table
-  use epcont_report_vtk, only: collected, write_collection, write_vtk
+  use epcont_report_vtk, only: drawing, remove_drawings, write_collection, write_vtk
   implicit none
   private
   public :: results_type, remove_results
@@ -42,7 +42,7 @@ module epcont_report_results
     result_file('.restart', 'the end of the last load case, with PARAM SAVE YES'), &
     result_file('.vtu', 'the bodies, for ParaView, with --vtk: displacements, stresses, states'), &
     result_file('.contact.vtu', 'the boundary in contact, for ParaView, with --vtk: pressures, gaps'), &
-    result_file('.pvd', 'for ParaView: index of DECK.caseN.vtu and .caseN.contact.vtu of load cases')]
+    result_file('.pvd', 'for ParaView: index of the .vtu files of load cases and increments')]
 
   !> The first files are the listing, the summary, and tables with rows of each load case.
   integer, parameter :: listing = 1, summary = 2, of_each_case = 12
@@ -51,6 +51,7 @@ module epcont_report_results
   type :: case_results
     type(case_row) :: row
     type(table_type) :: part(of_each_case)
+    type(drawing), allocatable :: drawing(:)   !! for ParaView
   end type case_results
 
   !> Output of a run; results of several load cases are kept in memory.
@@ -112,7 +113,8 @@ contains
     if (run%case == 1) call remove_results(self%stem)
     ! If the run is stopped, the next run still finds the files to remove.
     if (run%case == 1 .and. self%vtk .and. run%has_cases()) &
-      call write_collection(self%stem, run%deck%subcase%id, error)
+      call write_collection(self%stem, [(drawing('.case'//text_of(run%deck%subcase(k)%id)), &
+                                         k=1, size(run%deck%subcase))], error)
     figures = summarise(run)
     self%case(run%case)%row = row_of_case(run)
     do k = 1, of_each_case
@@ -120,8 +122,32 @@ contains
         call put_part(self, run, figures, k, self%case(run%case)%part(k), error)
     end do
     if (self%vtk .and. run%outcome%has_answer .and. .not. allocated(error)) &
-      call write_vtk(run, self%stem//run%case_suffix(), error)
+      call put_drawings(self%stem, run, self%case(run%case)%drawing, error)
   end subroutine add_case
+
+  !> Write the files for ParaView: of the increments that are kept, and of the end of the load case.
+  subroutine put_drawings(stem, run, drawings, error)
+    character(len=*), intent(in) :: stem
+    type(run_results), intent(in) :: run
+    type(drawing), allocatable, intent(out) :: drawings(:)
+    type(error_type), allocatable, intent(out) :: error
+    real(wp) :: start, time
+    integer :: k
+
+    allocate (drawings(0))
+    start = max(1, run%deck%subcase(run%case)%id) - 1
+    do k = 1, size(run%increment)
+      associate (increment => run%increment(k))
+        if (.not. allocated(increment%state) .or. increment%load_factor >= run%answer%load_factor) exit
+        drawings = [drawings, drawing(run%case_suffix()//'.inc'//text_of(k), start + increment%load_factor)]
+        call write_vtk(run%model, increment%state, status_valid, stem//trim(drawings(k)%suffix), error)
+      end associate
+      if (allocated(error)) return
+    end do
+    time = start + merge(run%answer%load_factor, 1.0_wp, run%keeps_states .and. run%is_flow())
+    drawings = [drawings, drawing(run%case_suffix(), time)]
+    call write_vtk(run%model, run%answer, run%outcome%status, stem//run%case_suffix(), error)
+  end subroutine put_drawings
 
   !> Has the load case this file, and is it requested?
   pure logical function is_wanted(self, run, suffix)
@@ -180,16 +206,32 @@ contains
     if (.not. run%has_cases()) call part%finish(error)
   end subroutine put_part
 
-  !> Write the results of several load cases.
+  !> Write the results of several load cases, and the index of files for ParaView.
   subroutine finish(self, run, error)
     class(results_type), intent(inout) :: self
     type(run_results), intent(in) :: run                  !! of the last load case
     type(error_type), allocatable, intent(out) :: error   !! a file cannot be written
+    type(drawing), allocatable :: drawings(:)
+    integer :: c
+
+    if (run%has_cases()) call put_tables(self, run, error)
+    if (.not. self%vtk .or. allocated(error)) return
+    allocate (drawings(0))
+    do c = 1, size(self%case)
+      if (allocated(self%case(c)%drawing)) drawings = [drawings, self%case(c)%drawing]
+    end do
+    if (run%has_cases() .or. size(drawings) > 1) call write_collection(self%stem, drawings, error)
+  end subroutine finish
+
+  !> Write the tables of several load cases.
+  subroutine put_tables(self, run, error)
+    class(results_type), intent(inout) :: self
+    type(run_results), intent(in) :: run
+    type(error_type), allocatable, intent(out) :: error
     type(table_type) :: file
     logical :: empty(size(self%case))
     integer :: c, k
 
-    if (.not. run%has_cases()) return
     do k = 1, of_each_case
       empty = [(self%case(c)%part(k)%is_empty(), c=1, size(empty))]
       if (all(empty)) cycle
@@ -212,9 +254,7 @@ contains
       call put_cases(self%case%row, file)
       call file%finish(error)
     end if
-    if (self%vtk .and. .not. allocated(error)) &
-      call write_collection(self%stem, pack(self%case%row%subcase, self%case%row%has_answer), error)
-  end subroutine finish
+  end subroutine put_tables
 
   !> Write the summary in full digits.
   subroutine put_summary(figures, table)
@@ -232,14 +272,9 @@ contains
   !> Remove the results of an earlier run, also if this run is stopped or has no results.
   subroutine remove_results(stem)
     character(len=*), intent(in) :: stem   !! path of the files, without their suffixes
-    integer, allocatable :: drawn(:)       ! load cases
     integer :: i
 
-    drawn = collected(stem)
-    do i = 1, size(drawn)
-      call remove_file(stem//'.case'//text_of(drawn(i))//'.vtu')
-      call remove_file(stem//'.case'//text_of(drawn(i))//'.contact.vtu')
-    end do
+    call remove_drawings(stem)
     do i = 1, size(result_files)
       call remove_file(stem//trim(result_files(i)%suffix))
     end do

@@ -6,18 +6,20 @@
 module epcont_report_vtk
   use, intrinsic :: iso_fortran_env, only: int8
   use epcont_base_base64, only: base64
+  use epcont_base_decimal, only: decimal_text
   use epcont_base_error, only: error_type
   use epcont_base_kinds, only: i8, wp
   use epcont_base_text, only: newline, text_of
   use epcont_element_kinematics, only: directions
   use epcont_flexibility_flexibility, only: pair_forces
-  use epcont_report_file, only: new_text_file, text_file
+  use epcont_model_model, only: model_type
+  use epcont_report_file, only: new_text_file, remove_file, text_file
   use epcont_messages_names, only: when
-  use epcont_report_run, only: run_results
+  use epcont_result_answer, only: answer_type
   use epcont_result_contact_line, only: contact_line, find_contact_line
   implicit none
   private
-  public :: collected, write_collection, write_vtk
+  public :: drawing, remove_drawings, write_collection, write_vtk
 
   !> Cell types (vtkCellType.h).
   integer, parameter :: vtk_vertex = 1, vtk_line = 3
@@ -36,24 +38,32 @@ module epcont_report_vtk
     generic, private :: put => put_integers, put_reals, put_fields
   end type vtk_file
 
-  !> Start of a line of a load case in DECK.pvd.
-  character(len=*), parameter :: data_set = '<DataSet timestep="'
+  !> Files of one state: the end of a load case, or of an increment.
+  type :: drawing
+    character(len=40) :: suffix = ''   !! of the files, before `.vtu`
+    real(wp) :: time = 0.0_wp          !! in DECK.pvd
+  end type drawing
 
 contains
 
   !> Write DECK.vtu, and DECK.contact.vtu if there are pairs.
-  subroutine write_vtk(run, stem, error)
-    type(run_results), intent(in) :: run                  !! run and its results
+  subroutine write_vtk(model, answer, status, stem, error)
+    type(model_type), intent(in) :: model
+    type(answer_type), intent(in) :: answer               !! of the model
+    integer, intent(in) :: status                         !! exit status of the answer
     character(len=*), intent(in) :: stem                  !! path of the files, without their suffixes
     type(error_type), allocatable, intent(out) :: error   !! a file cannot be written
 
-    call write_bodies(run, stem, error)
-    if (run%model%contact%pairs > 0 .and. .not. allocated(error)) call write_contact(run, stem, error)
+    call write_bodies(model, answer, status, stem, error)
+    if (model%contact%pairs > 0 .and. .not. allocated(error)) &
+      call write_contact(model, answer, status, stem, error)
   end subroutine write_vtk
 
   !> Write the bodies: points are the nodes of elements, in the order of the deck; cells are the elements.
-  subroutine write_bodies(run, stem, error)
-    type(run_results), intent(in) :: run
+  subroutine write_bodies(model, answer, status, stem, error)
+    type(model_type), intent(in) :: model
+    type(answer_type), intent(in) :: answer
+    integer, intent(in) :: status
     character(len=*), intent(in) :: stem
     type(error_type), allocatable, intent(out) :: error
     type(vtk_file) :: file
@@ -61,67 +71,67 @@ contains
     integer, allocatable :: last(:), node(:), point(:)
     integer :: i
 
-    associate (model => run%model, answer => run%answer)
-      node = model%mesh%around%members()
-      allocate (point(model%mesh%nodes))
-      point(node) = [(i, i=1, size(node))]
-      last = model%mesh%node_count
-      do i = 2, size(last)
-        last(i) = last(i - 1) + last(i)
-      end do
-      call file%begin(stem//'.vtu', run%outcome%status, model%mesh%x(:, node), &
-                 vtk_cells(model%mesh%kinds(model%mesh%kind)%vtk, last, &
-                           point(pack(model%mesh%connectivity, model%mesh%connectivity > 0))), error)
-      if (allocated(error)) return
-      call file%line('<PointData Vectors="displacement">')
-      call file%put('node_id', model%mesh%node_id(node))
-      call file%put('displacement', answer%displacement(:, node))
-      force = pair_forces(model, answer%contact%row_forces())
-      call file%put('contact_force', force(:, node))
-      call file%put('reaction', answer%reaction(:, node))
-      call file%line('</PointData>'//newline//'<CellData Scalars="equivalent_stress">')
-      call file%put('element_id', model%mesh%element_id)
-      call file%put('body', model%mesh%body(model%mesh%connectivity(1, :)))
-      call file%put('property_id', model%sections%property_id(model%mesh%section))
-      call file%put('material_id', model%sections%material_id(model%mesh%section))
-      call file%put('stress', answer%stress)
-      call file%put('equivalent_stress', answer%equivalent_stress)
-      call file%put('max_equivalent_stress', answer%largest_stress)
-      call file%put('equivalent_strain', answer%equivalent_strain)
-      call file%put('secant_modulus', answer%secant_modulus)
-      call file%put('yielded', merge(1, 0, answer%plastic))
-      if (allocated(answer%plastic_strain)) then
-        call file%put('plastic_strain', answer%plastic_strain(:4, :))
-        call file%put('accumulated_plastic_strain', answer%plastic_strain(5, :))
-      end if
-    end associate
+    node = model%mesh%around%members()
+    allocate (point(model%mesh%nodes))
+    point(node) = [(i, i=1, size(node))]
+    last = model%mesh%node_count
+    do i = 2, size(last)
+      last(i) = last(i - 1) + last(i)
+    end do
+    call file%begin(stem//'.vtu', status, model%mesh%x(:, node), &
+               vtk_cells(model%mesh%kinds(model%mesh%kind)%vtk, last, &
+                         point(pack(model%mesh%connectivity, model%mesh%connectivity > 0))), error)
+    if (allocated(error)) return
+    call file%line('<PointData Vectors="displacement">')
+    call file%put('node_id', model%mesh%node_id(node))
+    call file%put('displacement', answer%displacement(:, node))
+    force = pair_forces(model, answer%contact%row_forces())
+    call file%put('contact_force', force(:, node))
+    call file%put('reaction', answer%reaction(:, node))
+    call file%line('</PointData>'//newline//'<CellData Scalars="equivalent_stress">')
+    call file%put('element_id', model%mesh%element_id)
+    call file%put('body', model%mesh%body(model%mesh%connectivity(1, :)))
+    call file%put('property_id', model%sections%property_id(model%mesh%section))
+    call file%put('material_id', model%sections%material_id(model%mesh%section))
+    call file%put('stress', answer%stress)
+    call file%put('equivalent_stress', answer%equivalent_stress)
+    call file%put('max_equivalent_stress', answer%largest_stress)
+    call file%put('equivalent_strain', answer%equivalent_strain)
+    call file%put('secant_modulus', answer%secant_modulus)
+    call file%put('yielded', merge(1, 0, answer%plastic))
+    if (allocated(answer%plastic_strain)) then
+      call file%put('plastic_strain', answer%plastic_strain(:4, :))
+      call file%put('accumulated_plastic_strain', answer%plastic_strain(5, :))
+    end if
     call file%end_grid(error)
   end subroutine write_bodies
 
   !> Write the contact: points are pairs, at their boundary nodes, in the order of the deck; cells are lines
   !! between neighbours, and single pairs without neighbours.
-  subroutine write_contact(run, stem, error)
-    type(run_results), intent(in) :: run
+  subroutine write_contact(model, answer, status, stem, error)
+    type(model_type), intent(in) :: model
+    type(answer_type), intent(in) :: answer
+    integer, intent(in) :: status
     character(len=*), intent(in) :: stem
     type(error_type), allocatable, intent(out) :: error
     type(vtk_file) :: file
     type(contact_line) :: line
     type(vtk_cells) :: cells
-    integer, dimension(run%model%contact%pairs) :: bconp, zone   ! 0 for a CGAP; 0 outside of zones
-    real(wp) :: force(directions, run%model%contact%pairs)
-    real(wp), dimension(run%model%contact%pairs) :: friction, slip
-    logical :: sticking(run%model%contact%pairs)
+    integer, dimension(model%contact%pairs) :: bconp, zone   ! 0 for a CGAP; 0 outside of zones
+    real(wp) :: force(directions, model%contact%pairs)
+    real(wp), dimension(model%contact%pairs) :: friction, slip
+    logical :: sticking(model%contact%pairs)
     integer :: k
 
-    line = find_contact_line(run%model)
+    line = find_contact_line(model)
     cells = cells_along(line)
-    call file%begin(stem//'.contact.vtu', run%outcome%status, run%model%mesh%x(:, line%node), cells, error)
+    call file%begin(stem//'.contact.vtu', status, model%mesh%x(:, line%node), cells, error)
     if (allocated(error)) return
-    do k = 1, run%model%contact%pairs
-      force(:, k) = run%answer%contact%force(k)*run%model%contact%normal(:, k)
-      if (line%node(k) /= run%model%contact%pair_node(2, k)) force(:, k) = -force(:, k)
+    do k = 1, model%contact%pairs
+      force(:, k) = answer%contact%force(k)*model%contact%normal(:, k)
+      if (line%node(k) /= model%contact%pair_node(2, k)) force(:, k) = -force(:, k)
     end do
-    associate (contact => run%model%contact, found => run%answer%contact)
+    associate (contact => model%contact, found => answer%contact)
       slip = 0.0_wp
       friction = 0.0_wp
       sticking = .false.
@@ -132,26 +142,26 @@ contains
       end if
     end associate
     zone = 0
-    do k = 1, size(run%answer%zones)
-      zone(run%answer%zones(k)%pairs) = k
+    do k = 1, size(answer%zones)
+      zone(answer%zones(k)%pairs) = k
     end do
     bconp = 0
-    do k = 1, size(run%model%contact%line_contact)
-      associate (contact => run%model%contact%line_contact(k))
+    do k = 1, size(model%contact%line_contact)
+      associate (contact => model%contact%line_contact(k))
         bconp(contact%first:contact%last) = contact%bconp(1)
       end associate
     end do
     call file%line('<PointData Scalars="pressure" Vectors="displacement">')
-    call file%put('pair_id', run%model%contact%pair_id)
-    call file%put('node_a', run%model%mesh%node_id(run%model%contact%pair_node(1, :)))
-    call file%put('node_b', run%model%mesh%node_id(run%model%contact%pair_node(2, :)))
-    call file%put('displacement', run%answer%displacement(:, line%node))
+    call file%put('pair_id', model%contact%pair_id)
+    call file%put('node_a', model%mesh%node_id(model%contact%pair_node(1, :)))
+    call file%put('node_b', model%mesh%node_id(model%contact%pair_node(2, :)))
+    call file%put('displacement', answer%displacement(:, line%node))
     call file%put('contact_force', force)
-    call file%put('pressure', max(0.0_wp, run%answer%pressure))
-    call file%put('has_pressure', merge(1, 0, run%answer%pressure >= 0.0_wp))
-    call file%put('gap', run%answer%contact%gap)
-    call file%put('touching', merge(1, 0, run%answer%contact%touching))
-    if (run%model%contact%has_friction()) then
+    call file%put('pressure', max(0.0_wp, answer%pressure))
+    call file%put('has_pressure', merge(1, 0, answer%pressure >= 0.0_wp))
+    call file%put('gap', answer%contact%gap)
+    call file%put('touching', merge(1, 0, answer%contact%touching))
+    if (model%contact%has_friction()) then
       call file%put('friction_force', friction)
       call file%put('slip', slip)
       call file%put('sticking', merge(1, 0, sticking))
@@ -273,10 +283,10 @@ contains
     cells%point = [segment(:, :segments), alone]
   end function cells_along
 
-  !> Write DECK.pvd: an index of the files of load cases for ParaView.
-  subroutine write_collection(stem, id, error)
+  !> Write DECK.pvd: an index of the files of the bodies for ParaView.
+  subroutine write_collection(stem, drawings, error)
     character(len=*), intent(in) :: stem                  !! path of the files, without their suffixes
-    integer, intent(in) :: id(:)                          !! ids of the load cases
+    type(drawing), intent(in) :: drawings(:)
     type(error_type), allocatable, intent(out) :: error   !! the file cannot be written
     type(text_file) :: file
     integer :: k
@@ -286,14 +296,23 @@ contains
     call file%line('<?xml version="1.0"?>')
     call file%line('<VTKFile type="Collection" version="1.0">')
     call file%line('<Collection>')
-    do k = 1, size(id)
-      call file%line(data_set//text_of(id(k))//'" file="'// &
-        escaped(stem(index(stem, '/', back=.true.) + 1:))//'.case'//text_of(id(k))//'.vtu"/>')
+    do k = 1, size(drawings)
+      call file%line('<DataSet timestep="'//time_text(drawings(k)%time)//'" file="'// &
+        escaped(stem(index(stem, '/', back=.true.) + 1:))//trim(drawings(k)%suffix)//'.vtu"/>')
     end do
     call file%line('</Collection>')
     call file%line('</VTKFile>')
     call file%finish(error)
   end subroutine write_collection
+
+  !> Write a time: `2` or `1.25000000E+00`.
+  pure function time_text(time) result(text)
+    real(wp), intent(in) :: time
+    character(len=:), allocatable :: text
+
+    text = trim(decimal_text(time, 9, 2))
+    if (time == nint(time)) text = text_of(nint(time))
+  end function time_text
 
   !> Escape text for an XML attribute.
   pure function escaped(text) result(xml)
@@ -316,24 +335,44 @@ contains
     end do
   end function escaped
 
-  !> Find the load cases of an earlier run in DECK.pvd; empty if there is no such file.
-  function collected(stem) result(id)
+  !> Remove the files of an earlier run: of the load cases in its DECK.pvd, or of a single one.
+  subroutine remove_drawings(stem)
     character(len=*), intent(in) :: stem   !! path of the files, without their suffixes
-    integer, allocatable :: id(:)
-    character(len=80) :: line
-    integer :: at, status, unit
+    integer :: at, id, opened, status, unit
+    character(len=2048) :: line            ! longer than any name
 
-    allocate (id(0))
-    open (newunit=unit, file=stem//'.pvd', status='old', action='read', iostat=status)
-    if (status /= 0) return
-    do
+    open (newunit=unit, file=stem//'.pvd', status='old', action='read', iostat=opened)
+    status = opened
+    do while (status == 0)
       read (unit, '(a)', iostat=status) line
-      if (status /= 0) exit
-      if (index(line, data_set) /= 1) cycle
-      line = line(len(data_set) + 1:)
-      read (line(:scan(line, '"') - 1), '(i20)', iostat=status) at
-      if (status == 0) id = [id, at]
+      at = index(line, '.case', back=.true.)
+      if (status /= 0 .or. at == 0) cycle
+      line = line(at + len('.case'):)
+      id = 0
+      read (line(:index(line, '.') - 1), '(i20)', iostat=at) id
+      if (id > 0) call remove_case(stem//'.case'//text_of(id))
     end do
-    close (unit)
-  end function collected
+    if (opened == 0) close (unit)
+    call remove_case(stem)
+
+  contains
+
+    !> Remove the files of a load case: of its end, and of each increment.
+    subroutine remove_case(stem)
+      character(len=*), intent(in) :: stem
+      logical :: exists
+      integer :: k
+
+      call remove_file(stem//'.vtu')
+      call remove_file(stem//'.contact.vtu')
+      k = 0
+      do
+        k = k + 1
+        inquire (file=stem//'.inc'//text_of(k)//'.vtu', exist=exists)
+        if (.not. exists) exit
+        call remove_file(stem//'.inc'//text_of(k)//'.vtu')
+        call remove_file(stem//'.inc'//text_of(k)//'.contact.vtu')
+      end do
+    end subroutine remove_case
+  end subroutine remove_drawings
 end module epcont_report_vtk

@@ -9,6 +9,7 @@ module epcont_result_increment
   implicit none
   private
   public :: errors_of_increments, increment_errors, increment_of, increment_record, other_number
+  public :: state_to_draw
 
   !> Factor of the estimated error: differences of two runs are not exactly proportional to the size of the
   !! increments.
@@ -28,6 +29,7 @@ module epcont_result_increment
     real(wp) :: force = 0.0_wp          !! sum of the contact forces [force]
     real(wp), allocatable :: approach(:)    !! of each rigid-body mode [length] [modes]
     real(wp), allocatable :: stress(:, :)   !! at the end of a load case only [stress] [4, elements]
+    type(answer_type), allocatable :: state !! for a drawing, if requested
   end type increment_record
 
   !> Errors by the size of the increments; negative: unknown.
@@ -56,6 +58,16 @@ contains
     z = maxloc(answer%zones%max_pressure, dim=1)
     record%half_width = answer%zones(z)%half_width
   end function increment_of
+
+  !> Copy an answer without its data at the integration points.
+  pure type(answer_type) function state_to_draw(answer) result(state)
+    class(answer_type), intent(in) :: answer
+
+    state = answer
+    if (allocated(state%point)) deallocate (state%point)
+    deallocate (state%strain, state%point_stress, state%deformation)
+    where (.not. state%contact%touching .and. state%pressure > 0.0_wp) state%pressure = -1.0_wp
+  end function state_to_draw
 
   !> Number of increments of the run to compare with: half as many. Errors of few increments decrease more
   !! slowly than their size, so they are compared with more.

@@ -13,6 +13,8 @@ import subprocess
 import tempfile
 import unittest
 
+from blocks import two_blocks
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = os.environ["EPCONT_PROGRAM"]
 STEEL = {"young": 210000.0, "nu": 0.3, "stress": 240.0, "hardening": 21000.0 / 0.9}
@@ -162,14 +164,7 @@ def blocks(cases, kind="PLASTIC"):
     text += "BEGIN BULK\nNLPARM,1,4\nPARAM,PLANE,STRAIN\nPSHELL,1,1,1.\nPSHELL,2,2,1.\nMAT1,1,1000.,,.3,1.,1.-3,20.\nMAT1,2,2000.,,.3,1.,1.-3,20.\n"
     if kind:
         text += f"MATS1,1,,{kind},20.,1,1,2.\n"
-    for first, x0, y0, across, up in (1, 0.0, 0.0, 8, 2), (101, -1.0, -2.0, 12, 4):
-        for j in range(up + 1):
-            for i in range(across + 1):
-                n = first + i + j * (across + 1)
-                text += f"GRID,{n},,{x0 + 0.5 * i},{y0 + 0.5 * j}\n"
-                if i < across and j < up:
-                    text += f"CQUAD4,{n},{1 if first == 1 else 2},{n},{n + 1},{n + across + 2},{n + across + 1}\n"
-    text += "SPC1,1,12,101,THRU,113\nSPC1,1,1,1,10,19\nSPC1,1,2,19,THRU,22\nBLSEG,1,1,THRU,9\nBLSEG,2,153,THRU,165\nBCONP,1,1,2\n"
+    text += two_blocks(lower=2) + "SPC1,1,12,101,THRU,113\nSPC1,1,1,1,10,19\nSPC1,1,2,19,THRU,22\nBLSEG,1,1,THRU,9\nBLSEG,2,153,THRU,165\nBCONP,1,1,2\n"
     text += "CELAS2,501,50.,27,1\nMPC,1,26,2,1.,25,2,-1.\nMPC,1,24,1,1.,23,1,-1.\nFORCE,2,27,,1.,.5,0.\nGRAV,3,,.05,0.,-1.\nFORCE,1,9,,.3,1.,0.\n"
     for k, down in (1, -0.02), (2, -0.005), (3, -0.03):
         text += "".join(f"SPCD,{k},{node},2,{down}\n" for node in range(19, 23))

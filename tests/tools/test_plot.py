@@ -9,7 +9,8 @@ import unittest.mock
 import numpy as np
 
 ROOT = pathlib.Path(os.environ["EPCONT_SOURCE_DIR"])
-sys.path[:0] = [str(ROOT / "tools")]
+sys.path[:0] = [str(ROOT / "tools"), str(ROOT / "tests/figures")]
+from blocks import two_blocks  # noqa: E402
 from drawing import figure, loading  # noqa: E402
 from drawing.run import Run  # noqa: E402
 
@@ -38,14 +39,7 @@ BCONP,1,1,2
 
 
 def blocks(last):
-    text = BLOCKS
-    for first, x0, y0, across, up in (1, 0.0, 0.0, 8, 2), (101, -1.0, -2.0, 12, 4):
-        for j in range(up + 1):
-            for i in range(across + 1):
-                n = first + i + j * (across + 1)
-                text += f"GRID,{n},,{x0 + 0.5 * i},{y0 + 0.5 * j}\n"
-                if i < across and j < up:
-                    text += f"CQUAD4,{n},1,{n},{n + 1},{n + across + 2},{n + across + 1}\n"
+    text = BLOCKS + two_blocks(lower=1)
     for case, down in (1, -0.03), (2, last):
         text += "".join(f"SPCD,{case},{node},2,{down}\n" for node in range(19, 28))
     return text + "ENDDATA\n"

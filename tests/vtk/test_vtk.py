@@ -266,6 +266,31 @@ class Values(Case):
         self.assertEqual(1, contact["point_data"]["has_pressure"].count(0))
         self.assertEqual(1, sum(kind == VERTEX for kind, _ in contact["cells"]))
 
+    def test_increments(self):
+        """Force, pressure and approach of each increment are those of its table; the last state of a load case is that of --vtk."""
+        deck = INPUT / "hertz/hertz330_unloaded.dat"
+        self.run_it(deck, "--vtk")
+        ends = {path.name: path.read_bytes() for path in self.directory.glob("*.vtu")}
+        self.run_it(deck, "--vtk-all", "--tables", "all")
+        for name, data in ends.items():
+            self.assertEqual(data, (self.directory / name).read_bytes())
+        index = re.findall('timestep="(.*?)" file="(.*?)"', (self.directory / "hertz330_unloaded.pvd").read_text())
+        rows = self.table("hertz330_unloaded", "increments")
+        self.assertEqual([int(row["subcase"]) - 1 + float(row["load_factor"]) for row in rows], [float(time) for time, _ in index])
+        ends = {row["subcase"]: f".case{row['subcase']}" for row in rows}
+        last = {row["subcase"]: row["increment"] for row in rows}
+        self.assertEqual([f"hertz330_unloaded{ends[row['subcase']]}{'' if row['increment'] == last[row['subcase']] else '.inc' + row['increment']}.vtu"
+                          for row in rows], [name for _, name in index])
+        for row, (_, name) in zip(rows, index):
+            body, contact = self.grids(name, name.replace(".vtu", ".contact.vtu"))
+            self.assertEqual({"exit_status": [0]}, body["field_data"])
+            self.assertAlmostEqual(float(row["max_pressure"]), max(contact["point_data"]["pressure"]), places=9)
+            total = sum(math.hypot(*force) for force in contact["point_data"]["contact_force"])
+            self.assertAlmostEqual(float(row["total_contact_force"]), total, places=9)
+            self.assertEqual(int(row["plastic_elements"]), sum(body["cell_data"]["yielded"]))
+            moved = dict(zip(body["point_data"]["node_id"], body["point_data"]["displacement"]))
+            self.assertIn(float(row["approach"]), [y for _, y, _ in moved.values()])
+
     def test_a_line_round_a_corner(self):
         """The node at the corner has a pair on either face: each line has its own pairs."""
         deck = self.directory / "corner.dat"
@@ -300,6 +325,21 @@ class Files(Case):
             deck.write_bytes((INPUT / "faults/pulled_apart.dat").read_bytes())
             self.run_it(deck, *options, status=1)
             self.assertEqual(set(), self.written())
+
+    def test_those_of_increments_go(self):
+        """Files of increments of an earlier run, of one load case or several. Files of other names stay."""
+        for deck in "hertz/hertz330_unloaded", "one_element/one_element_flow":
+            path = INPUT / f"{deck}.dat"
+            self.run_it(path, "--vtk-all")
+            self.assertTrue(any(".inc2." in name for name in self.written()))
+            (self.directory / f"{path.stem}.case1.increments.vtu").touch()
+            self.run_it(path, "--vtk")
+            self.assertFalse(any(re.search(r"\.inc\d", name) for name in self.written()))
+            self.assertTrue((self.directory / f"{path.stem}.case1.increments.vtu").exists())
+        self.assertFalse((self.directory / "one_element_flow.pvd").exists())
+        self.run_it(INPUT / "hertz/hertz44.dat", "--vtk-all")   # total theory has no increments
+        self.assertTrue((self.directory / "hertz44.vtu").exists())
+        self.assertFalse((self.directory / "hertz44.pvd").exists())
 
     def test_the_same_bytes(self):
         found = []
