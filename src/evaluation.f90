@@ -13,6 +13,7 @@ module epcont_evaluation
   use epcont_model_controls, only: method_newton
   use epcont_model_expansion, only: find_free_strains
   use epcont_model_load_set, only: load_set
+  use epcont_model_model, only: model_type
   use epcont_plan_planned_model, only: planned_model
   use epcont_plasticity_law_of_state, only: factor_law, linearise
   use epcont_plasticity_newton, only: newton_method
@@ -105,12 +106,35 @@ contains
         touching = kept%line%in_contact(answer%contact%touching)
         answer%pressure = pair_pressures(model, kept%line, touching, force)
         answer%zones = find_zones(kept%line, touching, force, answer%pressure)
+        if (model%contact%has_friction()) call find_stick_zones(model, kept%line, touching, answer)
         call compare_sides(model, answer%contact%touching, force, answer%pressure, answer%lines, answer%apart)
         answer%bodies = find_body_forces(model, answer%contact%row_forces())
       end associate
     end associate
     call watch%lap(stage_stresses)
   end subroutine find_results
+
+  !> Find the zones that stick: the traction that is missing up to slip vanishes at their ends, like the pressure
+  !! at the ends of a contact.
+  subroutine find_stick_zones(model, line, touching, answer)
+    type(model_type), intent(in) :: model
+    type(contact_line), intent(in) :: line
+    logical, intent(in) :: touching(:)           !! [pairs]
+    type(answer_type), intent(inout) :: answer
+    real(wp), dimension(size(touching)) :: missing, sideways
+    logical :: sticking(size(touching))
+
+    associate (contact => answer%contact, pair => model%contact%sliding, mu => model%contact%friction)
+      sticking = .false.
+      sideways = 0.0_wp
+      sticking(pair) = contact%sticking
+      sideways(pair) = contact%friction_force
+      missing = 0.0_wp
+      where (contact%force > 0.0_wp) &
+        missing = max(answer%pressure, 0.0_wp)*max(mu*contact%force - abs(sideways), 0.0_wp)/contact%force
+      answer%stick_zones = find_zones(line, touching .and. sticking, sideways, missing)
+    end associate
+  end subroutine find_stick_zones
 
   !> Are forces, gaps or the energy out of balance, or has a pivot lost too many digits?
   pure logical function is_unbalanced(self)

@@ -5,7 +5,7 @@ module epcont_report_friction_table
   use epcont_report_run, only: run_results
   implicit none
   private
-  public :: friction_columns, put_friction
+  public :: friction_columns, put_friction, put_stick_zones
 
   type(column), parameter :: friction_columns(*) = [ &
     column(whole, 'pair', '', 'id, as in the table of pairs', width=10), &
@@ -19,6 +19,11 @@ module epcont_report_friction_table
     column(number, 'slip', length, 'of B relative to A in this increment, along the tangent'), &
     column(number, 'slid', length, 'the same since the start of the loads', width=0), &
     column(state, 'state', '', 'sticks, slips or open', width=7)]
+
+  type(column), parameter :: stick_columns(*) = [ &
+    column(whole, head='zone', width=8), column(whole, head='first pair', width=11), &
+    column(whole, head='last pair', width=11), column(number, head='friction force', width=15), &
+    column(number, head='to last sticking', width=17), column(known, head='half-width')]
 
 contains
 
@@ -48,4 +53,19 @@ contains
       end do
     end associate
   end subroutine put_friction
+
+  !> Write a row for each run of pairs that stick.
+  subroutine put_stick_zones(run, table)
+    type(run_results), intent(in) :: run
+    type(table_type), intent(inout) :: table
+    integer :: k
+
+    call table%begin('STICK ZONES  (half-width: up to full slip)', stick_columns)
+    do k = 1, size(run%answer%stick_zones)
+      associate (zone => run%answer%stick_zones(k))
+        call table%row([k, run%model%contact%pair_id([zone%first, zone%last])], &
+                       [zone%force, zone%half_width_pairs, zone%half_width])
+      end associate
+    end do
+  end subroutine put_stick_zones
 end module epcont_report_friction_table

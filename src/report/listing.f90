@@ -121,7 +121,7 @@ contains
       call listing%heading('SUMMARY')
       call list_figures(listing, figures, [character(len=21) :: 'max_pressure', 'total_contact_force', &
         'pairs_in_contact', 'total_friction_force', 'pairs_sticking', 'pairs_slipping', 'max_slip', &
-        'approach_', 'angle_', 'moment_', 'spring_', 'plastic_elements', &
+        'stick_half_width', 'approach_', 'angle_', 'moment_', 'spring_', 'plastic_elements', &
         'max_equivalent_stress', 'max_plastic_strain', 'max_displacement', 'lowest_temperature', &
         'highest_temperature', 'status'])
       call listing%heading('CERTIFICATE  (recomputed from displacements and forces alone; tolerance '// &
@@ -205,6 +205,7 @@ contains
     call put_table(run, 'contact', listing)
     if (run%model%contact%has_friction()) call put_table(run, 'friction', listing)
     call put_table(run, 'zones', listing)
+    if (run%model%contact%has_friction()) call put_table(run, 'stick_zones', listing)
     if (size(run%answer%lines) > 0) call put_table(run, 'lines', listing)
     call put_table(run, 'bodies', listing)
   end subroutine list_contact

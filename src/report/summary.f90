@@ -107,6 +107,8 @@ contains
                                                             contact%sticking)), 'pairs that slip')
       call figures%put('max_slip', length, number, maxval(abs(contact%slip), mask=contact%touching(pair)), &
                        'largest slip in this increment')
+      if (size(run%answer%stick_zones) > 0) call figures%put('stick_half_width', length, known, &
+        maxval(run%answer%stick_zones%half_width), 'largest half-width that sticks')
     end associate
   end subroutine put_friction
 

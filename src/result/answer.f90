@@ -37,6 +37,8 @@ module epcont_result_answer
     !> Pressure on the master line minus pressure on the slave line (`compare_sides`) [stress] [pairs]
     real(wp), allocatable :: apart(:)
     type(contact_zone), allocatable :: zones(:)      !! runs of pairs in contact
+    !> Runs of pairs that stick; forces are those of friction, and pressures the shear tractions up to slip
+    type(contact_zone), allocatable :: stick_zones(:)
     type(line_pressure), allocatable :: lines(:)     !! of each line contact
     type(body_force), allocatable :: bodies(:)       !! contact resultants on bodies with elements
     real(wp) :: shortfall = 0.0_wp                   !! largest part by which (2-4) leaves a stress below the
