@@ -5,6 +5,7 @@ module epcont_contact_geometry_complete
   use epcont_contact_geometry_line_contacts, only: find_line_contacts
   use epcont_contact_geometry_loose_nodes, only: warn_of_hanging_nodes, warn_of_lying_together
   use epcont_contact_geometry_pair_checks, only: check_pairs
+  use epcont_contact_geometry_tangential_rows, only: add_tangential_rows
   use epcont_deck_entry, only: least_cause
   use epcont_element_kinematics, only: directions, plane_strain
   use epcont_geometry_outline_shape, only: new_outline_shape, outline_shape
@@ -15,7 +16,7 @@ module epcont_contact_geometry_complete
       of_section, of_theory
   use epcont_model_freedoms, only: check_reference, follow_to_the_end, tie_freedom
   use epcont_model_given, only: check_values, take_arrays
-  use epcont_model_load_cases, only: load_cases, put_case
+  use epcont_model_load_cases, only: find_still, load_cases, put_case
   use epcont_model_load_checks, only: check_body_forces, check_loads
   use epcont_model_model, only: model_type
   use epcont_model_parts, only: make_parts
@@ -63,7 +64,10 @@ contains
     where (abs(model%mesh%x) < least_cause) model%mesh%x = 0.0_wp
     call complete_pairs(model, found)
     call find_line_contacts(model, found)
-    if (found%errors == 0) call model%contact%add_tangential_rows()
+    if (found%errors == 0) then
+      call find_still(cases, model%constraints%held, model%constraints%still)
+      call add_tangential_rows(model)
+    end if
     call check_controls(model, found)
     call check_loads(model, cases, found)
     if (found%errors > 0) return
@@ -118,8 +122,6 @@ contains
     type(findings), intent(inout) :: found   !! errors are added
     integer :: s
 
-    if (model%contact%has_friction()) call found%add_error(of_theory, 0, 0, ': friction is not ready yet', &
-                                                           'write PARAM FRICTION NO')
     ! With friction the answer depends on the path of the loads, also if nothing yields.
     if (model%contact%has_friction()) model%controls%flow_theory = model%controls%flow_theory .or. .not. &
       any([(allocated(model%sections%curve(s)%strain), s=1, size(model%sections%curve))])

@@ -10,6 +10,7 @@ module epcont_contact_geometry_nearness
   use epcont_contact_geometry_faces, only: faces_type
   use epcont_contact_geometry_line_pairs, only: add_pairs, end_pairs
   use epcont_geometry_boundary_line, only: boundary_line, facing_type
+  use epcont_contact_geometry_tangential_rows, only: add_tangential_rows
   use epcont_geometry_facing, only: find_facing, looking_point, node_of
   use epcont_geometry_plane, only: cross_product, extent_of
   use epcont_model_contact_rows, only: line_contact
@@ -279,7 +280,7 @@ contains
     end do
     call end_pairs(model)
     call balance_pairs(model)
-    call model%contact%add_tangential_rows()
+    call add_tangential_rows(model)
     paired = model%contact%pairs > before
   end subroutine pair_nodes_that_came_near
 end module epcont_contact_geometry_nearness

@@ -66,7 +66,7 @@ contains
 
     many = size(loads%motion) + size(loads%share, 2)
     if (allocated(probe%first)) many = 0
-    pressed = pack([(k, k=1, scene%model%contact%rows())], problem%between(state%contact%force))
+    pressed = pack([(k, k=1, scene%model%contact%rows())], problem%between(state%contact%row_forces()))
     allocate (found%load(scene%motions%count, many + 2), &
               found%opening(scene%model%contact%rows(), many + 2), &
               found%force(scene%model%contact%rows(), many + 2), &
@@ -171,7 +171,7 @@ contains
     associate (contact => state%contact)
       sums(:, 1) = terms_of_openings(scene%model, state%deformation)
       sums(:, 2) = abs(problem%initial_gap) + problem%motion%times(contact%approach, magnitudes=.true.)
-      where (spread(contact%force <= 0.0_wp, 2, 2)) sums = 0.0_wp
+      where (spread(.not. problem%between(contact%row_forces()), 2, 2)) sums = 0.0_wp
       of_column = matmul(transpose(sums), abs(self%first))/maxval(contact%force)
     end associate
     self%change = maxval(of_column, dim=2)

@@ -5,7 +5,8 @@ module epcont_linear_joined_rule
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: lost_digits, negligible
   use epcont_contact_equilibrium, only: find_rigid_start, rigid_start
-  use epcont_contact_problem, only: contact_no_equilibrium, contact_solved, new_solution
+  use epcont_contact_problem, only: contact_no_equilibrium, contact_solved, contact_stalled, &
+    new_solution
   use epcont_contact_uniqueness, only: find_undetermined_motions
   use epcont_element_kinematics, only: directions
   use epcont_flexibility_flexibility, only: gap_opening, terms_of_openings
@@ -22,7 +23,7 @@ module epcont_linear_joined_rule
   public :: joined_rule
 
   type, extends(contact_rule) :: joined_rule
-    type(joined_search), private :: search
+    type(joined_search), private :: search    !! with the friction limits of the present solve
     type(load_line), private :: line          !! predicts the start of the next contact
     type(rigid_start), private :: rigid       !! shows if rigid bodies can carry the loads
     type(sensitivity_probe), private :: probe
@@ -34,8 +35,20 @@ module epcont_linear_joined_rule
     procedure :: respond
     procedure :: sensitivity
     procedure :: compliance
+    procedure, private :: find_set
+    procedure, private :: limit_friction
+    procedure, private :: start_rigid
     procedure, private :: settle
   end type joined_rule
+
+  !> Largest number of solves with given friction limits. They end if no limit changes by more than `exact` of
+  !! the largest force, or by more than `rounding`, which no longer falls.
+  integer, parameter :: most_limits = 60
+  real(wp), parameter :: exact = 1.0e-14_wp, rounding = 1.0e-11_wp
+  !> If the change falls to more than this fraction, only half of it is taken.
+  real(wp), parameter :: slowly = 1.0_wp/3
+  !> Friction force without limit, over the loads on rigid-body modes: it shows if friction can carry these.
+  real(wp), parameter :: unlimited = 1.0e4_wp
 
 contains
 
@@ -45,17 +58,21 @@ contains
     type(planned_model), intent(in) :: scene           !! numbered as one system
     class(factored_bodies), intent(inout) :: bodies    !! with a law; gets the springs
     logical, allocatable :: redundant(:)               ! of the case before
+    type(rigid_start) :: smooth                        ! without friction
 
     self%failed = .false.
     call self%line%take_load(scene%model%loads%load)
     if (allocated(self%search%gamma)) redundant = self%rigid%redundant
-    associate (motion => self%problem%motion, unit => self%problem%motion%units())
-      self%search%lower = self%problem%lower
-      self%search%upper = self%problem%upper
-      call find_rigid_start(motion%over(unit), motion%not_carried(self%resultant, self%problem%lower)/unit, &
-                            spread(0.0_wp, 1, motion%pairs), self%rigid, &
-                            self%problem%upper - self%problem%lower)
-    end associate
+    self%search%lower = self%problem%lower
+    self%search%upper = self%problem%upper
+    if (allocated(self%problem%friction)) then
+      call self%limit_friction(0*self%problem%friction)
+      call self%start_rigid(smooth)
+      call self%limit_friction(0*self%problem%friction + unlimited*maxval(abs(self%resultant)/ &
+                                                                          self%problem%motion%units()))
+    end if
+    call self%start_rigid(self%rigid)
+    if (smooth%balanced) call self%limit_friction(0*self%problem%friction)
     if (.not. self%rigid%balanced) return
     if (allocated(redundant)) then
       if (all(redundant .eqv. self%rigid%redundant)) return
@@ -65,6 +82,17 @@ contains
     self%search%motion = self%problem%motion
     call new_springs(scene, bodies, self%rigid%redundant, self%search%joined_springs)
   end subroutine take_case
+
+  !> Find if rigid bodies can carry the loads with forces between their bounds.
+  subroutine start_rigid(self, rigid)
+    class(joined_rule), intent(in) :: self
+    type(rigid_start), intent(inout) :: rigid
+
+    associate (motion => self%problem%motion, unit => self%problem%motion%units(), search => self%search)
+      call find_rigid_start(motion%over(unit), motion%not_carried(self%resultant, search%lower)/unit, &
+                            spread(0.0_wp, 1, motion%pairs), rigid, search%upper - search%lower)
+    end associate
+  end subroutine start_rigid
 
   !> Factor the bodies with the springs of the active set, if law or springs have changed. The
   !! contact may factor them for another set.
@@ -109,8 +137,8 @@ contains
         state%contact%escape = self%rigid%escape/motion%units()
         return
       end if
-      call search%find_set(scene, bodies, self%rigid%redundant, allocated(self%line%last), state, watch)
     end associate
+    call self%find_set(scene, bodies, state, watch)
     if (state%contact%state == contact_solved) then
       call self%settle(scene, state)
       call self%line%keep(state)
@@ -119,6 +147,49 @@ contains
     end if
     call watch%lap(stage_contact)
   end subroutine solve
+
+  !> Find the active set. With friction, the friction limits of the forces found are given to the next solve.
+  subroutine find_set(self, scene, bodies, state, watch)
+    class(joined_rule), intent(inout) :: self
+    type(planned_model), intent(in) :: scene
+    class(factored_bodies), intent(inout) :: bodies
+    type(solved_state), intent(inout) :: state
+    class(stopwatch), intent(inout) :: watch
+    real(wp), allocatable :: given(:), limit(:)
+    real(wp) :: before, change
+    logical :: halves
+    integer :: i
+
+    call self%search%find_set(scene, bodies, self%rigid%redundant, allocated(self%line%last), state, watch)
+    if (.not. allocated(self%problem%friction)) return
+    halves = .false.
+    change = huge(change)
+    do i = 1, most_limits
+      if (state%contact%state /= contact_solved) return
+      given = self%search%upper(scene%model%contact%pairs + 1:)
+      limit = self%problem%friction*max(state%contact%force(self%problem%pair_of), 0.0_wp)
+      before = change
+      change = maxval(abs(limit - given))/maxval(state%contact%force)
+      call self%limit_friction(limit)
+      if (change <= exact .or. change <= rounding .and. change > slowly*before) return
+      ! Limits that jump to and fro settle if half of the change is taken.
+      halves = halves .or. i > 2 .and. change > slowly*before
+      if (halves) call self%limit_friction(0.5_wp*(given + limit))
+      call self%search%find_set(scene, bodies, self%rigid%redundant, .true., state, watch)
+    end do
+    state%contact%state = contact_stalled
+  end subroutine find_set
+
+  !> Set the friction limits.
+  subroutine limit_friction(self, limit)
+    class(joined_rule), intent(inout) :: self
+    real(wp), intent(in) :: limit(:)   !! [force] [tangential rows]
+
+    associate (n => size(self%search%upper) - size(limit))
+      self%search%lower(n + 1:) = -limit
+      self%search%upper(n + 1:) = limit
+    end associate
+  end subroutine limit_friction
 
   !> Complete the solution from forces and gaps: pairs in contact, and undetermined modes.
   subroutine settle(self, scene, state)
@@ -137,6 +208,7 @@ contains
       terms = abs(self%search%fixed_gap) + terms_of_openings(scene%model, state%deformation) + &
               motion%times(contact%approach, magnitudes=.true.)
       contact%touching = self%search%between(contact%force, 0.0_wp) .or. &
+                         self%search%lower < self%search%upper .and. &
                          merge(-contact%gap, contact%gap, contact%at_upper) <= negligible*terms
       where (contact%touching) contact%gap = 0.0_wp
       contact%motion_free = find_undetermined_motions(motion%over(motion%units()), contact%touching, &

@@ -69,7 +69,8 @@ contains
            axis_name(min(directions, run%motions%component(k)))
     text = 'the load '//when(run%motions%component(k) == angle, 'rotates ', 'moves ')// &
            body_name(run, run%motions%body(k))//when(run%motions%component(k) /= angle, text)// &
-           ' (SUPORT at '//run%model%name_of(of_node, run%motions%node(k))//'), and no contact resists it'
+           ' (SUPORT at '//run%model%name_of(of_node, run%motions%node(k))//'), and '// &
+           when(run%model%contact%has_friction(), 'neither contact nor friction', 'no contact')//' resists it'
   end function escaping
 
   !> Say why no active set passed the test.

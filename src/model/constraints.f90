@@ -16,6 +16,7 @@ module epcont_model_constraints
 
   type :: constraints_type
     logical, allocatable :: held(:, :)          !! the DOF has a prescribed displacement [2, nodes]
+    logical, allocatable :: still(:, :)         !! held, and not displaced in any load case [2, nodes]
     logical, allocatable :: reference(:, :)     !! SUPORT DOFs [2, nodes]
     !> Node whose displacement the DOF has: itself if it is not tied [2, nodes]
     integer, allocatable :: leader(:, :)

@@ -57,7 +57,6 @@ module epcont_model_contact_rows
   contains
     procedure :: rows
     procedure :: has_friction
-    procedure :: add_tangential_rows
     procedure :: nodes_of_rows
     procedure :: opening
     procedure :: slides
@@ -80,38 +79,6 @@ contains
     has_friction = .false.
     if (allocated(self%sliding)) has_friction = size(self%sliding) > 0
   end function has_friction
-
-  !> Append a tangential row for each pair with friction: nodes and weights of its gap row, along the tangent.
-  !! If the normal is along y, the tangent is along x.
-  pure subroutine add_tangential_rows(self)
-    class(contact_rows), intent(inout) :: self   !! with the rows of its pairs only
-    integer, allocatable :: entry(:), start(:)
-    integer :: e, j, k
-
-    do k = 1, size(self%line_contact)
-      associate (contact => self%line_contact(k))
-        self%friction = [self%friction(:contact%first - 1), &
-                         spread(contact%friction, 1, contact%last + 1 - contact%first)]
-      end associate
-    end do
-    self%sliding = pack([(k, k=1, self%pairs)], self%friction > 0.0_wp)
-    self%slipped = spread(0.0_wp, 1, size(self%sliding))
-    if (size(self%sliding) == 0) return
-    associate (first => self%row_start(:self%pairs), next => self%row_start(2:))
-      entry = [(e, e=1, self%row_start(self%pairs + 1) - 1), &
-               ((e, e=first(self%sliding(j)), next(self%sliding(j)) - 1), j=1, size(self%sliding))]
-      start = self%row_start(:self%pairs + 1)
-      do j = 1, size(self%sliding)
-        start = [start, start(size(start)) + next(self%sliding(j)) - first(self%sliding(j))]
-      end do
-    end associate
-    self%row_start = start
-    self%row_node = self%row_node(entry)
-    self%row_weight = self%row_weight(entry)
-    self%normal = reshape([self%normal(:, :self%pairs), &
-      (self%normal(2, self%sliding(j)), -self%normal(1, self%sliding(j)), j=1, size(self%sliding))], &
-      [2, size(start) - 1])
-  end subroutine add_tangential_rows
 
   !> Nodes of each row, padded with zeros [any, rows].
   pure function nodes_of_rows(self) result(node)

@@ -13,7 +13,7 @@ module epcont_model_load_cases
   use epcont_model_ties, only: add_moment
   implicit none
   private
-  public :: load_case, load_cases, put_case, single_case
+  public :: find_still, load_case, load_cases, put_case, single_case
 
   !> Contacts of a case, if it is not the id of a single BCONP.
   integer, parameter, public :: contact_all = 0, contact_none = -1
@@ -213,6 +213,26 @@ contains
     model%loads%prescribed = prescribed(:directions, :model%mesh%nodes)
     model%loads%rotation = prescribed(angle, :size(model%constraints%platen))
   end subroutine put_displacements
+
+  !> Find the DOFs that are held and not displaced in any load case [2, nodes].
+  pure subroutine find_still(cases, held, still)
+    type(load_cases), intent(in) :: cases
+    logical, intent(in) :: held(:, :)   !! [2, nodes]
+    logical, allocatable, intent(out) :: still(:, :)
+    integer :: i
+
+    still = held
+    do i = 1, size(cases%held_at)
+      associate (at => cases%held_at(i))
+        if (at%c <= directions .and. at%displacement /= 0.0_wp) still(at%c, at%node) = .false.
+      end associate
+    end do
+    do i = 1, size(cases%moved)
+      associate (at => cases%moved(i))
+        if (at%c <= directions) still(at%c, at%node) = .false.
+      end associate
+    end do
+  end subroutine find_still
 
   !> Factor of a set of loads in a case; 0 if the case does not use it.
   pure real(wp) function share_of(case, set) result(share)

@@ -38,7 +38,7 @@ contains
     many_of = merge(many_where_yielding, many_of_pairs, any([(model%can_yield(e), e=1, model%mesh%elements)]))
   end function many_of
 
-  !> Can the bodies be joined? At least one pair needs a body that deforms, and none friction.
+  !> Can the bodies be joined? At least one pair needs a body that deforms.
   logical function can_join(model)
     type(model_type), intent(in) :: model
     integer :: i
@@ -46,6 +46,6 @@ contains
     can_join = any([(model%mesh%around%start(model%contact%row_node(i) + &
                                              1) > model%mesh%around%start(model%contact%row_node(i)) .and. &
                      .not. all(model%constraints%is_held([1, 2], model%contact%row_node(i))), i=1, &
-                       size(model%contact%row_node))]) .and. .not. model%contact%has_friction()
+                       size(model%contact%row_node))])
   end function can_join
 end module epcont_plan_joining
