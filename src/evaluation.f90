@@ -114,8 +114,8 @@ contains
     call watch%lap(stage_stresses)
   end subroutine find_results
 
-  !> Find the zones that stick: the traction that is missing up to slip vanishes at their ends, like the pressure
-  !! at the ends of a contact.
+  !> Find the zones that stick: the traction that is missing up to slip vanishes at their ends, like the
+  !! pressure at the ends of a contact.
   subroutine find_stick_zones(model, line, touching, answer)
     type(model_type), intent(in) :: model
     type(contact_line), intent(in) :: line

@@ -46,15 +46,16 @@ contains
     logical, intent(out) :: kept                 !! they are those of the previous load case
     type(unit_loads) :: none
     integer, allocatable :: motion(:)            ! assessed modes
+    logical, allocatable :: pressed(:)           ! rows with a force between its bounds
 
     motion = choose_motions(scene, abs(answer%contact%approach)*linear%rule%problem%motion%sizes(), &
                             answer%contact%motion_free)
-    kept = loads%are_of(answer, linear%rule%problem%between(answer%contact%row_forces()), motion) .and. .not. &
-           linear%materials%yields
+    pressed = linear%rule%problem%between(answer%contact%row_forces())
+    kept = loads%are_of(answer, pressed, motion) .and. .not. linear%materials%yields
     if (.not. kept) then
       loads = none
       loads%contact%motion = motion
-      loads%pressed = linear%rule%problem%between(answer%contact%row_forces())
+      loads%pressed = pressed
       loads%touching = answer%contact%touching
       loads%motion_free = answer%contact%motion_free
       call find_shares()
@@ -85,7 +86,8 @@ contains
           one = shares_of_rows(scene%model, body, c)
           other = shares_of_rows(scene%model, body, 3 - c)
           if (any(abs(one) > least_difference) .and. .not. &
-              any(abs(one(:pairs)) + abs(other(:pairs)) > least_difference .and. answer%contact%touching)) then
+              any(abs(one(:pairs)) + abs(other(:pairs)) > least_difference .and. &
+                  answer%contact%touching)) then
             loads%column(c, i) = -1
             cycle
           end if

@@ -9,9 +9,9 @@ module epcont_contact_geometry_tangential_rows
 
 contains
 
-  !> Append a tangential row for each pair with friction, after the rows of the pairs. If the normal is along y,
-  !! the tangent is along x. A pair whose nodes never move along the tangent, such as one on a line of symmetry,
-  !! has no such row: its friction force would be undetermined.
+  !> Append a tangential row for each pair with friction, after the rows of the pairs. If the normal is along
+  !! y, the tangent is along x. A pair whose nodes never move along the tangent, such as one on a line of
+  !! symmetry, has no such row: its friction force would be undetermined.
   pure subroutine add_tangential_rows(model)
     type(model_type), intent(inout) :: model   !! with the rows of its pairs only
     integer, allocatable :: entry(:), start(:)

@@ -163,6 +163,8 @@ contains
 
     self%problem%resultant = self%resultant
     call solve_contact(self%problem, contact, start, self%basis)
+    if (allocated(self%problem%friction) .and. contact%state == contact_solved) &
+      self%problem%guess_force = contact%force
   end subroutine find_contact
 
   !> Take one step of iterative refinement: add the deformation under the residual, solve the contact with it,

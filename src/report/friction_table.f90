@@ -1,7 +1,8 @@
 !> Table of the friction of pairs: forces, tractions and slip.
 module epcont_report_friction_table
   use epcont_base_kinds, only: wp
-  use epcont_report_columns, only: column, force, known, length, number, state, stress, table_type, unknown, whole
+  use epcont_report_columns, only: column, force, known, length, number, state, stress, table_type, &
+      unknown, whole
   use epcont_report_run, only: run_results
   implicit none
   private
@@ -44,11 +45,12 @@ contains
           does = 'open'
           if (contact%touching(k)) does = merge('sticks', 'slips ', contact%sticking(j))
           shear = 0.0_wp
-          if (contact%force(k) > 0.0_wp) shear = run%answer%pressure(k)*contact%friction_force(j)/contact%force(k)
+          if (contact%force(k) > 0.0_wp) &
+            shear = run%answer%pressure(k)*contact%friction_force(j)/contact%force(k)
           if (run%answer%pressure(k) < 0.0_wp) shear = unknown
           call table%row([rows%pair_id(k)], [run%model%mesh%x(:, rows%pair_node(2, k)), rows%friction(k), &
-                         contact%force(k), contact%friction_force(j), rows%friction(k)*contact%force(k), shear, &
-                         contact%slip(j), travel(j)], [does])
+                         contact%force(k), contact%friction_force(j), rows%friction(k)*contact%force(k), &
+                         shear, contact%slip(j), travel(j)], [does])
         end associate
       end do
     end associate

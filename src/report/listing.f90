@@ -13,6 +13,7 @@ module epcont_report_listing
   use epcont_messages_names, only: centre_name, joined, percent, point_name, when
   use epcont_messages_outcome, only: remark_lines
   use epcont_messages_sentences, only: most_pairs
+  use epcont_report_friction_table, only: put_stick_zones
   use epcont_report_run, only: run_results
   use epcont_messages_scene_text, only: deeper
   use epcont_report_summary, only: figure_type
@@ -205,7 +206,7 @@ contains
     call put_table(run, 'contact', listing)
     if (run%model%contact%has_friction()) call put_table(run, 'friction', listing)
     call put_table(run, 'zones', listing)
-    if (run%model%contact%has_friction()) call put_table(run, 'stick_zones', listing)
+    if (run%model%contact%has_friction()) call put_stick_zones(run, listing)
     if (size(run%answer%lines) > 0) call put_table(run, 'lines', listing)
     call put_table(run, 'bodies', listing)
   end subroutine list_contact

@@ -195,7 +195,8 @@ contains
                        'largest force times gap')
       call figures%list_as(listed_number(rounding, c%force_gap/c%force_scale/c%length_scale, 0.0_wp))
       if (run%model%contact%has_friction()) then
-        call figures%put('friction_above_limit', force, number, c%excess, 'friction above mu R / largest force')
+        call figures%put('friction_above_limit', force, number, c%excess, &
+                         'friction above mu R / largest force')
         call figures%list_as(listed_number(rounding, c%excess/c%force_scale, 0.0_wp))
         call figures%put('largest_force_slip_product', 'force*length', number, c%force_slip, &
                          'largest missing friction times slip')

@@ -8,7 +8,7 @@ module epcont_report_tables
   use epcont_report_columns, only: column, columns_text, estimate, force, known, length, no_number, number, &
       off_curve, rounding, state, stress, table_type, unknown, whole, word
   use epcont_messages_outcome, only: limit_of_pressure
-  use epcont_report_friction_table, only: friction_columns, put_friction, put_stick_zones
+  use epcont_report_friction_table, only: friction_columns, put_friction
   use epcont_report_run, only: run_results
   use epcont_result_stresses, only: place_of_point
   implicit none
@@ -157,8 +157,6 @@ contains
       call put_contact()
     case ('friction')
       call put_friction(run, table)
-    case ('stick_zones')
-      call put_stick_zones(run, table)
     case ('zones')
       call put_zones()
     case ('lines')

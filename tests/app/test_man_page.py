@@ -11,6 +11,31 @@ PROGRAM, ROOT = os.environ["EPCONT_PROGRAM"], pathlib.Path(os.environ["EPCONT_SO
 DECK = ROOT / "input" / "hertz" / "hertz44.dat"
 PAGE = subprocess.run([PROGRAM, "--man"], capture_output=True, check=True).stdout.decode("ascii")
 
+#: A block pressed on another, and pushed.
+FRICTION = """BEGIN BULK
+PARAM,PLANE,STRAIN
+GRID,1,,0.,0.
+GRID,2,,1.,0.
+GRID,3,,1.,1.
+GRID,4,,0.,1.
+GRID,5,,0.,1.
+GRID,6,,1.,1.
+GRID,7,,1.,2.
+GRID,8,,0.,2.
+CQUAD4,1,1,1,2,3,4
+CQUAD4,2,1,5,6,7,8
+PSHELL,1,1,1.
+MAT1,1,1000.,,.3
+SPC1,1,12,1,2
+SPC,1,7,2,-.01,8,2,-.01
+SPC,1,7,1,.001,8,1,.001
+BLSEG,1,4,3
+BLSEG,2,5,6
+BCONP,1,2,1,,,4
+BFRIC,4,,,.2
+ENDDATA
+"""
+
 
 def section(name):
     """Lines of a section, as typed."""
@@ -72,6 +97,9 @@ class Page(unittest.TestCase):
                         for path in pathlib.Path(place).iterdir()
                         if re.search(r"\.(cases\.csv|increments\.csv|plastic\.csv|pvd|restart)$", path.name)}
             self.assertTrue(pathlib.Path(place, "hertz44.case2.contact.vtu").exists())
+            deck.write_text(FRICTION, encoding="ascii")
+            subprocess.run([PROGRAM, deck, "-o", place, "--quiet"], check=True)
+            written[".friction.csv"] = pathlib.Path(place, "hertz44.friction.csv").read_bytes()
         files = dict(text.split("\n", 1) for text in "\n".join(section("FILES")).split(".IB DECK ")[1:])
         self.assertEqual(set(written), set(files))
         for name, text in files.items():

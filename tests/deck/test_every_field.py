@@ -65,6 +65,9 @@ DECKS = {
     "lines": "PARAM,PLANE,STRAIN|GRID,1,,0.,0.|GRID,2,,1.,0.|GRID,3,,1.,1.|GRID,4,,0.,1.|GRID,5,,.2,1.05|GRID,6,,.8,1.05|GRID,7,,.8,2.|GRID,8,,.2,2.|"
     "CQUAD4,1,1,1,2,3,4|CQUAD4,2,1,5,6,7,8|PSHELL,1,1,1.|MAT1,1,1000.,,.3|SPC1,1,12,1,2|SPC,1,7,2,-.07,8,2,-.08|SPC1,1,1,7,8|BLSEG,1,4,3|BLSEG,2,5,6|BLSEG,3,7,8|"
     "BCONP,1,2,1,,.1,4,1,0|BFRIC,4|PARAM,CORNER,20.|",
+    "friction": "PARAM,PLANE,STRAIN|GRID,1,,0.,0.|GRID,2,,1.,0.|GRID,3,,1.,1.|GRID,4,,0.,1.|GRID,5,,.2,1.05|GRID,6,,.8,1.05|GRID,7,,.8,2.|GRID,8,,.2,2.|"
+    "CQUAD4,1,1,1,2,3,4|CQUAD4,2,1,5,6,7,8|PSHELL,1,1,1.|MAT1,1,1000.,,.3|SPC1,1,12,1,2|SPC,1,7,2,-.07,8,2,-.08|SPC1,1,1,7,8|BLSEG,1,4,3|BLSEG,2,5,6|"
+    "BCONP,1,2,1,,,4|BFRIC,4,,,.2|",
     "yield": "PARAM,PLANE,STRAIN|" + CORNERS + "SPC1,1,12,1,2|SPC,1,3,2,.02,4,2,.02|CQUAD4,1,1,1,2,3,4|PSHELL,1,1,1.|MAT1,1,1000.,,.3|"
     "MATS1,1,,PLASTIC,50.,1,1,10.|",
     "flow": OUTPUT + "NLPARM = 3|BEGIN BULK|PARAM,PLANE,STRAIN|" + CORNERS + "SPC1,1,12,1,2|SPC,1,3,2,.02,4,2,.02|CQUAD4,1,1,1,2,3,4|PSHELL,1,1,1.|"
@@ -106,7 +109,7 @@ CARDS = {
     "CGAP": ("plane", 0, [("EID", "13", CHANGES), ("PID", "8", CHANGES), ("GA", "3", CHANGES), ("GB", "6", CHANGES), ("X1", "1.", NOTED), ("X2", "1.", NOTED),
                           ("X3", "1.", NOTED), ("CID", "99", unknown("CORD2R"))]),
     "PGAP": ("plane", 0, [("PID", "99", error("there is no PGAP 8")), ("U0", ".02", CHANGES), ("F0", "1.", ZERO), ("KA", "1.", NOTED), ("KB", "1.", NOTED),
-                          ("KT", "1.", NOTED), ("MU1", ".1", error("friction is not ready yet")), ("MU2", ".1", error("field 9 (MU2) differs from MU1")), ("TMAX", "1.", NOTED), ("MAR", "1.", NOTED), ("TRMIN", "1.", NOTED)]),
+                          ("KT", "1.", NOTED), ("MU1", ".1", CHANGES), ("MU2", ".1", error("field 9 (MU2) differs from MU1")), ("TMAX", "1.", NOTED), ("MAR", "1.", NOTED), ("TRMIN", "1.", NOTED)]),
     "CBAR": ("plane", 0, [("EID", "91", NOTED), ("PID", "2", NOTED), ("GA", "3", NOTED), ("GB", "3", NOTED), *[ANYTHING] * 12]),
     "PARAM": ("plane", 0, [("NAME", "NONE", error("unknown parameter NONE")), ("VALUE", "NONE", error("PARAM PLANE: field 3 (VALUE)"))]),
     "MATS1": ("yield", 0, [("MID", "99", unknown("MAT1")), ("TID", "99", unknown("TABLES1")), ("TYPE", "ELASTIC", error("field 4 (TYPE)")), ("H", "60.", CHANGES),
@@ -144,7 +147,7 @@ CARDS = {
     "PELAS": ("plane", 0, [("PID1", "99", error("there is no PELAS 30")), ("K1", "60.", CHANGES), ("GE1", ".1", NOTED), ("S1", ".1", NOTED),
                            ("PID2", "99", error("there is no PELAS 31")), ("K2", "70.", CHANGES), ("GE2", ".1", NOTED), ("S2", ".1", NOTED)]),
     "NLPARM": ("flow", 0, [("ID", "9", error("there is no such NLPARM")), ("NINC", "4", CHANGES), *([ANYTHING]*3), ("MAXITER", "9", LISTED), *([ANYTHING]*2), ("EPSU", ".1", CHANGES), *([ANYTHING]*15)]),
-    "BFRIC": ("lines", 0, [("FID", "99", error("there is no BFRIC 4")), ("FSTIF", "1.", NOTED), ("", "1", BLANK), ("MU1", ".1", error("friction is not ready yet"))]),
+    "BFRIC": ("friction", 0, [("FID", "99", error("there is no BFRIC 4")), ("FSTIF", "1.", NOTED), ("", "1", BLANK), ("MU1", ".1", CHANGES)]),
 }
 #: The same for each PARAM.
 PARAMETERS = {
@@ -152,9 +155,9 @@ PARAMETERS = {
     "METHOD": ("yield", "SECANT", LISTED), "TOL": ("yield", ".1", LISTED), "MAXIT": ("yield", "7", LISTED), "MUP": ("yield", "PAPER", LISTED),
     "ORIGINAL": ("plane", "YES", LISTED), "NLOAD": ("yield", "2", LISTED), "SAVE": ("yield", "YES", LISTED), "SEARCH": ("feet", ".1", CHANGES), "SOLVER": ("plane", "FRONTAL", LISTED),
     "FLEXIB": ("strip", "INVERT", LISTED), "ACCURACY": ("plane", ".1", LISTED), "THEORY": ("flow", "TOTAL", CHANGES), "HRFRAC": ("mixed", ".9", CHANGES), "CORNER": ("lines", "170.", LISTED),
-    "WTMASS": ("plane", "2.", CHANGES), "FRICTION": ("lines", "MAYBE", error("field 3 (VALUE)")), "LGDISP": ("plane", "-1", NOTED), "INREL": ("plane", "0", NOTED)}
+    "WTMASS": ("plane", "2.", CHANGES), "FRICTION": ("friction", "NO", CHANGES), "LGDISP": ("plane", "-1", NOTED), "INREL": ("plane", "0", NOTED)}
 WITHOUT = {"PLANE": "ctrax3", "RULE": "yield", "GAPGEOM": "lines", "METHOD": "plane", "TOL": "plane", "MAXIT": "plane", "MUP": "plane", "NLOAD": "plane", "HRFRAC": "yield", "THEORY": "plane",
-           "SEARCH": "plane", "FLEXIB": "yield", "CORNER": "plane", "WTMASS": "yield"}
+           "SEARCH": "plane", "FLEXIB": "yield", "CORNER": "plane", "WTMASS": "yield", "FRICTION": "yield"}
 #: The same for each statement of case control, put before the others of `plane` or in place of the one with its name.
 STATEMENTS = {
     "SOL": ("SOL 103", note("SOL: epcont solves for static loads")), "CEND": ("CEND 1", error("CEND takes no value")), "TITLE": ("TITLE = X", LISTED), "ECHO": ("ECHO = SORT", LISTED),

@@ -97,6 +97,12 @@ class Deck:
         """Let the nodes of one boundary line touch the edges of another."""
         self.card("BCONP", number, slave, master)
 
+    def rubs(self, number, coefficient):
+        """Give a contact of lines friction."""
+        place = next(k for k, line in enumerate(self.lines) if line.startswith(f"BCONP   {number} "))
+        self.lines[place] = self.lines[place].ljust(48) + str(number)
+        self.card("BFRIC", number, "", "", coefficient)
+
     def yields(self, number, stress, hardening):
         """Bilinear: stress over plastic strain above the yield stress."""
         self.wide("MATS1", number, "", "PLASTIC", hardening, 1, 1, stress)
@@ -153,10 +159,10 @@ class Deck:
         """A frame whose x-axis is the deck's y."""
         self.card("CORD2R", number, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0)
 
-    def pairs(self, first, ends, gap_property, frame=1, gap=0.0):
+    def pairs(self, first, ends, gap_property, frame=1, gap=0.0, friction=None):
         for i, (a, b) in enumerate(ends):
             self.card("CGAP", first + i, gap_property, a, b, "", "", "", frame)
-        self.card("PGAP", gap_property, gap)
+        self.card("PGAP", gap_property, gap, *(["", "", "", "", friction] if friction else []))
 
     def text(self):
         head = [f"$ {line}".rstrip() for words in self.words for line in textwrap.wrap(words, 76) or [""]]

@@ -1,0 +1,111 @@
+#!/usr/bin/env python3
+"""Friction: two cylinders pressed and pushed (Cattaneo, Mindlin), and a block that only friction holds. Both contact solvers."""
+import csv
+import math
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools"))
+from scenes import friction  # noqa: E402
+
+PROGRAM = os.environ["EPCONT_PROGRAM"]
+RULES = ("CONRY", "JOINED")
+
+
+def run(text, rule, status=0):
+    """Rows of friction, and the summary of each load case; or what was said, if the status is another one."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = pathlib.Path(folder) / "deck.dat"
+        path.write_text(text.replace("BEGIN BULK", f"BEGIN BULK\nPARAM,RULE,{rule}"), encoding="ascii")
+        done = subprocess.run([PROGRAM, "--quiet", path.name], cwd=folder, capture_output=True, text=True, timeout=60, check=False)
+        if done.returncode != status:
+            raise AssertionError(done.stdout + done.stderr)
+        if status:
+            return done.stderr, path.with_suffix(".lst").read_text()
+        with open(path.with_suffix(".friction.csv")) as file:
+            rows = list(csv.DictReader(file))
+        with open(path.with_suffix(".summary.csv")) as file:
+            return rows, [row for row in csv.DictReader(file)]
+
+
+def values(summary, key):
+    return [float(row["value"] or "nan") for row in summary if row["key"] == key]
+
+
+class Cylinders(unittest.TestCase):
+    """Traction within 1 % of its largest value, but for the nodes beside its kinks, and stick width within 1 %."""
+
+    PUSHES = 0.6, -0.2
+
+    def check(self, lines):
+        answers = []
+        for rule in RULES:
+            rows, summary = run(friction.cattaneo(lines=lines).text(), rule)
+            answers.append(rows)
+            for case in (1, 2):
+                pushes = self.PUSHES[:case]
+                sticks = math.sqrt(1 - (pushes[0] if case == 1 else (pushes[0] - pushes[1]) / 2))
+                self.assertAlmostEqual(values(summary, "stick_half_width")[case] / sticks, 1, delta=0.01)
+                kinks = [1.0] + [math.sqrt(1 - self.PUSHES[0]), sticks][:case]
+                largest = max(abs(friction.traction(pushes, 0.01 * k)) for k in range(101))
+                for row in rows:
+                    x = float(row["x"])
+                    if int(row["subcase"]) == case + 1 and all(abs(abs(x) - kink) > 0.1 for kink in kinks):
+                        self.assertAlmostEqual(-float(row["shear"]), friction.traction(pushes, x), delta=0.01 * largest, msg=f"{case} {x}")
+        for one, other in zip(*answers):
+            self.assertEqual(one["state"], other["state"])
+            self.assertAlmostEqual(float(one["friction_force"]), float(other["friction_force"]), delta=1e-9)
+
+    def test_pairs(self):
+        self.check(lines=False)
+
+    def test_lines(self):
+        self.check(lines=True)
+
+    def test_full_sliding(self):
+        """Beyond mu P nothing carries the push; just below, nearly all pairs slip."""
+        rows, _ = run(friction.cattaneo(n=4, pushes=(0.999,)).text(), "AUTO")
+        self.assertLessEqual(sum(row["state"] == "sticks" for row in rows if row["subcase"] == "2"), 1)
+        for rule in RULES:
+            said, _ = run(friction.cattaneo(n=4, pushes=(1.001,)).text(), rule, status=1)
+            self.assertRegex(said, r"SUBCASE 2: the load moves the body of GRID \d+ along \+x \(SUPORT at GRID \d+\), and neither contact nor friction resists it")
+
+
+class Incline(unittest.TestCase):
+    """A block on an inclined plane, pulled down by its weight: it stands up to tan(angle) = mu, although SUPORT leaves it free."""
+
+    def text(self, slope, mu):
+        angle = math.atan(slope)
+        c, s = math.cos(angle), math.sin(angle)
+
+        def at(x, y):
+            return f"{c * x + s * y:.15f},{-s * x + c * y:.15f}"
+
+        places = {1: (0, 0), 2: (1, 0), 3: (1, 1), 4: (0, 1), 5: (0, 1), 6: (1, 1), 7: (1, 2), 8: (0, 2)}
+        return ("BEGIN BULK\nPARAM,PLANE,STRAIN\n" + "".join(f"GRID,{node},,{at(*place)}\n" for node, place in places.items())
+                + "CQUAD4,1,1,1,2,3,4\nCQUAD4,2,1,5,6,7,8\nPSHELL,1,1,1.\nMAT1,1,1000.,,.3\nSPC1,1,12,1,2\nFORCE,1,7,,1.,0.,-1.\nFORCE,1,8,,1.,0.,-1.\n"
+                f"FORCE,1,5,,1.,0.,-1.\nFORCE,1,6,,1.,0.,-1.\nCORD2R,3,,0.,0.,0.,0.,0.,1.\n,{s:.15f},{c:.15f},0.\n"
+                f"CGAP,11,9,4,5,,,,3\nCGAP,12,9,3,6,,,,3\nPGAP,9,0.,,,,,{mu}\nSUPORT,5,1,5,2,6,2\nENDDATA\n")
+
+    def test_stands(self):
+        for rule in RULES:
+            for slope in (0.05, 0.299):
+                rows, _ = run(self.text(slope, 0.3), rule)
+                self.assertAlmostEqual(sum(float(row["friction_force"]) for row in rows), -4 * math.sin(math.atan(slope)), delta=1e-9)
+
+    def test_slides(self):
+        for rule in RULES:
+            said, _ = run(self.text(0.301, 0.3), rule, status=1)
+            self.assertIn("neither contact nor friction resists it", said)
+
+    def test_without_friction(self):
+        said, _ = run(self.text(0.05, 0.3).replace("ENDDATA", "PARAM,FRICTION,NO\nENDDATA"), "AUTO", status=1)
+        self.assertIn("and no contact resists it", said)
+
+
+if __name__ == "__main__":
+    unittest.main()
