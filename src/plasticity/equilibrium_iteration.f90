@@ -114,7 +114,7 @@ contains
       linear%rule%keeps = self%plan%keeps .and. .not. linear%materials%yields
       if (allocated(linear%materials%committed)) deallocate (linear%materials%committed)   ! of another case
       if (present(from)) then
-        linear%materials%committed = from%history
+        if (allocated(from%history)) linear%materials%committed = from%history
         self%committed = from%state
       else
         allocate (self%committed%displacement(directions, model%mesh%nodes), source=0.0_wp)

@@ -98,7 +98,7 @@ CARDS = {
     "FORCE": ("plane", 0, [("SID", "2", CHANGES), ("G", "8", CHANGES), ("CID", "3", ZERO), ("F", "2.", CHANGES), ("N1", ".1", CHANGES), ("N2", "-1.", CHANGES),
                            ("N3", "1.", error("field 8 (N3) points off the plane"))]),
     "PLOADX1": ("plane", 0, [("SID", "2", CHANGES), ("EID", "99", unknown("element")), ("PA", ".2", CHANGES), ("PB", ".3", CHANGES),
-                             ("GA", "5", error("not the ends of a side")), ("GB", "8", error("not the ends of a side")), ("THETA", "20.", CHANGES)]),
+                             ("GA", "5", error("not the ends of an edge")), ("GB", "8", error("not the ends of a side")), ("THETA", "20.", CHANGES)]),
     "RBE2": ("plane", 0, [("EID", "1", error("the id is taken")), ("GN", "8", error("RBE2")), ("CM", "1", note("GRID 9 rotates")), ("GM1..", "6", error("GRID 6"))]),
     "SUPORT": ("plane", 0, [("ID1", "3", error("SUPORT")), ("C1", "1", error("SUPORT 9")), ("ID2", "3", error("GRID 3 has no direction 6")),
                             ("C2", "4", error("GRID 9 has no direction 4")), *((f"{name}{k}", f"{2 * k - 1}=3 {2 * k}=2", error("1 SUPORT DOF"))
@@ -137,7 +137,7 @@ CARDS = {
     "RFORCE": ("plane", 0, [("SID", "2", CHANGES), ("G", "9", CHANGES), ("CID", "3", ZERO), ("A", ".03", CHANGES), ("R1", "1.", error("field 6 (R1) points along x")),
                             ("R2", "1.", error("field 7 (R2) points along y")), ("R3", "2.", CHANGES), ("METHOD", "1", NOTED), ("RACC", ".02", CHANGES),
                             ("MB", "1", NOTED), ("IDRF", "1", ZERO)]),
-    "MOMENT": ("plane", 0, [("SID", "2", CHANGES), ("G", "6", error("GRID 6 leads no RBE2")), ("CID", "3", ZERO), ("M", ".2", CHANGES),
+    "MOMENT": ("plane", 0, [("SID", "2", CHANGES), ("G", "6", error("GRID 6 is not GN of an RBE2")), ("CID", "3", ZERO), ("M", ".2", CHANGES),
                             ("N1", "1.", error("the moment is not about z")), ("N2", "1.", error("the moment is not about z")), ("N3", "2.", CHANGES)]),
     "MPC": ("plane", 1, [("SID", "5", error("there is no set 6")), ("G1 ..", "4", error("MPC 6")), ("C1 ..", "3", error("GRID 3 has no direction 3")), ("A1 ..", "2.", CHANGES)]),
     "MPCADD": ("plane", 0, [("SID", "8", error("MPC = 7: the deck has no such set")), ("S1..", "6", CHANGES)]),
