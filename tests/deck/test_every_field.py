@@ -79,8 +79,8 @@ DECKS = {
 }
 
 ELEMENT = [("EID", "9", CHANGES), ("PID", "2", CHANGES)]
-SPC = [("SID", "9", error("SPC")), ("G1", "10", error("held at another")), ("C1", "2", error("held at another")), ("D1", ".003", CHANGES), ("G2", "5", error("SPCD 4: direction 1 of GRID 2 is not fixed")),
-       ("C2", "2", error("held at another")), ("D2", ".004", CHANGES)]
+SPC = [("SID", "9", error("SPC")), ("G1", "10", error("has another prescribed displacement")), ("C1", "2", error("has another prescribed displacement")), ("D1", ".003", CHANGES), ("G2", "5", error("SPCD 4: direction 1 of GRID 2 is not fixed")),
+       ("C2", "2", error("has another prescribed displacement")), ("D2", ".004", CHANGES)]
 ANYTHING = ("", "1", NOTED)
 #: For each card the base deck, the number of its card there, and for each field in order its name, another value, and the outcome.
 #: A value such as `6=3 7=2` changes several fields, counted from 1.
@@ -94,11 +94,11 @@ CARDS = {
                           ("NU", ".2", CHANGES), ("RHO", ".6", CHANGES), ("A", "2.-4", CHANGES), ("TREF", "20.", CHANGES), ("GE", ".1", NOTED),
                           ("ST", ".1", NOTED), ("SC", ".1", NOTED), ("SS", ".1", NOTED), ("MCSID", "3", NOTED)]),
     "SPC": ("plane", 0, SPC),
-    "SPC1": ("plane", 0, [("SID", "9", CHANGES), ("C", "12", error("held at another")), ("G1..", "3", CHANGES)]),
+    "SPC1": ("plane", 0, [("SID", "9", CHANGES), ("C", "12", error("has another prescribed displacement")), ("G1..", "3", CHANGES)]),
     "FORCE": ("plane", 0, [("SID", "2", CHANGES), ("G", "8", CHANGES), ("CID", "3", ZERO), ("F", "2.", CHANGES), ("N1", ".1", CHANGES), ("N2", "-1.", CHANGES),
                            ("N3", "1.", error("field 8 (N3) points off the plane"))]),
     "PLOADX1": ("plane", 0, [("SID", "2", CHANGES), ("EID", "99", unknown("element")), ("PA", ".2", CHANGES), ("PB", ".3", CHANGES),
-                             ("GA", "5", error("not the ends of an edge")), ("GB", "8", error("not the ends of a side")), ("THETA", "20.", CHANGES)]),
+                             ("GA", "5", error("not the ends of an edge")), ("GB", "8", error("not the ends of an edge")), ("THETA", "20.", CHANGES)]),
     "RBE2": ("plane", 0, [("EID", "1", error("the id is taken")), ("GN", "8", error("RBE2")), ("CM", "1", note("GRID 9 rotates")), ("GM1..", "6", error("GRID 6"))]),
     "SUPORT": ("plane", 0, [("ID1", "3", error("SUPORT")), ("C1", "1", error("SUPORT 9")), ("ID2", "3", error("GRID 3 has no direction 6")),
                             ("C2", "4", error("GRID 9 has no direction 4")), *((f"{name}{k}", f"{2 * k - 1}=3 {2 * k}=2", error("1 SUPORT DOF"))
