@@ -218,6 +218,8 @@ contains
 
     end_figures = increment_of(self%answer, size(self%answer%history))
     end_figures%stress = self%answer%stress
+    if (allocated(self%answer%contact%friction_force)) &
+      end_figures%friction = self%answer%contact%friction_force
   end function end_figures
 
   !> Follow the loads in another number of increments, for their error.

@@ -80,12 +80,35 @@ contains
     if (vague > 0) call warn(found, &
       'the forces and pressures of '//plural(vague, 'pair')//' are one choice of many: pairs at one '// &
       'point, or parts that cannot bend (`force not unique` in CONTACT)')
+    call warn_of_friction(run, found)
     do k = 1, run%motions%count
       if (.not. run%answer%contact%motion_free(k)) cycle
       call found%add_note(place_type(), 'approach of '//motion_name(run, k)// &
                          ': undetermined rigid-body mode; its value is the smallest that the gaps allow')
     end do
   end subroutine remark_answer
+
+  !> Warn of further answers with friction, and note the pairs whose friction force is undetermined.
+  subroutine warn_of_friction(run, found)
+    class(solution_type), intent(in) :: run
+    type(findings), intent(inout) :: found
+    integer, allocatable :: still(:)
+    integer :: k
+
+    if (allocated(run%answer%contact%several)) then
+      associate (several => run%answer%contact%several)
+        if (any(several)) call warn(found, 'friction allows more than one answer; this is one of them: '// &
+          'others differ at '//plural(count(several), 'pair')//', the first '// &
+          text_of(run%model%contact%pair_id(findloc(several, .true., dim=1))))
+      end associate
+    end if
+    still = pack([(k, k=1, run%model%contact%pairs)], run%model%contact%friction > 0.0_wp)
+    still = pack(still, [(all(run%model%contact%sliding /= still(k)), k=1, size(still))])
+    if (size(still) > 0) call found%add_note(place_type(), plural(size(still), 'pair')// &
+      ' with friction cannot slide, as supports fix both nodes along the tangent: '// &
+      text_of(run%model%contact%pair_id(still(1)))//when(size(still) > 1, ' and others')// &
+      '; friction forces are undetermined there, and 0.0')
+  end subroutine warn_of_friction
 
   !> Add a warning, unless the text is empty.
   subroutine warn(found, text)
@@ -119,7 +142,7 @@ contains
     real(wp) :: error, force
     integer :: c, i
 
-    if (.not. allocated(run%accuracy%body_force)) return
+    if (.not. allocated(run%accuracy%body_force) .or. run%model%contact%has_friction()) return
     do i = 1, size(run%answer%bodies)
       do c = 1, directions
         force = abs(run%answer%bodies(i)%resultant(c))

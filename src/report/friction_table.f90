@@ -14,7 +14,8 @@ module epcont_report_friction_table
     column(number, 'y'), &
     column(number, 'friction', '', 'coefficient', 'mu', 8), &
     column(number, 'force', force, 'of contact'), &
-    column(number, 'friction_force', force, 'on B, along the tangent: x = ny, y = -nx', 'friction force', 15), &
+    column(number, 'friction_force', force, 'on B, along the tangent: x = ny, y = -nx', &
+           'friction force', 15), &
     column(number, 'limit', force, 'mu times the contact force', width=0), &
     column(number, 'shear', stress, 'traction; empty if no boundary belongs to the pair'), &
     column(number, 'slip', length, 'of B relative to A in this increment, along the tangent'), &

@@ -300,6 +300,12 @@ contains
         call figures%put_increment_error('approach_'//motion_key(run, k), motion_unit(run, k), &
           motion_name(run, k), error%approach(k), abs(found%approach(k)))
       end do
+      if (run%model%contact%has_friction()) then
+        call figures%put_increment_error('friction_force', force, 'friction forces of pairs', &
+                                         error%friction, maxval(abs(run%answer%contact%friction_force)))
+        call figures%put_increment_error('stick_half_width', length, 'half-width that sticks', &
+                                         error%sticks, found%sticks)
+      end if
       call figures%put_increment_error('stress', stress, 'stresses of elements', error%stress, &
                                        maxval(run%answer%equivalent_stress))
     end associate

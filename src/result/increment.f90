@@ -27,8 +27,11 @@ module epcont_result_increment
     real(wp) :: pressure = -1.0_wp      !! the largest; negative if no boundary belongs to the pairs [stress]
     real(wp) :: half_width = -1.0_wp    !! of the zone with this pressure; negative: unknown [length]
     real(wp) :: force = 0.0_wp          !! sum of the contact forces [force]
+    real(wp) :: sticks = -1.0_wp        !! largest half-width that sticks; negative: unknown [length]
     real(wp), allocatable :: approach(:)    !! of each rigid-body mode [length] [modes]
-    real(wp), allocatable :: stress(:, :)   !! at the end of a load case only [stress] [4, elements]
+    ! At the end of a load case only:
+    real(wp), allocatable :: stress(:, :)   !! [stress] [4, elements]
+    real(wp), allocatable :: friction(:)    !! friction forces [force] [tangential rows]
     type(answer_type), allocatable :: state !! for a drawing, if requested
   end type increment_record
 
@@ -37,6 +40,8 @@ module epcont_result_increment
     real(wp) :: pressure = -1.0_wp, half_width = -1.0_wp   !! [stress], [length]
     real(wp), allocatable :: approach(:)                   !! [length] [modes]
     real(wp) :: stress = -1.0_wp         !! largest error of a stress component of an element [stress]
+    real(wp) :: friction = -1.0_wp       !! largest error of a friction force [force]
+    real(wp) :: sticks = -1.0_wp         !! of the half-width that sticks [length]
   end type increment_errors
 
 contains
@@ -54,6 +59,7 @@ contains
     if (size(answer%contact%force) > 0) record%pressure = answer%largest_pressure()
     record%force = sum(answer%contact%force)
     record%approach = answer%contact%approach
+    if (allocated(answer%stick_zones)) record%sticks = maxval([answer%stick_zones%half_width, -1.0_wp])
     if (size(answer%zones) == 0) return
     z = maxloc(answer%zones%max_pressure, dim=1)
     record%half_width = answer%zones(z)%half_width
@@ -90,5 +96,9 @@ contains
       errors%half_width = factor*abs(found%half_width - other%half_width)
     errors%approach = factor*abs(found%approach - other%approach)
     errors%stress = factor*maxval(abs(found%stress - other%stress))
+    if (min(found%sticks, other%sticks) > 0.0_wp) errors%sticks = factor*abs(found%sticks - other%sticks)
+    if (.not. allocated(found%friction)) return
+    if (size(found%friction) == size(other%friction)) &
+      errors%friction = factor*maxval(abs(found%friction - other%friction))
   end function errors_of_increments
 end module epcont_result_increment
