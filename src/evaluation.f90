@@ -4,6 +4,7 @@ module epcont_evaluation
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: lost_digits
   use epcont_certificate_certificate, only: certificate_type, certify
+  use epcont_certificate_increment_work, only: work_state
   use epcont_certificate_scene, only: look_through
   use epcont_certificate_yielding, only: replayed_history
   use epcont_contact_problem, only: contact_solved
@@ -60,6 +61,7 @@ module epcont_evaluation
     type(replayed_history), allocatable :: replayed(:)
     !> Tangential displacements before the increment, for the certificate [length] [tangential rows]
     real(wp), allocatable :: slid(:)
+    type(work_state), allocatable :: worked   !! the same: forces and energy; not allocated: unknown
     type(stress_path), allocatable :: stress_path        !! total theory; not allocated: unknown
   contains
     procedure :: evaluate
@@ -79,7 +81,8 @@ contains
 
     call self%find_results(watch)
     associate (model => self%model, answer => self%answer)
-      call certify(model, answer, self%iteration%off_curve, self%certificate, self%replayed, self%slid)
+      call certify(model, answer, self%iteration%off_curve, self%certificate, self%replayed, self%slid, &
+                   self%worked)
       if (answer%converged .and. self%certificate%valid) &
         self%certificate%scene = look_through(model, answer%displacement, answer%contact%force)
     end associate

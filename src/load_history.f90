@@ -5,6 +5,7 @@ module epcont_load_history
   use epcont_base_archive, only: archive
   use epcont_base_kinds, only: wp
   use epcont_certificate_certificate, only: certificate_type
+  use epcont_certificate_increment_work, only: work_state, work_without_end
   use epcont_certificate_yielding, only: replayed_history
   use epcont_contact_problem, only: contact_solved
   use epcont_evaluation, only: evaluated_model
@@ -29,6 +30,7 @@ module epcont_load_history
     ! Of the certificate:
     type(replayed_history), allocatable :: replayed(:)   !! plastic history [points]
     real(wp), allocatable :: slid(:)     !! tangential displacements [length] [tangential rows]
+    type(work_state), allocatable :: worked   !! forces and energy
   end type case_end
 
   type, extends(evaluated_model) :: loaded_model
@@ -138,6 +140,7 @@ contains
         call path%commit(self%planned_model, kept%linear, answer)
         if (is_result .and. allocated(self%certificate%history)) self%replayed = self%certificate%history
         if (is_result) self%slid = self%certificate%slid
+        if (is_result .and. allocated(self%certificate%worked)) self%worked = self%certificate%worked
       end do
       complete = path%is_complete()
       call path%finish(kept%linear, kept%virgin, answer)
@@ -276,12 +279,15 @@ contains
 
     if (allocated(self%replayed)) deallocate (self%replayed)
     if (allocated(self%slid)) deallocate (self%slid)
+    if (allocated(self%worked)) deallocate (self%worked)
     if (.not. self%is_flow()) return
     if (allocated(self%start)) then
       if (allocated(self%start%replayed)) self%replayed = self%start%replayed
       self%slid = self%start%slid
+      if (allocated(self%start%worked)) self%worked = self%start%worked
     else if (self%iteration%yields) then
       allocate (self%replayed(self%model%mesh%points))
+      self%worked = work_without_end(self%model)
     end if
   end subroutine begin_replay
 
@@ -299,6 +305,7 @@ contains
     self%start%path_end = self%end_of()
     if (allocated(self%certificate%history)) self%start%replayed = self%certificate%history
     self%start%slid = self%certificate%slid
+    if (allocated(self%certificate%worked)) self%start%worked = self%certificate%worked
     if (allocated(self%other)) call move_alloc(self%other_end, self%other_start)
   end subroutine end_case
 
@@ -314,7 +321,11 @@ contains
     call self%start%pass(file)
     if (allocated(self%start%replayed)) replayed = transfer(self%start%replayed, [0.0_wp])
     call file%pass(replayed)
-    if (allocated(replayed)) self%start%replayed = transfer(replayed, [replayed_history()])
+    if (allocated(replayed)) then
+      self%start%replayed = transfer(replayed, [replayed_history()])
+      if (file%reading) allocate (self%start%worked)
+      call self%start%worked%pass(file)
+    end if
     call file%pass(self%start%slid)
     other = [allocated(self%other_start)]
     call file%pass(other)

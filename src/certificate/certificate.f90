@@ -8,6 +8,7 @@ module epcont_certificate_certificate
   use epcont_base_tolerances, only: valid_to
   use epcont_certificate_element_checks, only: checked_elements, check_elements, ratio
   use epcont_certificate_free_expansion, only: expansion_type, held_stress, part_of_held
+  use epcont_certificate_increment_work, only: point_energies, work_state
   use epcont_certificate_mass_force, only: given_load
   use epcont_certificate_scene, only: overlaps_type
   use epcont_certificate_tied, only: check_springs, check_ties, gather_ties, longest_arms
@@ -64,6 +65,7 @@ module epcont_certificate_certificate
     !> Flow theory: plastic history after the increment, from displacements alone [points]
     type(replayed_history), allocatable :: history(:)
     real(wp), allocatable :: slid(:)      !! tangential displacements [length] [tangential rows]
+    type(work_state), allocatable :: worked   !! flow theory: forces and energy after the increment
   contains
     procedure :: figures
     procedure :: has_spoilt
@@ -90,6 +92,7 @@ module epcont_certificate_certificate
     real(wp) :: stored = 0.0_wp, work = 0.0_wp   !! work of the stresses, and of the forces [energy]
     real(wp) :: terms = 0.0_wp                   !! sum of absolute terms of these two sums
     type(expansion_type) :: expansion
+    type(point_energies) :: energy               !! flow theory
     real(wp) :: strained = 0.0_wp                !! sum of volume times largest strain over all points
                                                  !! [length**3]
   end type balance_type
@@ -98,7 +101,7 @@ contains
 
   !> Check an answer. Its inputs are the displacements with and without rigid-body displacements, the
   !! reactions, the stresses at the integration points and the contact forces.
-  subroutine certify(model, answer, curve_tolerance, found, before, slid)
+  subroutine certify(model, answer, curve_tolerance, found, before, slid, worked)
     type(model_type), intent(in) :: model   !! model
     type(answer_type), intent(in) :: answer   !! answer to check
     real(wp), intent(in) :: curve_tolerance   !! largest stress error that the iteration allows
@@ -107,24 +110,33 @@ contains
     type(replayed_history), intent(in), optional :: before(:)
     !> Tangential displacements before the increment; absent: zero [length] [tangential rows]
     real(wp), intent(in), optional :: slid(:)
+    !> Flow theory: forces and energy before the increment; absent: unknown
+    type(work_state), intent(in), optional :: worked
     real(wp) :: load(directions, model%mesh%nodes)
     type(balance_type) :: total
     real(wp) :: forces, largest_force, largest_stress, length
     real(wp), dimension(size(model%constraints%platen)) :: torque, turn   ! of the rotating platens
     real(wp) :: given_force   ! largest load or spring force [force]
     real(wp) :: face          ! face of the largest element [length**2]
+    real(wp) :: springs       ! work of spring forces
     logical :: unstressed     ! stresses and forces are rounding errors of zero
 
     load = given_load(model)
     allocate (total%residual(directions, model%mesh%nodes), total%element_force(model%mesh%nodes), &
               source=0.0_wp)
     call check_springs(model, answer%displacement, total%residual, total%element_force, total%stored)
+    springs = total%stored
     given_force = max(maxval(abs(load)), maxval(total%element_force))
     face = largest_face(model)
     largest_stress = max(largest_of(size(answer%point_stress), answer%point_stress), &
                          part_of_held*held_stress(model), given_force/face)
     if (present(before)) found%history = before
     call add_elements(model, answer, largest_stress, total, found, before)
+    if (present(before)) then
+      allocate (found%worked)
+      found%worked%stored = 0.5_wp*springs + total%energy%stored
+      found%worked%force = total%residual
+    end if
     total%residual = total%residual - load - answer%reaction
     unstressed = given_force == 0.0_wp .and. found%stress_roundings <= most_roundings
     if (unstressed) found%off_curve = 0.0_wp
@@ -155,6 +167,7 @@ contains
       largest_force = most_roundings*found%rounding_stress*face/valid_to
       total%terms = total%terms + largest_force*maxval(abs(answer%displacement))
     end if
+    if (present(before)) found%worked%force = found%worked%force - total%residual
     call gather_ties(model, total%residual, torque)
     call check_ties(model, answer%displacement, turn, found%ties)
     total%work = total%work + sum(answer%moment*turn)
@@ -167,6 +180,14 @@ contains
     found%energy = ratio(max(abs(total%work - total%stored), total%expansion%work - total%stored) - &
         found%rounding_stress*total%strained, &
                          total%terms)
+    if (present(before)) then
+      found%worked%displacement = answer%displacement
+      found%worked%moment = answer%moment
+      found%worked%turn = turn
+      found%worked%off_curve = found%off_curve
+      if (present(worked) .and. .not. unstressed) &
+        found%energy = max(found%energy, found%worked%imbalance(worked, total%energy))
+    end if
     found%curve_tolerance = max(valid_to, curve_tolerance)
     found%off_curve_limit = found%curve_tolerance + min(several*found%lost_stress, found%curve_tolerance)
     found%valid = all(within_limits(found))
@@ -241,6 +262,7 @@ contains
     end do
     if (allocated(part%history)) &
       found%history(lbound(part%work, 1):ubound(part%work, 1)) = part%history
+    call total%energy%include(part%energy)
     total%strained = total%strained + part%strained
     call total%expansion%include(part%expansion)
     found%off_curve = max(found%off_curve, part%off_curve)

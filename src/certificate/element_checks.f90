@@ -3,6 +3,7 @@
 module epcont_certificate_element_checks
   use epcont_base_kinds, only: wp
   use epcont_certificate_free_expansion, only: expansion_type, free_strains
+  use epcont_certificate_increment_work, only: point_energies
   use epcont_certificate_unit_strains, only: largest_of, strain_by, unit_strains
   use epcont_certificate_yielding, only: replayed_history, return_to_curve, stress_on_curve, &
       von_mises_stress
@@ -23,6 +24,7 @@ module epcont_certificate_element_checks
     real(wp) :: rounding_stress = 0.0_wp, stress_roundings = 0.0_wp
     type(expansion_type) :: expansion
     type(replayed_history), allocatable :: history(:)   !! flow theory: after the increment [points]
+    type(point_energies) :: energy                      !! flow theory
   end type checked_elements
 
   !> Strains and volumes at an element's integration points.
@@ -99,6 +101,7 @@ contains
                                                                   ! with `motion`
     real(wp) :: on_curve(components)   ! stress of the material
     real(wp) :: reached                ! largest stress; at least the yield stress if the point has yielded
+    type(replayed_history) :: before   ! flow theory: the increment
     integer :: k, n, node, p
     logical :: moves, ring
 
@@ -122,12 +125,20 @@ contains
         strain(:3) = strain(:3) - points%free(p)
         reached = largest_stress
         associate (section => model%mesh%section(e))
-          if (allocated(part%history) .and. allocated(model%sections%curve(section)%strain) .and. &
-              .not. model%sections%curve(section)%elastic) then
+          if (allocated(part%history)) then
             associate (history => part%history(point - lbound(part%work, 1) + 1))
-              call return_to_curve(model, section, strain, history, on_curve)
-              if (history%hardened > 0.0_wp) &
-                reached = max(reached, model%sections%curve(section)%stress(2))
+              before = history
+              if (allocated(model%sections%curve(section)%strain) .and. &
+                  .not. model%sections%curve(section)%elastic) then
+                call return_to_curve(model, section, strain, history, on_curve)
+                if (history%hardened > 0.0_wp) &
+                  reached = max(reached, model%sections%curve(section)%stress(2))
+              else
+                on_curve = stress_on_curve(model, section, strain)
+              end if
+              history%stress = on_curve
+              history%free = points%free(p)
+              call part%energy%add_point(model, section, points%volume(p), strain, before, history)
             end associate
           else
             on_curve = stress_on_curve(model, section, strain)

@@ -16,6 +16,10 @@ module epcont_certificate_yielding
   type :: replayed_history
     real(wp) :: plastic(components) = 0.0_wp   !! plastic strain xx, yy, zz, xy (engineering)
     real(wp) :: hardened = 0.0_wp              !! equivalent plastic strain
+    real(wp) :: stress(components) = 0.0_wp    !! [stress]
+    real(wp) :: free = 0.0_wp                  !! thermal strain along each axis
+  contains
+    procedure :: energy_of_back_stress
   end type replayed_history
 
   !> Moduli of a material.
@@ -156,6 +160,18 @@ contains
     history%plastic = history%plastic + moduli%lost(part)*trial/(2.0_wp*moduli%shear)* &
                       [1.0_wp, 1.0_wp, 1.0_wp, 2.0_wp]
   end subroutine return_to_curve
+
+  !> Energy that the back stress stores, for each unit of volume [stress].
+  pure real(wp) function energy_of_back_stress(self, model, section) result(energy)
+    class(replayed_history), intent(in) :: self
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: section   !! a yielding section
+
+    associate (curve => model%sections%curve(section))
+      energy = curve%kinematic*hardening_of(curve, model%sections%young(section))/3.0_wp* &
+               dot_product(self%plastic*[1.0_wp, 1.0_wp, 1.0_wp, 0.5_wp], self%plastic)
+    end associate
+  end function energy_of_back_stress
 
   !> Equivalent plastic strain of an increment.
   pure real(wp) function growth(self, part, trial)
