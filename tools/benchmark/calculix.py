@@ -27,8 +27,9 @@ def listed(nodes):
     return "".join(", ".join(str(node + 1) for node in nodes[i:i + 12]) + ",\n" for i in range(0, len(nodes), 12))
 
 
-def write(path, mesh, touch, plastic, contact="gap", solver="SPOOLES", increment=1.0):
-    """The input; `touch`: the contact nodes from the axis outwards."""
+def write(path, mesh, touch, plastic, contact="gap", solver="SPOOLES", increment=1.0, loads=()):
+    """The input; `touch`: the contact nodes from the axis outwards. `loads`: parts of the load at the end of each step of a history, whose
+    increments CalculiX may only reduce."""
     n, e, top = len(mesh.point), len(mesh.element), mesh.line["top"]
     point = [mesh.point[node] for node in touch]
     text = ["*NODE\n"]
@@ -58,20 +59,22 @@ def write(path, mesh, touch, plastic, contact="gap", solver="SPOOLES", increment
                  f"*SURFACE, NAME=SLAVE, TYPE=NODE\nTOUCH\n*SURFACE, NAME=MASTER\n{e + 1},S3\n",
                  "*SURFACE INTERACTION, NAME=HARD\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n",
                  f"{STIFFNESS:.6g},{1e-9 * LOAD:.3g}\n*CONTACT PAIR, INTERACTION=HARD, TYPE=NODE TO SURFACE\nSLAVE,MASTER\n"]
-    text += [f"*BOUNDARY\nAXIS,1,1\nGROUND,1,3\n*STEP, INC=1000\n*STATIC, SOLVER={solver}\n{increment},1.\n",
-             f"*CLOAD\n{top[0] + 1},2,{-LOAD}\n*NODE PRINT, NSET=PLATEN, FREQUENCY=1000\nU\n",
-             "*NODE PRINT, NSET=GROUND, FREQUENCY=1000\nRF\n" if contact == "gap" else "*CONTACT PRINT, FREQUENCY=1000\nCSTR\n",
-             "*END STEP\n"]
+    text += ["*BOUNDARY\nAXIS,1,1\nGROUND,1,3\n"]
+    for part in loads or (1.0,):
+        text += [f"*STEP, INC=1000\n*STATIC, SOLVER={solver}\n{increment},1.{f',1e-5,{increment}' if loads else ''}\n",
+                 f"*CLOAD\n{top[0] + 1},2,{-part * LOAD}\n*NODE PRINT, NSET=PLATEN, FREQUENCY=1000\nU\n",
+                 "*NODE PRINT, NSET=GROUND, FREQUENCY=1000\nRF\n" if contact == "gap" else "*CONTACT PRINT, FREQUENCY=1000\nCSTR\n",
+                 "*END STEP\n"]
     pathlib.Path(path).write_text("".join(text), encoding="ascii")
 
 
-def answer(path, touch, contact):
-    """Forces at the contact nodes and the platen's displacement at full load; None if it was not reached."""
+def answer(path, touch, contact, end=1.0):
+    """Forces at the contact nodes and the platen's displacement at the end of a step; None if it was not reached."""
     block, platen, force = "", None, {}
     for line in path.read_text(encoding="ascii").splitlines() if path.exists() else []:
         words = line.split()
         if "time" in words:
-            block = words[0] if float(words[-1]) == 1.0 else ""
+            block = words[0] if float(words[-1]) == end else ""
         elif len(words) == 4 and block == "displacements":
             platen = float(words[2])
         elif len(words) == 4 and block:
