@@ -9,7 +9,7 @@ module epcont_contact_friction
   use epcont_base_tolerances, only: cancelled, negligible, no_effect
   use epcont_contact_equilibrium, only: find_rigid_start, rigid_start
   use epcont_contact_friction_attempts, only: exchange, find_states, random_limit, &
-    random_states, set_limit, sticking
+    random_states, sticking
   use epcont_contact_friction_state, only: friction_bounds, friction_equations, friction_problem, &
     friction_state, new_equations, new_friction_problem, pair_states
   use epcont_contact_problem, only: contact_no_equilibrium, contact_overlap, contact_problem, &
@@ -186,7 +186,7 @@ contains
 
     coulomb%given = 0*problem%mu
     sets = 0
-    call exchange(problem, coulomb, first, set_limit, other, sets, found)
+    call exchange(problem, coulomb, first, other, sets, found)
     if (.not. found) return
     if (all(abs(other%force - state%force) <= no_effect*maxval(abs(state%force)))) return
     several = several .or. (other%states%closed .neqv. state%states%closed) .or. &

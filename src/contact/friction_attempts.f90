@@ -12,7 +12,7 @@ module epcont_contact_friction_attempts
   public :: find_states, exchange, sticking, random_states
 
   !> Maximum number of sets of states in an exchange.
-  integer, parameter, public :: set_limit = 60
+  integer, parameter :: set_limit = 60
   !> Maximum number of problems with given bounds.
   integer, parameter :: bounds_limit = 40
   !> Number of sets without fewer wrong variables after which an exchange is given up.
@@ -46,7 +46,7 @@ contains
     integer :: attempt
 
     coulomb%given = spread(0.0_wp, 1, problem%pairs)
-    call exchange(problem, coulomb, first, set_limit, state, sets, found)
+    call exchange(problem, coulomb, first, state, sets, found)
     if (.not. found) call update_bounds(problem, state, sets, found)
     seed = 1
     do attempt = 0, merge(path_limit, 0, problem%pairs <= few_pairs)
@@ -57,38 +57,42 @@ contains
     do attempt = 1, merge(random_limit, 0, problem%pairs <= few_pairs)
       if (found) return
       states = random_states(problem%pairs, seed)
-      call exchange(problem, coulomb, states, set_limit, trial, sets, found)
+      call exchange(problem, coulomb, states, trial, sets, found)
       if (found) state = trial
     end do
   end subroutine find_states
 
   !> Exchange all wrong variables at once until no variable is wrong, or there is no progress. With given
   !! bounds, the first wrong one is exchanged after a repetition, which cannot cycle (Murty).
-  subroutine exchange(problem, bounds, first, limit, state, sets, found)
+  subroutine exchange(problem, bounds, first, state, sets, found, limit)
     type(friction_problem), intent(in) :: problem
     type(friction_bounds), intent(in) :: bounds
     type(pair_states), intent(in) :: first
-    integer, intent(in) :: limit                  !! maximum number of sets
     type(friction_state), intent(out) :: state    !! of the last set
     integer, intent(inout) :: sets
     logical, intent(out) :: found                 !! no variable is wrong; Coulomb friction: balanced
+    integer, intent(in), optional :: limit        !! maximum number of sets; absent: `set_limit`
     type(pair_states) :: states
     logical, allocatable :: wrong(:, :)
-    integer :: seen(problem%pairs, limit)   ! code of the states of each set
+    integer, allocatable :: seen(:, :)   ! code of the states of each set
     integer :: fewest     ! least number of wrong variables
+    integer :: last       ! maximum number of sets
     integer :: patience   ! sets left to find fewer
-    integer :: step
+    integer :: k, step
     logical :: repeats
 
+    last = set_limit
+    if (present(limit)) last = limit
+    allocate (seen(problem%pairs, last))
     states = first
     repeats = .false.
     fewest = huge(fewest)
     patience = patience_limit
-    do step = 1, limit
+    do step = 1, last
       sets = sets + 1
       call solve_states(problem, new_equations(problem, bounds, states), bounds, state)
       seen(:, step) = states%slip + merge(10, 0, states%closed)
-      repeats = repeats .or. any(all(seen(:, :step - 1) == spread(seen(:, step), 2, step - 1), dim=1))
+      repeats = repeats .or. any([(all(seen(:, k) == seen(:, step)), k=1, step - 1)])
       wrong = wrong_signs(problem, state, merge(solved_to, guess_tolerance, repeats))
       found = .not. any(wrong)
       patience = merge(patience_limit, patience - 1, count(wrong) < fewest)
@@ -134,8 +138,8 @@ contains
       if (step > plain_bounds) bound = 0.5_wp*(bounds%given + bound)
       bounds%given = bound
       states = given%states
-      call exchange(problem, bounds, states, set_limit + problem%pairs, given, sets, found)
-      call exchange(problem, coulomb, given%states, 1, state, sets, found)
+      call exchange(problem, bounds, states, given, sets, found)
+      call exchange(problem, coulomb, given%states, state, sets, found, limit=1)
       if (found) return
     end do
   end subroutine update_bounds
@@ -172,7 +176,7 @@ contains
       if (z > 0.0_wp) call flip(states, event(1), event(2))
     end do
     coulomb%given = 0*h
-    call exchange(problem, coulomb, states, set_limit, trial, sets, found)
+    call exchange(problem, coulomb, states, trial, sets, found)
     if (found) state = trial
   end subroutine follow_path
 
@@ -189,7 +193,7 @@ contains
 
     bounds%coulomb = .false.
     bounds%given = spread(unbounded, 1, size(h))
-    call exchange(problem, bounds, sticking(problem), set_limit + problem%pairs, state, sets, found)
+    call exchange(problem, bounds, sticking(problem), state, sets, found)
     z = 0.0_wp
     do k = 1, size(h)
       if (problem%tangent(k) == 0) cycle

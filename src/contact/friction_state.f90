@@ -57,7 +57,6 @@ module epcont_contact_friction_state
     integer, allocatable :: rows(:)         !! rows whose force is unknown and whose gap is zero [s]
     real(wp), allocatable :: factor(:, :)   !! [s + m, s + m]
     integer, allocatable :: pivots(:)       !! [s + m]
-    logical :: regular = .false.            !! no pivot is zero
   end type friction_equations
 
   !> Solution for given states.
@@ -114,7 +113,10 @@ contains
     call assemble(problem, new)
     allocate (new%pivots(size(new%factor, 1)))
     call lu_factor(new%factor, new%pivots, info)
-    new%regular = info == 0
+    if (info == 0) return
+    do k = info, size(new%pivots)   ! singular: the solution will not be balanced
+      if (new%factor(k, k) == 0.0_wp) new%factor(k, k) = softening
+    end do
   end function new_equations
 
   !> Assemble the matrix.
