@@ -14,8 +14,10 @@ module epcont
   use epcont_model_controls, only: controls_type, method_auto, method_inistr, method_modsec, method_newton, &
       method_secant, rule_auto, rule_conry, rule_joined, solver_auto, solver_band, &
       solver_frontal, uniaxial_curve
-  use epcont_model_finding, only: findings
+  use epcont_model_finding, only: findings, of_scene
+  use epcont_model_marks, only: marks_of, part_name
   use epcont_model_yield_curve, only: bilinear_curve
+  use epcont_model_model, only: model_type
   use epcont_plasticity_observer, only: observer
   use epcont_messages_array_words, only: in_array_words, name_item
   use epcont_messages_outcome, only: judge, outcome_type
@@ -42,7 +44,9 @@ contains
   !> Check a model and solve it.
   subroutine solve_scene(scene, solution, outcome, memory)
     type(scene_type), intent(in) :: scene           !! the model
-    type(solution_type), intent(out) :: solution    !! answer, certificate, accuracy, as far as found
+    !> Answer, certificate, accuracy, as far as found; a rejected model does not change it. With
+    !! `controls%sequence`, the loads start from the end of those of this solution.
+    type(solution_type), intent(inout) :: solution
     type(outcome_type), intent(out) :: outcome      !! exit status, and all messages
     real(wp), intent(in), optional :: memory        !! limit [GB]; default: none
     type(error_type), allocatable :: error
@@ -51,6 +55,8 @@ contains
     real(wp) :: limit
     integer :: before(2), k
     type(ieee_status_type) :: traps
+    type(model_type) :: model
+    type(solution_type) :: none
 
     limit = huge(limit)
     if (present(memory)) limit = memory
@@ -58,8 +64,13 @@ contains
     call ieee_set_halting_mode(ieee_all, .false.)
     before = threads_now()
     call use_threads(one_thread)
-    call complete_arrays(scene, solution%model, found)
-    if (found%errors == 0) call solution%find_motions(found)
+    call complete_arrays(scene, model, found)
+    if (scene%controls%sequence .and. found%errors == 0) call check_sequence()
+    if (found%errors == 0) then
+      if (.not. scene%controls%sequence) solution = none
+      solution%model = model
+      call solution%find_motions(found)
+    end if
     outcome%status = status_deck
     outcome%word = 'rejected'
     if (found%errors == 0) then
@@ -83,6 +94,26 @@ contains
 
   contains
 
+    !> Check that the loads can start from the end of those of the solution.
+    subroutine check_sequence()
+      if (.not. model%controls%flow_theory .and. &
+          any([(allocated(model%sections%curve(k)%strain), k=1, size(model%sections%curve))])) &
+        call refuse('total theory has no memory of earlier loads', 'set controls%flow_theory')
+      if (.not. solution%model%controls%sequence) return   ! a new solution
+      if (.not. solution%can_start()) &
+        call refuse('the loads before did not reach their end', 'use another solution')
+      k = findloc(marks_of(solution%model) == marks_of(model), .false., dim=1)
+      if (k > 0) call refuse('the model is not that of the loads before: '//trim(part_name(k))//' differ', &
+                             'change loads only, or use another solution')
+    end subroutine check_sequence
+
+    !> Reject a sequence.
+    subroutine refuse(what, remedy)
+      character(len=*), intent(in) :: what, remedy
+
+      call found%add_error(of_scene, 0, 0, 'controls%sequence: '//what, remedy)
+    end subroutine refuse
+
     !> Report messages about the model before those about its answer, with the names of the arrays; for a
     !! rejected model, only its first error.
     subroutine tell()
@@ -92,7 +123,7 @@ contains
       if (found%count == 0) allocate (found%list(0))
       found%list = found%list(:found%count)
       do k = 1, found%count
-        call name_item(solution%model, found%list(k))
+        call name_item(model, found%list(k))
       end do
       k = findloc(found%list%severity, severity_error, dim=1)
       if (k > 0) outcome%sentence = found%list(k)%what//' ('//found%list(k)%remedy//')'

@@ -24,7 +24,7 @@ module epcont_messages_array_words
     'PSHELL', 'section', 'PSOLID', 'section', 'the MAT1', 'young', &
     'field 5 (N1)', 'acceleration(1)', 'field 3 (G)', 'centre(1)', 'field 12 (RACC)', 'spin_up', &
     'give a node on it, or leave it blank', 'give a centre on it', 'field 6 (RHO)', 'density', &
-    'GRAV and RFORCE act', 'body_load acts', &
+    'GRAV and RFORCE act', 'body_load acts', 'GRAV or RFORCE', 'body_load', &
     'the deck has no elements', 'there are no elements', &
     'elements, such as CTRIA3', 'elements: call add_elements', &
     ' (MUP PAPER)', '', &

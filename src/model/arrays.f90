@@ -254,6 +254,8 @@ contains
       do i = 1, size(curve)
         if (allocated(curve(i)%strain)) scene%curve(i)%strain = curve(i)%strain(:)
         if (allocated(curve(i)%stress)) scene%curve(i)%stress = curve(i)%stress(:)
+        scene%curve(i)%elastic = curve(i)%elastic
+        scene%curve(i)%kinematic = curve(i)%kinematic
         scene%curve(i)%endless = curve(i)%endless
       end do
       do i = 1, size(line)

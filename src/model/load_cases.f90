@@ -101,6 +101,7 @@ contains
     integer :: c, i
 
     allocate (cases%case(1))
+    cases%sequence = data%controls%sequence
     cases%case(1)%set = [1]
     cases%case(1)%factor = [1.0_wp]
     cases%case(1)%supports = 1
