@@ -84,7 +84,7 @@ contains
                           spread(0.0_wp, 1, size(edge, 1)), rigid)
   end function forces_in_cones
 
-  !> First guess of the states: those of the known forces or of the guess, else all pairs stick.
+  !> First guess of the states: those of the known forces, else of the guess, else all pairs stick.
   pure type(pair_states) function first_states(problem, own, start) result(states)
     type(contact_problem), intent(in) :: problem
     type(friction_problem), intent(in) :: own
@@ -94,8 +94,8 @@ contains
 
     states = sticking(own)
     if (present(start)) states%closed = start(:own%pairs)
-    if (allocated(problem%known_force)) force = problem%known_force
     if (allocated(problem%guess_force)) force = problem%guess_force
+    if (allocated(problem%known_force)) force = problem%known_force
     if (.not. allocated(force)) return
     if (.not. present(start)) states%closed = force(:own%pairs) > 0.0_wp
     do k = 1, own%pairs

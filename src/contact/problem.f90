@@ -48,8 +48,8 @@ module epcont_contact_problem
     !! no friction [tangential rows]
     real(wp), allocatable :: friction(:)
     integer, allocatable :: pair_of(:)
-    !> Forces with the states that are tried first, for example those of the last load step; not allocated:
-    !! the known forces, or all pairs stick [force] [n]
+    !> With friction: forces with the states that are tried first if no forces are known, for example those of
+    !! the last load step; not allocated: all pairs stick [force] [n]
     real(wp), allocatable :: guess_force(:)
   contains
     procedure :: between
