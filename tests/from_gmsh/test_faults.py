@@ -129,7 +129,7 @@ SCENE = [
     ('slave = "under"', 'slave = "face"', ["[[contact]] master: 'face' is also the slave", "give the line on the other side of the contact"]),
     ('slave = "under", ', "", ["[[contact]] slave: is missing", 'give the name of the line with the coarser mesh, such as slave = "pin"']),
     ("[load]", "[PARAM]\nSERCH = 0.5\n[load]", ["[PARAM] SERCH: is not a key of this table", "use one of: RULE, METHOD, MUP, SOLVER, TOL, SEARCH, CORNER, ACCURACY, "
-                                              "MAXIT, NLOAD, THEORY, HRFRAC, SAVE, FLEXIB, ORIGINAL, WTMASS; did you mean 'SEARCH'?"]),
+                                              "MAXIT, NLOAD, THEORY, HRFRAC, SAVE, FLEXIB, ORIGINAL, WTMASS, FRICTION; did you mean 'SEARCH'?"]),
     ("[load]", "[PARAM]\nMAXIT = 0.5\n[load]", ["[PARAM] MAXIT: is 0.5", "give a whole number above zero; epcont --cards PARAM describes it"]),
     ("[load]", '[PARAM]\nPLANE = "STRESS"\n[load]', ["[PARAM] PLANE: is a key of the model", "write kind = ... before the first table"]),
     ("[body.below]", "[body.belov]", ["[body.belov]: two.geo has no Physical Surface of that name", "its surfaces: below, above; did you mean 'below'?",
