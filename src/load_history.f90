@@ -29,7 +29,6 @@ module epcont_load_history
   type, extends(path_end) :: case_end
     ! Of the certificate:
     type(replayed_history), allocatable :: replayed(:)   !! plastic history [points]
-    real(wp), allocatable :: slid(:)     !! tangential displacements [length] [tangential rows]
     type(work_state), allocatable :: worked   !! forces and energy
   end type case_end
 
@@ -283,7 +282,7 @@ contains
     if (.not. self%is_flow()) return
     if (allocated(self%start)) then
       if (allocated(self%start%replayed)) self%replayed = self%start%replayed
-      self%slid = self%start%slid
+      self%slid = self%model%contact%slides(self%start%state%displacement)   ! its pairs may be others
       if (allocated(self%start%worked)) self%worked = self%start%worked
     else if (self%iteration%yields) then
       allocate (self%replayed(self%model%mesh%points))
@@ -304,7 +303,6 @@ contains
     allocate (self%start)
     self%start%path_end = self%end_of()
     if (allocated(self%certificate%history)) self%start%replayed = self%certificate%history
-    self%start%slid = self%certificate%slid
     if (allocated(self%certificate%worked)) self%start%worked = self%certificate%worked
     if (allocated(self%other)) call move_alloc(self%other_end, self%other_start)
   end subroutine end_case
@@ -326,7 +324,6 @@ contains
       if (file%reading) allocate (self%start%worked)
       call self%start%worked%pass(file)
     end if
-    call file%pass(self%start%slid)
     other = [allocated(self%other_start)]
     call file%pass(other)
     if (file%reading .and. other(1)) allocate (self%other_start)

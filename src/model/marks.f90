@@ -9,9 +9,8 @@ module epcont_model_marks
   public :: marks_of
 
   !> Their names on cards.
-  character(len=*), parameter, public :: part_name(6) = [character(len=38) :: 'GRIDs', 'elements', &
-    'properties or materials', 'supports, SUPORT, RBE2, MPC or springs', 'GRAV or RFORCE', &
-    'pairs with friction']
+  character(len=*), parameter, public :: part_name(5) = [character(len=38) :: 'GRIDs', 'elements', &
+    'properties or materials', 'supports, SUPORT, RBE2, MPC or springs', 'GRAV or RFORCE']
 
 contains
 
@@ -41,9 +40,5 @@ contains
     mass_loads = model%loads%body_load
     mass_loads%factor = 0.0_wp
     mark(5) = checksum(transfer(mass_loads, [0.0_wp]))
-    mark(6) = 0.0_wp
-    associate (c => model%contact)
-      if (c%has_friction()) mark(6) = checksum([real(wp) :: c%sliding, c%friction, c%normal])
-    end associate
   end function marks_of
 end module epcont_model_marks
