@@ -128,6 +128,7 @@ contains
     real(wp), intent(out) :: stress(components)
     type(moduli_type) :: moduli
     real(wp) :: beyond(components), grown, high, low, part, trial(components)
+    real(wp) :: mises   ! von Mises stress of `trial`; only in plane stress it depends on `part`
     integer :: k
 
     associate (curve => model%sections%curve(section), young => model%sections%young(section), &
@@ -140,9 +141,12 @@ contains
       high = 1.0_wp
       part = high
       do k = 1, halvings
-        call find_trial(moduli, sheet, strain, history%plastic, part, beyond, trial)
-        grown = history%hardened + moduli%growth(part, trial)
-        if (part*von_mises_stress(trial) > &
+        if (sheet .or. k == 1) then
+          call find_trial(moduli, sheet, strain, history%plastic, part, beyond, trial)
+          mises = von_mises_stress(trial)
+        end if
+        grown = history%hardened + moduli%growth(part, mises)
+        if (part*mises > &
             stress_when_hardened(curve, young, grown) - moduli%moves*grown) then
           high = part
         else
@@ -151,12 +155,15 @@ contains
         if (low == high) exit   ! all elastic
         part = 0.5_wp*(low + high)
       end do
-      call find_trial(moduli, sheet, strain, history%plastic, part, beyond, trial)
+      if (sheet) then
+        call find_trial(moduli, sheet, strain, history%plastic, part, beyond, trial)
+        mises = von_mises_stress(trial)
+      end if
       stress = 2.0_wp*moduli%shear*deviator_of(beyond) - moduli%lost(part)*trial
       stress(:3) = stress(:3) + moduli%bulk*sum(beyond(:3))
       if (sheet) stress(3) = 0.0_wp
     end associate
-    history%hardened = history%hardened + moduli%growth(part, trial)
+    history%hardened = history%hardened + moduli%growth(part, mises)
     history%plastic = history%plastic + moduli%lost(part)*trial/(2.0_wp*moduli%shear)* &
                       [1.0_wp, 1.0_wp, 1.0_wp, 2.0_wp]
   end subroutine return_to_curve
@@ -174,11 +181,11 @@ contains
   end function energy_of_back_stress
 
   !> Equivalent plastic strain of an increment.
-  pure real(wp) function growth(self, part, trial)
+  pure real(wp) function growth(self, part, mises)
     class(moduli_type), intent(in) :: self
-    real(wp), intent(in) :: part, trial(components)
+    real(wp), intent(in) :: part, mises   !! von Mises stress of the trial stress
 
-    growth = (1.0_wp - part)*von_mises_stress(trial)/(3.0_wp*self%shear + self%moves)
+    growth = (1.0_wp - part)*mises/(3.0_wp*self%shear + self%moves)
   end function growth
 
   !> Stress that the plastic strain of an increment takes, over the trial stress.

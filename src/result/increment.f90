@@ -11,12 +11,12 @@ module epcont_result_increment
   public :: errors_of_increments, increment_errors, increment_of, increment_record, other_number
   public :: state_to_draw
 
-  !> Factor of the estimated error: differences of two runs are not exactly proportional to the size of the
-  !! increments.
-  real(wp), parameter :: safety = 2.0_wp
+  !> Factor of the estimated error: differences of two runs are not proportional to the size of the
+  !! increments. This factor covers 90 % of the errors of random models (tests/accuracy/score_increments.py).
+  real(wp), parameter :: safety = 4.0_wp
 
-  !> Fewer increments than `few` are compared with so many more.
-  integer, parameter :: few = 8, more = 5
+  !> Fewer increments than `few` are compared with twice as many, and `more` additional ones.
+  integer, parameter :: few = 10, more = 4
 
   !> Figures at the end of an increment.
   type :: increment_record
@@ -80,7 +80,7 @@ contains
   elemental integer function other_number(increments) result(other)
     integer, intent(in) :: increments
 
-    other = merge(increments + more, (increments + 1)/2, increments < few)
+    other = merge(2*increments + more, (increments + 1)/2, increments < few)
   end function other_number
 
   !> Estimate the errors of the figures at the end of a load case.

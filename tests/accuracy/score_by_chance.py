@@ -53,8 +53,8 @@ def figures_of(summary, zones, listing):
     return {key: (float(value), float(estimate) if estimate else None, words) for key, (value, estimate, words) in figures.items() if value}
 
 
-def find_truth(program, scene):
-    """Width and yield stress of a model, from coarse meshes; its true values, each with its uncertainty."""
+def scale_of(program, scene):
+    """Find width and yield stress of a model, from coarse meshes."""
     element = "ctrax6" if scene.rings else "ctria6"
     pilot = chance.known(1)
     pilot.pairs = 10.0
@@ -66,6 +66,12 @@ def find_truth(program, scene):
             scene.width, scene.lasts = float(zone["half_width"] or zone["half_width_last_pair"]), 1.6
         if scene.yielding and not scene.stress:
             scene.stress = float(f"{float(summary['max_equivalent_stress']) / scene.yielding ** (1 / 3 if scene.rings else 1 / 2):.6g}")
+
+
+def find_truth(program, scene):
+    """Width and yield stress of a model; its true values, each with its uncertainty."""
+    scale_of(program, scene)
+    element = "ctrax6" if scene.rings else "ctria6"
     fine, less = (figures_of(*solve(program, chance.make(scene, element, chance.known(level)))) for level in (0, 1))
     truth = {key: (fine[key][0], abs(fine[key][0] - less[key][0]) / 2) for key in fine if key in less}
     truth = {key: (value, doubt) for key, (value, doubt) in truth.items() if doubt <= VAGUE * abs(value)}

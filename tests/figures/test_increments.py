@@ -42,7 +42,7 @@ class Increments(unittest.TestCase):
 
     def test_accuracy_chooses_their_number(self):
         """PARAM ACCURACY doubles the increments until the stated error is within it, unless NINC says their number."""
-        for wanted, many in (0.02, 8), (0.005, 32):
+        for wanted, many in (0.02, 16), (0.005, 64):
             tables, _, status = run("LOAD = 1\n", f"PARAM,THEORY,FLOW\nPARAM,ACCURACY,{wanted}\n")
             self.assertEqual(0, status)
             summary = {row["key"]: row["value"] for row in tables["summary"]}
