@@ -1,14 +1,15 @@
 """Draw runs.
 
-    tools/plot DECK [-o NAME.png] [--only contact|shape|yielded|history] [--known FORMULA]... [--case N]
+    tools/plot DECK [-o NAME.png] [--only contact|friction|shape|yielded|history] [--known FORMULA]... [--case N]
 
 One figure of any deck, with all its panels: the deformed shape, enlarged to be visible, with equivalent stress, and
-details of small contacts; the yielded zone; the pressure along each contact line; the iteration. The default NAME is DECK's, in the current folder.
+details of small contacts; the yielded zone; the pressure along each contact line, with friction also the shear traction between its limits and the slip;
+the iteration. The default NAME is DECK's, in the current folder.
 With flow theory and contact, history panels show the increments of all load cases instead of the iteration: contact force against approach, largest
 pressure and half-width against force. If a load case ends with less than half of an earlier force, further panels show the plastic strain and,
 along the normal below the largest pressure, the element stresses sx and sy at its end.
 A formula in the abscissa `s` of a pressure panel is drawn into the panels in which it has real values, for example
-"3585.36*sqrt(1-(s/6.21463)**2)". With several load cases one is drawn: --case, or the one with the largest pressure. The exit status is that of epcont: a rejected deck has no picture.
+"3585.36*sqrt(1-(s/6.21463)**2)"; one that begins with "shear:" is drawn with the shear traction. With several load cases one is drawn: --case, or the one with the largest pressure. The exit status is that of epcont: a rejected deck has no picture.
 
     tools/plot --all                                   pictures/DECK.png beside every deck of input
     tools/plot contact ELASTIC PLASTIC -o NAME         the paper's Fig. 6: pressure along the contact, stresses down the axis

@@ -10,7 +10,7 @@ import tempfile
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools"))
-from scenes import friction  # noqa: E402
+from scenes import friction, many  # noqa: E402
 
 PROGRAM = os.environ["EPCONT_PROGRAM"]
 RULES = ("CONRY", "JOINED")
@@ -73,6 +73,27 @@ class Cylinders(unittest.TestCase):
         for rule in RULES:
             said, _ = run(friction.cattaneo(n=4, pushes=(1.001,)).text(), rule, status=1)
             self.assertRegex(said, r"SUBCASE 2: the load moves the body of GRID \d+ along \+x \(SUPORT at GRID \d+\), and neither contact nor friction resists it")
+
+
+class Slipping(unittest.TestCase):
+    """Forces by statics while all pairs slip."""
+
+    def test_dovetail(self):
+        """The flanks carry more after the load has fallen than at the same load before."""
+        for rule in RULES:
+            _, summary = run(many.dovetail(fine=0.6, growth=0.5, friction=0.1).text(), rule)
+            angle = math.radians(60)
+            for found, part, way in zip(values(summary, "total_contact_force"), many.SPIN, (1, 1, -1, 1)):
+                self.assertAlmostEqual(found / 2, part * 500 / (math.cos(angle) + way * 0.1 * math.sin(angle)), delta=0.1)
+
+    def test_ring_pulled_off(self):
+        """Axisymmetric: the ring slips off under mu p times the area of Lame's pressure."""
+        for rule in RULES:
+            _, summary = run(friction.pull_off(around=4).text(), rule)
+            forces = values(summary, "total_friction_force")
+            self.assertAlmostEqual(forces[-1], 37135.1, delta=0.4)
+            self.assertAlmostEqual(forces[-2], forces[-1], delta=1e-6)
+            self.assertLess(forces[1], 0.6 * forces[-1])
 
 
 class Incline(unittest.TestCase):

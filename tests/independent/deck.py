@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 KNOWN = {"GRID", "CTRIA3", "CTRIA6", "CQUAD4", "CQUAD8", "CTRAX3", "CTRAX6", "PSHELL", "PSOLID", "MAT1", "SPC", "SPC1", "FORCE", "PLOADX1",
          "RBE2", "SUPORT", "CORD2R", "CGAP", "PGAP", "CBAR", "PARAM", "SPCADD", "LOAD", "MATS1", "TABLES1", "BLSEG", "BCONP", "SPCD", "TEMP",
-         "TEMPD", "GRAV", "RFORCE", "MOMENT", "MPC", "MPCADD", "CELAS1", "CELAS2", "PELAS", "NLPARM"}
+         "TEMPD", "GRAV", "RFORCE", "MOMENT", "MPC", "MPCADD", "CELAS1", "CELAS2", "PELAS", "NLPARM", "BFRIC"}
 
 #: Columns of the tables, by the quantity whose largest value is their scale.
 KINDS = {"contact": {"force": ["force"], "length": ["initial_gap", "gap"], "pressure": ["pressure"], "normal": ["nx", "ny"],

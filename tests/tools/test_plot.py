@@ -88,6 +88,18 @@ class Plot(unittest.TestCase):
         self.assertIsNone(run.unloaded)
         self.assertEqual(2, sum(kind == "history" for kind, *_ in figure.panels(run, ())))
 
+    def test_friction(self):
+        """Shear within its limits, known values beside it, and slip; no history of a force that stays the same."""
+        run = Run(ROOT / "input/cattaneo/cattaneo.dat", 3)
+        line, = run.lines
+        self.assertTrue((abs(line.shear) <= line.friction * line.pressure * (1 + 1e-12)).all())
+        self.assertGreater(abs(line.shear).max(), 0.07)
+        self.assertEqual(["shape", "shape", "contact", "friction", "friction"], [kind for kind, *_ in figure.panels(run, ())])
+        with unittest.mock.patch("drawing.pressures.known_values", side_effect=lambda formula, s: 0.0 * s + len(formula)) as known:
+            figure.draw(run, "friction", ["s", "shear:s**2"])
+        self.assertEqual(["s**2"], [call.args[0] for call in known.call_args_list])
+        self.assertEqual(2, sum(kind == "history" for kind, *_ in figure.panels(Run(ROOT / "input/dovetail_friction/dovetail_friction.dat"), ())))
+
     def test_without_contact_the_iteration_is_drawn(self):
         run = Run(ROOT / "input/one_element/one_element_flow.dat")
         self.assertEqual(1, sum(kind == "history" for kind, *_ in figure.panels(run, ())))

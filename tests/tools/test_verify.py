@@ -81,13 +81,13 @@ class Edits(Case):
                 cells = ([first] if cells else []) + rng.sample(cells, min(several, len(cells)))
             yield from ((k, column) for k in cells)
 
-    def check(self, deck, several):
+    def check(self, deck, several, *more):
         self.solved(deck)
         status, text = self.told(deck)
         self.assertEqual(0, status, text)
         unread = [line.partition(": ")[2] for line in text.splitlines() if line.startswith(("not read", "held to"))]
         rng, found, named = random.Random(5), 0, 0
-        for table in TABLES:
+        for table in (*TABLES, *more):
             for k, column in self.edits(deck, table, rng, several):
                 rows = self.rows(deck, table)
                 name = rows[k][0] if table == "summary" else rows[0][column]
@@ -125,6 +125,12 @@ class Edits(Case):
 
     def test_lines(self):
         self.check(LINES, 1)
+
+    def test_friction(self):
+        deck = self.place / "friction.dat"
+        cards = re.sub(r"(?m)^BCONP .*", "BCONP,1,1,2,,,7", LINES.read_text())
+        deck.write_text(cards.replace("ENDDATA", "BFRIC,7,,,0.02\nENDDATA"))
+        self.check(deck, 2, "friction")
 
     def test_ties(self):
         """MPC and MPCADD with springs (CELAS1); an RBE2 that rotates under a MOMENT, fixed there or not, with a spring (CELAS2)."""

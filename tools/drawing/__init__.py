@@ -1,6 +1,6 @@
 """Pictures of runs. The options of tools/plot need this module only, so that --help needs no package."""
 #: Kinds of panels.
-KINDS = ("contact", "shape", "yielded", "history")
+KINDS = ("contact", "friction", "shape", "yielded", "history")
 
 
 class Refused(Exception):

@@ -2,7 +2,7 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
-from drawing import KINDS, bodies, history, loading, pressures
+from drawing import KINDS, bodies, history, loading, pressures, shear
 from drawing.run import Refused
 from drawing.style import SMALL
 
@@ -26,13 +26,18 @@ def panels(run, formulas):
     for view in near:
         found.append(("shape", width(bodies.proportion(run, view)),
                       lambda figure, view=view: bodies.draw(figure, run, "at the contact, x 1", 1, view)))
+    sheared = [formula.removeprefix(shear.SHEAR) for formula in formulas if formula.startswith(shear.SHEAR)]
+    pressed = [formula for formula in formulas if not formula.startswith(shear.SHEAR)]
     for curves in pressures.curves_together(run):
-        found.append(("contact", 1.0, lambda figure, curves=curves: pressures.draw(figure, run, curves, formulas)))
+        found.append(("contact", 1.0, lambda figure, curves=curves: pressures.draw(figure, run, curves, pressed)))
+        if shear.has_friction(curves):
+            found += [("friction", 1.0, lambda figure, curves=curves: shear.draw_shear(figure, run, curves, sheared)),
+                      ("friction", 1.0, lambda figure, curves=curves: shear.draw_slip(figure, run, curves))]
     if run.pressed:
         found += [("history", 1.0, lambda figure: loading.draw(figure, run)), ("history", 1.0, lambda figure: loading.draw_pressures(figure, run))]
         if run.unloaded:
             found.append(("history", 1.0, lambda figure: loading.draw_residual(figure, run)))
-    elif len(run.history.get("iteration", ())) > 1:
+    elif len(run.history.get("iteration", ())) > 1 and (run.plastic.any() or not run.increments):
         found.append(("history", 1.0, lambda figure: history.draw(figure, run)))
     return found
 
@@ -48,7 +53,7 @@ def draw(run, only=None, formulas=()):
     every = panels(run, formulas)
     shown = [(share, drawing) for kind, share, drawing in every if only in (None, kind)]
     if not shown:
-        why = {"contact": "no pair touches" if run.lines else "it has no contact", "yielded": "nothing yields",
+        why = {"contact": "no pair touches" if run.lines else "it has no contact", "yielded": "nothing yields", "friction": "it has no friction",
                "history": "it is solved at once, without iteration"}[only]
         there = ", ".join(kind for kind in KINDS if kind in {kind for kind, *_ in every})
         raise Refused(f"{run.path}: nothing to draw for --only {only}: {why}; available: {there}")

@@ -6,6 +6,8 @@ INPUT = TOP / "input"
 
 HERTZ = "266.266*sqrt(1-(s/0.0239091)**2)"
 NAFEMS = "3585.36*sqrt(1-(s/6.21463)**2)"
+#: Shear traction of two cylinders pushed by .6 mu P, then by -.2 mu P.
+CATTANEO = "shear:-0.164832*(" + "-2*".join(f"(sqrt(1-s**2)-{c}*sqrt(maximum(0,1-(s/{c})**2)))" for c in (0.6324555, 0.7745967)) + ")"
 
 
 def persson(pressure, half):
@@ -32,8 +34,11 @@ KNOWN = {
     "roller": ["3030.18*sqrt(1-(s/0.21009)**2)", "2474.13*sqrt(1-(s/0.25731)**2)"],
     "from_gmsh/two_cylinders.dat": ["1659.9*sqrt(1-(s/0.19177)**2)"], "from_gmsh/pin.dat": [persson(100, 45)],
     "from_gmsh/press_fit.dat": ["40.575"], "from_gmsh/blocks.dat": ["250"],
+    "cattaneo": ["0.549439*sqrt(1-s**2)", CATTANEO], "pull_off": ["24.6094"],
     "ring_joint": ["332.10*sqrt(1-((s-53)/0.11513)**2)"],
 }
+#: Load cases of the pictures; the others show the one with the largest pressure.
+CASES = {"cattaneo": 3, "pull_off": 3}
 
 
 def picture(deck):
@@ -46,7 +51,7 @@ def draw_all():
     for deck in sorted(INPUT.glob("*/*.dat")):
         name = deck.relative_to(INPUT).as_posix()
         try:
-            style.save_small(figure.draw(Run(deck), formulas=KNOWN.get(name, KNOWN.get(deck.parent.name, []))), picture(deck))
+            style.save_small(figure.draw(Run(deck, CASES.get(deck.parent.name)), formulas=KNOWN.get(name, KNOWN.get(deck.parent.name, []))), picture(deck))
         except Refused as refused:
             if refused.status != 2:
                 raise

@@ -21,7 +21,8 @@ class Curve:
         order = np.argsort(s, kind="stable")
         pressed = np.flatnonzero(line.touching[order])
         shown = order[max(pressed[0] - 1, 0):pressed[-1] + 2]
-        self.s, self.pressure = s[shown], line.pressure[shown]
+        self.s, self.pressure, self.touching = s[shown], line.pressure[shown], line.touching[shown]
+        self.rubs, self.friction, self.shear, self.slid = (value[shown] for value in (line.rubs, line.friction, line.shear, line.slid))
 
 
 def abscissa(x, touching):
@@ -70,10 +71,8 @@ def known_values(formula, s):
         raise Refused(f'--known "{formula}": {error}; give a formula in s, such as "3585.36*sqrt(1-(s/6.21463)**2)", with {", ".join(NAMES)}') from error
 
 
-def draw(figure, run, curves, formulas):
-    axes = figure.subplots()
-    for curve, colour in zip(curves, COLOURS * len(curves)):
-        axes.plot(curve.s, curve.pressure, "o-", ms=3, lw=1.0, color=colour, label=curve.name)
+def draw_known(axes, curves, formulas):
+    """Draw known values along the curves."""
     ends = np.concatenate([curve.s for curve in curves])
     s = np.linspace(ends.min(), ends.max(), 801)
     label = "known"
@@ -82,6 +81,13 @@ def draw(figure, run, curves, formulas):
         if np.isfinite(value).any():
             axes.plot(s, value, color="black", lw=1.0, label=label)
             label = ""
+
+
+def draw(figure, run, curves, formulas):
+    axes = figure.subplots()
+    for curve, colour in zip(curves, COLOURS * len(curves)):
+        axes.plot(curve.s, curve.pressure, "o-", ms=3, lw=1.0, color=colour, label=curve.name)
+    draw_known(axes, curves, formulas)
     highest = np.sort(np.concatenate([curve.pressure for curve in curves]))[::-1]
     top = highest[0]
     if len(highest) > 5 and top > ALONE * highest[2]:  # a sharp edge: not a result, and it would hide the others

@@ -15,6 +15,8 @@ from deck import DeckError, at, ids, read, real  # noqa: E402
 
 #: Nodes of each element type in order around it, as positions among the nodes of its card.
 ROUND = {"CTRIA3": [0, 1, 2], "CTRAX3": [0, 1, 2], "CQUAD4": [0, 1, 2, 3], "CTRIA6": [0, 3, 1, 4, 2, 5], "CQUAD8": [0, 4, 1, 5, 2, 6, 3, 7], "CTRAX6": [0, 1, 2, 3, 4, 5]}
+#: If contact forces of all increments differ by less than this part, a history of them shows nothing.
+SAME_FORCE = 1e-3
 
 
 class Run:
@@ -35,7 +37,7 @@ class Run:
             except ValueError as error:
                 raise Refused(f"{self.path}: {error}") from None
             every = {name: table(pathlib.Path(place) / f"{self.path.stem}.{name}.csv")
-                     for name in ("nodes", "elements", "contact", "zones", "history", "summary", "increments", "plastic")}
+                     for name in ("nodes", "elements", "contact", "zones", "history", "summary", "increments", "plastic", "friction")}
             found = {name: tables.of_case(rows, case) for name, rows in every.items()}
             summary = found["summary"]
             self.status = next(row["value"] for row in summary if row["key"] == "status")
@@ -46,6 +48,12 @@ class Run:
             raise Refused(f"{self.path}: this deck cannot be drawn, although epcont reads it: {error}") from error
         self.exit_status = run.returncode
         self.take_mesh(deck, found["nodes"], found["elements"])
+        rubbed = {}
+        for row in found["friction"]:
+            rubbed.setdefault(row["pair"], []).append(row)
+        for row in found["contact"]:   # a node with two pairs has two rows in both tables, in the same order
+            if rubbed.get(row["pair"]):
+                row["rubbed"] = rubbed[row["pair"]].pop(0)
         self.take_contact(deck, found["contact"], found["zones"])
         self.take_history(every)
         self.history = {key: np.array([float(row[key]) for row in found["history"]]) for key in (found["history"] or [{}])[0]}
@@ -78,10 +86,12 @@ class Run:
         self.bare = sorted(set(range(len(self.x))) - {node for nodes in self.around for node in nodes})
 
     def take_history(self, every):
-        """Flow theory with contact: increments, pairs of all load cases, and the state after unloading."""
+        """Flow theory, or friction, with contact: increments, pairs of all load cases, and the state after unloading."""
         self.increments = every["increments"]
-        self.pressed = [row for row in every["contact"] if self.increments and float(row["pressure"] or 0.0) > 0.0]
-        found = loading.unloaded_case(self.increments) if self.pressed and self.solved else None
+        forces = [float(row["total_contact_force"]) for row in self.increments]
+        varies = max(forces, default=0.0) - min(forces, default=0.0) > SAME_FORCE * max(forces, default=0.0)
+        self.pressed = [row for row in every["contact"] if varies and float(row["pressure"] or 0.0) > 0.0]
+        found = loading.unloaded_case(self.increments) if self.pressed and self.solved and every["plastic"] else None
         self.unloaded = f"SUBCASE {found[0]} ({100 * found[1]:.2g} % of the force)" if found else None
         if found:
             rows = tables.of_case(every["elements"], found[0])
@@ -154,6 +164,9 @@ class Line:
         self.x = np.array([[float(p["x"]), float(p["y"])] for p in pairs])
         self.force, self.pressure, self.gap = (np.array([float(p[key] or 0) for p in pairs]) for key in ("force", "pressure", "initial_gap"))
         self.touching = self.force > 0
+        rubbed = [p.get("rubbed", {}) for p in pairs]
+        self.rubs = np.array([bool(row) for row in rubbed])
+        self.friction, self.shear, self.slid = (np.array([float(row.get(key) or 0.0) for row in rubbed]) for key in ("friction", "shear", "slid"))
 
 
 def table(path):

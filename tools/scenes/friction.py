@@ -1,8 +1,8 @@
 """Models with friction."""
 import math
 
-from .deck import Deck
-from .mesh import Mesh, graded, squared
+from .deck import STEEL, Deck
+from .mesh import Mesh, block, graded, squared
 
 #: Coefficient of friction, radius of each cylinder, Young's modulus and Poisson's ratio; the half-width of contact is 1.
 MU, RADIUS, YOUNG, NU = 0.3, 1000.0, 1000.0, 0.3
@@ -58,3 +58,40 @@ def traction(pushes, x):
         return MU * LARGEST * (math.sqrt(max(0.0, 1.0 - x * x)) - edge * math.sqrt(max(0.0, 1.0 - (x / edge) ** 2)))
 
     return one(pushes[0]) - (2.0 * one((pushes[0] - pushes[1]) / 2.0) if len(pushes) > 1 else 0.0)
+
+
+def pull_off(friction=0.15, overlap=0.02, long=40.0, nu=0.0, around=8, pull=0.004):
+    """A ring shrunk on a tube and pulled off along the axis, against Lame."""
+    bore, fit, outer = 20.0, 40.0, 60.0
+    inside = fit - overlap
+    softness = (fit ** 2 + bore ** 2) / (fit ** 2 - bore ** 2) + (outer ** 2 + inside ** 2) / (outer ** 2 - inside ** 2)   # without Poisson's ratio
+    pressure = STEEL * overlap / fit / softness
+    area = 2 * math.pi * fit * long
+
+    def wall(inside, outside, parts, rows):
+        mesh = block([inside + (outside - inside) * i / parts for i in range(parts + 1)], [long * j / rows for j in range(rows + 1)])
+        named = {"inner": mesh.on(0, inside), "outer": mesh.on(0, outside)}
+        return Mesh(mesh.point, mesh.element, {**mesh.line, **named}).with_middles()
+
+    tube, ring = wall(bore, fit, around, 2 * around), wall(inside, outer, around, 2 * around + 4)
+    steps = 0.25, 0.5, 0.75, 1.0
+    deck = Deck("A RING PULLED OFF ITS TUBE", [
+        f"A ring of radii {fit:g} and {outer:g} is shrunk on a tube of radii {bore:g} and {fit:g}, overlap {overlap:g} in radius, both {long:g} long; steel with "
+        f"Poisson's ratio {nu:g}. Then the lower end of the tube is moved down by {pull:g}, while the upper end of the ring is fixed. mu = {friction:g}. "
+        "Axisymmetric; lines of non-matching meshes.",
+        f"Known answer (Lame): mean pressure {pressure:.4f}, with Poisson's ratio 0 also while the ring is pulled. It slips off under mu p times the area, "
+        f"{friction * pressure * area:.1f}."],
+        from_geometry=False, rings=True)
+    one, two = deck.bodies(("Tube", tube), ("Ring", ring))
+    deck.material(1, STEEL, nu)
+    deck.material(2, STEEL, nu)
+    deck.hold(2, tube.line["bottom"], one)
+    deck.hold(2, ring.line["top"], two)
+    deck.contacts((tube.line["outer"], one), (ring.line["inner"], two))
+    deck.rubs(1, friction)
+    for case, part in enumerate((0.0, *steps), 1):
+        for node in tube.line["bottom"]:
+            deck.wide("SPCD", case + 10, one + node, 2, -part * pull)
+        deck.card("NLPARM", case, 4 if part else 1)
+        deck.load_case(f"PULLED BY {part * pull:g}" if part else "SHRUNK", case + 10, case)
+    return deck

@@ -6,6 +6,8 @@ from .fill import arc, fill, segment
 from .lines import nearest
 from .mesh import Mesh, squared, zip_rows
 
+#: Parts of the full pull of a dovetail with friction, and the increments of each.
+SPIN, INCREMENTS = (0.5, 1.0, 0.5, 1.0), 8
 #: Bilinear: yield stress and hardening slope, N/mm2.
 YIELD, HARDENING = 200.0, 2000.0
 
@@ -143,8 +145,8 @@ def symmetrical(half, above, below, size):
                  *((name and "other", image(curve)) for name, curve in reversed(half))], size, middles=False)
 
 
-def dovetail(fine=0.034, growth=0.18, pull=1000.0, yields=False):
-    """A dovetail pulled out of its groove: two oblique flanks, rounded at their ends."""
+def dovetail(fine=0.034, growth=0.18, pull=1000.0, yields=False, friction=0.0):
+    """A dovetail pulled out of its groove: two oblique flanks, rounded at their ends. With friction the pull rises and falls."""
     slope, blunt, deep, high, wide = math.radians(60.0), 2.0, 15.0, 30.0, 45.0
     along, out = (math.cos(slope), -math.sin(slope)), (math.sin(slope), math.cos(slope))   # of the right flank of the tongue
     turned = 90.0 - math.degrees(slope)
@@ -165,7 +167,7 @@ def dovetail(fine=0.034, growth=0.18, pull=1000.0, yields=False):
     deck = Deck("A DOVETAIL IN ITS GROOVE", [
         f"A steel dovetail, flanks at {math.degrees(slope):g} degrees, is pulled out of its groove by {pull:g} a mm. Non-matching meshes, fine along the flanks, whose "
         "ends are rounded. " + ("Bilinear." if yields else "Elastic.") + " Only contact restrains it: two SUPORT DOFs.",
-        f"Known by statics: each flank carries {pull / 2 / out[1]:.1f}."], from_geometry=False)
+        *(rise_and_fall(pull, out, friction) if friction else [f"Known by statics: each flank carries {pull / 2 / out[1]:.1f}."])], from_geometry=False)
     one, two = deck.bodies(("Dovetail", tongue), ("Block", groove))
     deck.steel(2)
     if yields:
@@ -177,4 +179,18 @@ def dovetail(fine=0.034, growth=0.18, pull=1000.0, yields=False):
     deck.card("SUPORT", one + top[0], 2, one + top[-1], 2)
     deck.press(tongue, top, -pull / (2 * neck[0]), one)
     deck.contacts(*((mesh.line[line], first) for line in ("flank", "other") for mesh, first in ((tongue, one), (groove, two))))
+    if friction:
+        deck.rubs(1, friction)
+        deck.rubs(2, friction)
+        deck.sequence(*((f"{100.0 * math.sqrt(part):.0f} % OF THE SPEED", part, INCREMENTS) for part in SPIN))
     return deck
+
+
+def rise_and_fall(pull, out, friction):
+    """The known forces of the flanks of a dovetail with friction, all of which slips."""
+    up, down = (pull / 2 / (out[1] + way * friction * out[0]) for way in (1.0, -1.0))
+    return [f"It is the root of a blade: the pull grows with the square of the speed, up to {pull:g}, down and up again. mu = {friction:g}. Each load case has "
+            f"{INCREMENTS} increments.",
+            "Known by statics, as long as all of the flanks slips: each carries P/2/(cos a + mu sin a) while the pull P rises, and "
+            f"P/2/(cos a - mu sin a) after it has fallen enough, with a = 60 degrees: {SPIN[0] * up:.2f}, {up:.2f}, {SPIN[2] * down:.2f} and {up:.2f} "
+            f"at the ends of the load cases. Without friction: {pull / 2 / out[1]:.1f} at full speed."]

@@ -34,5 +34,9 @@ MEASURED = {
                                           "times the yield stress.",
     "ball/ball_on_flat.dat": "p_max 1462.6, half-width 0.20027, approach -0.00395851, 9 of 13 pairs touch. The approach is 1.0 % short, as "
                              "is that of finer meshes: the far points are one radius away (0.5 % with --part 0.01).",
+    "cattaneo/cattaneo.dat": "p_max 0.55031; the middle sticks up to 0.63558, then up to 0.78080 (up to 0.63017 and 0.77581 with -n 32).",
+    "cattaneo/cattaneo_lines.dat": "p_max 0.55031; the middle sticks up to 0.63561, then up to 0.78081.",
+    "dovetail_friction/dovetail_friction.dat": "426.18, 852.37, 604.75 and 852.37, the means of both flanks.",
+    "pull_off/pull_off.dat": "it slips off under 37135.1, between the second and the third step of 0.001.",
     "spinning_disc/spinning_disc.dat": "pressures from 7.3336 to 7.3969; all 25 pairs touch.",
 }

@@ -2,7 +2,7 @@
 import math
 from dataclasses import dataclass, field
 
-from deck import DeckError, integer
+from deck import DeckError, at, integer, real
 from kinds import KINDS
 from pressures import pressures
 from verification.elements import free_strains, places, strain_of, unit_strains
@@ -75,6 +75,7 @@ class Recomputed:
     pulls: dict = field(default_factory=dict)      # of springs
     angle: dict = field(default_factory=dict)      # of rotating master nodes
     arm: dict = field(default_factory=dict)        # largest value of each
+    tangents: list = field(default_factory=list)   # friction force, its limit, tangential displacement, row of friction.csv, normal force, shear
     moment: dict = field(default_factory=dict)     # of their supports
 
 
@@ -170,6 +171,8 @@ def recompute(scene, tables):
             works.append(float(row[key]) * u[node][i])
     forces, gaps = [], []
     for name, pair in scene.pair.items():
+        rubbed = tables.friction.get(name)
+        friction = float(rubbed["friction_force"]) if rubbed else 0.0
         force = float(tables.contact[name]["force"])
         moved = math.fsum(w * u[node][i] * pair.normal[i] for node, w in pair.weights.items() for i in (0, 1))
         forces.append(force)
@@ -179,7 +182,11 @@ def recompute(scene, tables):
         works.append(force * moved)
         for node, w in pair.weights.items():
             for i in (0, 1):
-                rest.setdefault((node, i), []).append(w * force * pair.normal[i])
+                rest.setdefault((node, i), []).append(w * (force * pair.normal[i] + friction * pair.tangent[i]))
+        if rubbed:
+            moved = math.fsum(w * u[node][i] * pair.tangent[i] for node, w in pair.weights.items() for i in (0, 1))
+            pressure = float(tables.contact[name]["pressure"] or 0.0)
+            result.tangents.append((friction, float(rubbed["friction"]) * force, moved, rubbed, force, friction / force * pressure if force else 0.0))
     found = {master: angle(scene, u, master) for master in scene.rotating}
     result.angle, result.arm = ({master: pair[k] for master, pair in found.items()} for k in (0, 1))
     result.moment = {master: -math.fsum(gather(scene, rest, {}).get((master, 2), [])) for master in scene.rotating if (master, 2) in scene.held}
@@ -235,6 +242,8 @@ def check(scene, tables, tolerance, found=None):
     bounds["equilibrium"] = bounds["energy"] = max(loose, lost)
     bounds["off_curve"] = max(tolerance, lost, scene.drift)
     allowed = {**bounds, "off_curve": max(tolerance, scene.off_curve + scene.drift) + 4 * lost}  # a large prescribed displacement leaves no digits in the tables
+    if found.tangents:   # friction dissipates work in increments that the tables do not have
+        figures, bounds = {**figures, "energy": float(tables.summary.get(KEYS["energy"], "nan"))}, {**bounds, "energy": tolerance}
     lines, faults = [], 0
 
     def line(name, ours, theirs, good):
@@ -263,10 +272,35 @@ def check(scene, tables, tolerance, found=None):
         good = told == "" if peak is None else told != "" and abs(peak - float(told)) <= tolerance * (peak or 1.0)
         line("max_pressure", math.nan if peak is None else peak, told, good)
         line("pressure column, largest error", worst, "", worst <= tolerance * (peak or 1.0))
+    for each in friction_lines(scene, found, tables, tolerance):
+        line(*each)
     for key, ours, small in [*approaches(scene, tables, found), *of_ties(scene, found)]:
         told = tables.summary.get(key, "nan")
         line(key, ours, told, abs(ours - float(told)) <= tolerance * small)
     return lines, faults
+
+
+def friction_lines(scene, found, tables, tolerance):
+    """(name, value, the program's, agrees) of the friction: law, sums, counts, and columns of its table."""
+    rows, bound = found.tangents, tolerance * found.force
+    if not rows:
+        return
+    for key, ours in (("total_friction_force", math.fsum(abs(force) for force, *_ in rows)),
+                      ("friction_above_limit", max(0.0, *(abs(row[0]) - row[1] for row in rows)))):
+        told = tables.summary.get(key, "nan")
+        yield key, ours, told, abs(ours - float(told)) <= bound and (key != "friction_above_limit" or ours <= bound)
+    for key, word in (("pairs_sticking", "sticks"), ("pairs_slipping", "slips")):
+        ours, told = sum(row[3]["state"] == word for row in rows), tables.summary.get(key, "missing")
+        yield key, ours, told, told == str(ours)
+    given = {real(at(c, k)) for name, k in (("PGAP", 7), ("BFRIC", 4)) for c in scene.deck.of(name)}
+    strange = sum(float(row[3]["friction"]) not in given for row in rows)
+    yield "friction coefficients not in the deck", strange, "", not strange
+    for column, number, small in (("limit", 1, bound), ("slid", 2, tolerance * found.length), ("force", 4, bound),
+                                  ("shear", 5, tolerance * max(abs(row[5]) for row in rows))):
+        worst = max(abs(row[number] - float(row[3][column] or 0.0)) for row in rows)
+        yield f"friction {column}, largest error", worst, "", worst <= small
+    worst = max((row[1] - abs(row[0]) for row in rows if row[3]["state"] == "slips"), default=0.0)
+    yield "friction of slipping pairs", worst, "", worst <= bound
 
 
 def approaches(scene, tables, found):

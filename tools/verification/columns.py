@@ -20,9 +20,11 @@ UNITS = {"status": "", "max_pressure": "force/length2", "total_contact_force": "
          "iterations": "", "pivots": "", "max_equivalent_stress": "force/length2", "max_displacement": "length", "equilibrium_residual": "",
          "smallest_force": "force", "smallest_gap": "length", "largest_force_gap_product": "force*length", "stress_off_curve": "",
          "max_equivalent_stress_element": "", "max_equivalent_stress_x": "length", "max_equivalent_stress_y": "length",
-         "lowest_temperature": "temperature", "highest_temperature": "temperature", "curve_tolerance": "", "stress_off_curve_limit": "", "energy_balance": "", "load_factor": ""}
+         "lowest_temperature": "temperature", "highest_temperature": "temperature", "curve_tolerance": "", "stress_off_curve_limit": "", "energy_balance": "", "load_factor": "",
+         "total_friction_force": "force", "pairs_sticking": "", "pairs_slipping": "", "friction_above_limit": "force"}
 #: Values that are only rounding in a valid answer: compared with their tolerance, not digit by digit.
-BOUNDS = ("equilibrium_residual", "smallest_force", "smallest_gap", "largest_force_gap_product", "energy_balance", "stress_off_curve_limit")
+BOUNDS = ("equilibrium_residual", "smallest_force", "smallest_gap", "largest_force_gap_product", "energy_balance", "stress_off_curve_limit",
+          "friction_above_limit")
 
 
 def unit_of(key):
@@ -193,10 +195,10 @@ def check_bodies(report, scene, tables, tolerance):
         bodies.setdefault(body[nodes[0]], []).extend(nodes)
     terms = {b: [] for b in bodies}
     for pair, own in scene.pair.items():
-        force = float(tables.contact[pair]["force"])
+        force, friction = float(tables.contact[pair]["force"]), float(tables.friction.get(pair, {}).get("friction_force", 0.0))
         for node, weight in own.weights.items():
             if body[node] in terms:
-                terms[body[node]].append([force * weight * own.normal[c] for c in (0, 1)])
+                terms[body[node]].append([weight * (force * own.normal[c] + friction * own.tangent[c]) for c in (0, 1)])
     order = list(dict.fromkeys(body[node] for node in tables.nodes))   # bodies are numbered by their first nodes, including bodies of single nodes
     firsts = {next(node for node in tables.nodes if body[node] == b): b for b in order if b in bodies}
     told = {int(row["first_node"]): row for row in tables.bodies.values()}
@@ -294,7 +296,7 @@ def not_read(tables):
     """Lines that name the unread columns and keys, and those compared with a bound only."""
     keys = [key for key in tables.summary if unit_of(key) is None]
     files = sorted(path.name for path in tables.directory.glob(f"{glob_safe(tables.stem)}.*")
-                   if path.name not in {tables.path(name).name for name in ("summary", "nodes", "elements", "contact", "zones", "bodies", "history", "cases", "increments", "plastic")})
+                   if path.name not in {tables.path(name).name for name in ("summary", "nodes", "elements", "contact", "zones", "bodies", "history", "cases", "increments", "plastic", "friction")})
     lines = [f"not read: {name}.csv {', '.join(columns)}" for name, columns in (("summary", keys), *tables.unread.items()) if columns]
     if tables.path("increments").exists():
         lines.append("not read: increments.csv half_width, iterations")

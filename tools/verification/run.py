@@ -12,6 +12,7 @@ COLUMNS = {
     "contact": ("pair", ["ga", "gb", "x", "y", "nx", "ny", "initial_gap", "force", "gap"], ["pressure"], ["status"]),
     "zones": ("zone", ["first_pair", "last_pair", "force", "half_width_last_pair"], ["max_pressure", "half_width"], []),
     "bodies": ("body", ["first_node", "force_y"], ["force_x"], []),
+    "friction": ("pair", ["friction", "force", "friction_force", "limit", "slid"], ["shear"], ["state"]),
     "history": ("iteration", ["pairs_in_contact", "plastic_elements", "pivots", "load_factor"], [], []),
 }
 #: Columns of some versions only.
@@ -21,7 +22,8 @@ SAME_NORMAL = 1e-3   # if a node has two pairs, one node is counted twice
 SOME = {"elements": ["max_equivalent_stress", "max_x", "max_y"]}
 #: Keys of the summary that must be numbers.
 FIGURES = {"max_pressure", "total_contact_force", "max_equivalent_stress", "max_displacement", "equilibrium_residual", "smallest_force",
-           "smallest_gap", "largest_force_gap_product", "stress_off_curve", "curve_tolerance", "stress_off_curve_limit", "energy_balance", "load_factor"}
+           "smallest_gap", "largest_force_gap_product", "stress_off_curve", "curve_tolerance", "stress_off_curve_limit", "energy_balance", "load_factor",
+           "total_friction_force", "friction_above_limit"}
 
 
 class TableFault(ValueError):

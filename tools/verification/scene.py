@@ -27,6 +27,7 @@ class Pair:
 
     def __init__(self, initial, normal, weights, node, ends, stands_on=()):
         self.initial, self.normal, self.weights, self.node, self.ends, self.stands_on = initial, normal, weights, node, ends, stands_on
+        self.tangent = normal[1], -normal[0]
 
 
 class Scene:
