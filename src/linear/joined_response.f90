@@ -102,6 +102,7 @@ contains
 
     motions = size(loads%motion)
     many = motions + size(loads%share, 2)
+    if (allocated(loads%shared)) deallocate (loads%shared)   ! of the load case before, if the rule was new
     allocate (loads%shared(scene%motions%count, many - motions))
     do j = motions + 1, many
       associate (q => suport_values(scene, found%displacement(:, j, :)))
