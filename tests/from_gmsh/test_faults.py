@@ -127,6 +127,7 @@ SCENE = [
     ("top.pressure = 10.0", "top = {}", ["[load.top]: has no load", "add pressure = 10.0 or force = [0.0, -100.0]"]),
     ("pressure", "presure", ["[load.top] presure: is not a key of this table", "use one of: pressure, force; did you mean 'pressure'?"]),
     ('slave = "under"', 'slave = "face"', ["[[contact]] master: 'face' is also the slave", "give the line on the other side of the contact"]),
+    ('"face" }', '"face", friction = -0.1 }', ["[[contact]] friction: is -0.1", "give the coefficient of friction, 0 or above, such as friction = 0.3"]),
     ('slave = "under", ', "", ["[[contact]] slave: is missing", 'give the name of the line with the coarser mesh, such as slave = "pin"']),
     ("[load]", "[PARAM]\nSERCH = 0.5\n[load]", ["[PARAM] SERCH: is not a key of this table", "use one of: RULE, METHOD, MUP, SOLVER, TOL, SEARCH, CORNER, ACCURACY, "
                                               "MAXIT, NLOAD, THEORY, HRFRAC, SAVE, FLEXIB, ORIGINAL, WTMASS, FRICTION; did you mean 'SEARCH'?"]),

@@ -52,7 +52,7 @@ class Scenes(unittest.TestCase):
         run = subprocess.run([PROGRAM, deck, "-o", self.place, "--tables", "all", "--quiet"], capture_output=True, text=True)
         self.assertEqual(run.returncode, 0, run.stderr)
         table = {name: list(csv.DictReader((self.place / f"{deck.stem}.{name}.csv").read_text().splitlines()))
-                 for name in ("summary", "contact", "zones", "nodes")}
+                 for name in ("summary", "contact", "zones", "nodes", "bodies")}
         table["summary"] = {row["key"]: row["value"] for row in table["summary"]}
         return table
 
@@ -289,6 +289,19 @@ contact = [{ slave = "rim", master = "bed" }, { slave = "rim", master = "under" 
                 self.near(along[k], times * along[0], 1e-9)
                 self.near(across[k] / along[k], 1.0 / math.tan(math.radians(angle)), 2e-3)
             self.near(abs(along[4] - along[1]), 5000.0, 1e-9)
+
+    def test_friction(self):
+        """While all of a flank slips, friction rotates its force by the angle of friction."""
+        place = TOP / "input" / "dovetail_spin"
+        text = (place / "dovetail_spin.toml").read_text().partition("[[case]]")[0].replace('slave = "root"', 'friction = 0.1\nslave = "root"')
+        (self.place / "friction.toml").write_text("spin = 100.0\n" + text)
+        (self.place / "dovetail_spin.geo").write_text((place / "dovetail_spin.geo").read_text().replace("fine = 0.05;", "fine = 0.2;"))
+        made = make(self.place / "friction.toml", self.place / "friction.dat")
+        self.assertEqual(made.returncode, 0, made.stderr)
+        self.assertIn("BCONP   1       1       2                       1\nBFRIC   1                       .1\n", (self.place / "friction.dat").read_text())
+        force = self.solved(self.place / "friction.dat")["bodies"][0]
+        ratio = abs(float(force["force_x"]) / float(force["force_y"]))
+        self.near(ratio, 1.0 / math.tan(math.radians(45) + math.atan(0.1)), 3e-3)
 
     def test_travel(self):
         """A prescribed displacement of a line replaces the force, and a force on fixed nodes has no effect."""

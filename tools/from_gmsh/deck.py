@@ -38,7 +38,7 @@ class Maker:
     def find_contacts(self):
         """(slave, master) of each contact, their nodes in order."""
         found = []
-        for k, (slave, master) in enumerate(self.scene.contacts, 1):
+        for k, (slave, master, _) in enumerate(self.scene.contacts, 1):
             where = f"[[contact]] {k}" if len(self.scene.contacts) > 1 else "[[contact]]"
             lines = [self.groups.chain(f"{where} {role}", name) if name else [] for role, name in (("slave", slave), ("master", master))]
             if slave == master or not all(lines) or self.groups.share_nodes(where, slave, master):
@@ -284,15 +284,16 @@ class Maker:
 
     def touching(self):
         lines, number = [], {}
-        for (slave, master), (slave_nodes, master_nodes) in zip(self.scene.contacts, self.contacts):
+        for (slave, master, _), (slave_nodes, master_nodes) in zip(self.scene.contacts, self.contacts):
             for name, nodes in ((slave, slave_nodes), (master, master_nodes)):
                 if name not in number:
                     number[name] = len(number) + 1
                     nodes = [self.number[node] for node in nodes]
                     rising = nodes[::-1] if nodes[0] > nodes[-1] else nodes
                     lines += [f"$ line {name}"] + card("BLSEG", number[name], *rising)
-        for k, (slave, master) in enumerate(self.scene.contacts, 1):
-            lines += [f"$ {slave} on {master}"] + card("BCONP", k, number[slave], number[master])
+        for k, (slave, master, friction) in enumerate(self.scene.contacts, 1):
+            lines += [f"$ {slave} on {master}"] + card("BCONP", k, number[slave], number[master], *(["", "", k] if friction else []))
+            lines += card("BFRIC", k, "", "", friction) if friction else []
         return lines
 
     def told(self):

@@ -68,7 +68,7 @@ class Scene:
     sequence: bool = False                          # each case starts from the end of the one before
     platens: dict = field(default_factory=dict)     # line: directions
     free: dict = field(default_factory=dict)        # platen or point: directions
-    contacts: list = field(default_factory=list)    # (slave, master)
+    contacts: list = field(default_factory=list)    # (slave, master, coefficient of friction)
     parameters: dict = field(default_factory=dict)
 
     @property
@@ -422,10 +422,11 @@ def read_contacts(tables, scene, faults):
         own = Table(table, f"[[contact]] {k}" if len(tables) > 1 else "[[contact]]", faults)
         slave = own.word("slave", "pin", "the name of the line with the coarser mesh", required=True)
         master = own.word("master", "hole", "the name of a line", required=True)
+        friction = own.number("friction", "0.3", "the coefficient of friction, 0 or above", lambda value: value >= 0.0)
         own.end()
         if slave is not None and slave == master:
             faults.add(own.where("master"), f"'{master}' is also the slave", "give the line on the other side of the contact")
-        scene.contacts.append((slave, master))
+        scene.contacts.append((slave, master, friction or 0.0))
 
 
 def read_parameters(table, scene, faults):
