@@ -45,8 +45,8 @@ contains
       end associate
     end do
     ! For a tilt of either sign, the ends count with absolute values.
-    near_sum = matmul(near, loads%force)
-    end_sum = matmul(at_ends, abs(loads%force))
+    near_sum = matmul(near, loads%force(:size(near), :))
+    end_sum = matmul(at_ends, abs(loads%force(:size(near), :)))
     off = 0.0_wp
     do j = 1, size(off)
       if (loads%unit(j) > 0.0_wp) off(j) = error_along(near_sum(j), end_sum(j))
@@ -90,7 +90,7 @@ contains
   pure real(wp) function with_waves(off, k, share, answer, errors) result(force)
     real(wp), intent(in) :: off(:)   !! errors, without oscillation
     integer, intent(in) :: k         !! number of the sum
-    real(wp), intent(in) :: share(:, :)         !! factor of each pair in each sum [pairs, sums]
+    real(wp), intent(in) :: share(:, :)         !! factor of each row in each sum [rows, sums]
     type(answer_type), intent(in) :: answer     !! of the last solve
     type(zone_error), intent(in) :: errors(:)   !! of its zones
     integer :: z
