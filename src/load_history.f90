@@ -96,6 +96,7 @@ contains
     associate (rule => self%kept%linear%rule, answer => self%answer)
       if (.not. rule%failed .and. answer%failed_body == 0 .and. answer%contact%state == contact_solved) then
         self%unique = rule%is_unique(self%planned_model, self%kept%linear%factored_bodies)
+        call rule%find_others(self%answer%contact)
         call watch%lap(stage_contact)
         if (self%unique) call self%evaluate(watch)
         if (self%unique .and. self%is_flow() .and. complete) call self%add_increment(size(answer%history))

@@ -3,7 +3,7 @@
 module epcont_linear_contact_rule
   use epcont_assembly_bodies, only: factored_bodies
   use epcont_base_kinds, only: wp
-  use epcont_contact_problem, only: contact_problem
+  use epcont_contact_problem, only: contact_problem, contact_solution
   use epcont_flexibility_flexibility, only: gap_opening, see_motions
   use epcont_linear_solved_state, only: solved_state
   use epcont_plan_planned_model, only: planned_model
@@ -53,6 +53,7 @@ module epcont_linear_contact_rule
     procedure(solve), deferred :: solve
     procedure :: refine
     procedure :: is_unique
+    procedure :: find_others
     procedure(respond), deferred :: respond
     procedure(sensitivity), deferred :: sensitivity
     procedure(compliance), deferred :: compliance
@@ -148,6 +149,13 @@ contains
 
     is_unique = .true.
   end function is_unique
+
+  !> Search for other answers with friction, if this solver can.
+  subroutine find_others(self, contact)
+    class(contact_rule), intent(inout) :: self
+    type(contact_solution), intent(inout) :: contact   !! the answer; pairs at which others differ are marked
+
+  end subroutine find_others
 
   !> Choose the loads that are needed; loads without forces give no information.
   pure subroutine ask_for(self, asked)

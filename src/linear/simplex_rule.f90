@@ -4,7 +4,7 @@ module epcont_linear_simplex_rule
   use epcont_base_kinds, only: wp
   use epcont_contact_basis, only: contact_basis, renew_basis
   use epcont_contact_equilibrium, only: find_rigid_start, rigid_start
-  use epcont_contact_problem, only: contact_solution, contact_solved
+  use epcont_contact_problem, only: contact_no_equilibrium, contact_solution, contact_solved
   use epcont_contact_scaling, only: diagonal_of, drop_motions, scale_problem, scaled_problem
   use epcont_contact_solver, only: solve_contact
   use epcont_flexibility_flexibility, only: gap_opening, pair_forces
@@ -35,6 +35,7 @@ module epcont_linear_simplex_rule
     procedure :: factor
     procedure :: solve
     procedure :: refine
+    procedure :: find_others
     procedure :: respond
     procedure :: sensitivity
     procedure :: compliance
@@ -162,9 +163,14 @@ contains
     type(contact_solution), intent(inout) :: contact
 
     self%problem%resultant = self%resultant
-    call solve_contact(self%problem, contact, start, self%basis)
-    if (allocated(self%problem%friction) .and. contact%state == contact_solved) &
-      self%problem%guess_force = contact%force
+    if (.not. allocated(self%problem%friction)) then
+      call solve_contact(self%problem, contact, start, self%basis)
+      return
+    end if
+    call solve_contact(self%problem, contact, start, any_forces=.true.)
+    if (contact%state == contact_solved) self%problem%guess_force = contact%force
+    ! Forces in the friction cones carry the loads, so there may be an answer that was not found.
+    self%failed = contact%state == contact_no_equilibrium .and. contact%sets > 0
   end subroutine find_contact
 
   !> Take one step of iterative refinement: add the deformation under the residual, solve the contact with it,
@@ -196,6 +202,18 @@ contains
     ! Only under the change: in a slender body, even the rounding of all forces opens gaps.
     if (refined) call deform(scene, bodies, pair_forces(scene%model, state%contact%change), state)
   end subroutine refine
+
+  !> Search for other answers with friction, and mark the pairs at which they differ.
+  subroutine find_others(self, contact)
+    class(simplex_rule), intent(inout) :: self
+    type(contact_solution), intent(inout) :: contact
+    type(contact_solution) :: again
+
+    if (.not. allocated(self%problem%friction)) return
+    self%problem%guess_force = contact%row_forces()
+    call solve_contact(self%problem, again)
+    if (allocated(again%several)) contact%several = again%several
+  end subroutine find_others
 
   !> Add the deformation under some forces.
   subroutine deform(scene, bodies, force, state)
