@@ -1,0 +1,110 @@
+#!/usr/bin/env python3
+"""Friction of bodies with known answers: a punch on an unlike half-plane, a belt on a drum, a wedge between walls. Both contact solvers."""
+import math
+import re
+import unittest
+
+from test_friction import RULES, run, values
+from scenes.deck import Deck
+from scenes.elastic import flat_punch
+from scenes.mesh import Mesh, squared
+
+
+class Punch(unittest.TestCase):
+    """A rigid flat punch is pressed on a block that is 2000 half-widths wide (400: stick half-widths .5 to 1 % larger). The shear acts on the pressures."""
+
+    #: Stick half-widths of the half-plane with Poisson's ratio .3, +-.003.
+    KNOWN = {0.2: 0.3616, 0.3: 0.690}
+
+    def text(self, mu, steps=1):
+        deck = flat_punch(n=80, size=1000.0, element="cquad4", growth=(1.15, 1.12))
+        deck.load_steps = steps
+        deck.card("NLPARM", 1, steps)
+        return re.sub(r"(?m)^PGAP .*", f"PGAP,21,0.,,,,,{mu}", deck.text())
+
+    def test_stick_half_width(self):
+        for mu, known in self.KNOWN.items():
+            for rule in RULES:
+                rows, _ = run(self.text(mu), rule)
+                count = next(k for k, row in enumerate(rows) if row["state"] == "slips")
+                self.assertEqual({"slips"}, {row["state"] for row in rows[count:]})
+                # In the stick zone the distance from the limit falls with the root of the distance from the end.
+                (one, a), (other, b) = ((float(row["x"]), (1.0 - abs(float(row["friction_force"])) / float(row["limit"])) ** 2) for row in rows[count - 2:count])
+                self.assertAlmostEqual((other + (other - one) * b / (a - b)) / known, 1.0, delta=0.015, msg=f"{mu} {rule}")
+
+    def test_increments(self):
+        """The answer grows in proportion to the load, so that one step suffices."""
+        one, ten = (run(self.text(0.3, steps), "AUTO")[0] for steps in (1, 10))
+        largest = max(abs(float(row["friction_force"])) for row in one)
+        for row, other in zip(one, ten):
+            self.assertAlmostEqual(float(row["friction_force"]), float(other["friction_force"]), delta=1e-3 * largest)
+
+
+class Belt(unittest.TestCase):
+    """A belt is pulled over half of a fixed drum: the tensions of its ends differ by a factor exp(mu angle R/(R + t/2))."""
+
+    RADIUS, THICK, PULL = 1.0, 0.01, 1.0
+
+    def text(self, mu, pairs=64):
+        flat = squared([self.RADIUS, self.RADIUS + self.THICK / 2, self.RADIUS + self.THICK], [math.pi * k / (pairs - 1) for k in range(pairs)])
+        belt = Mesh([(r * math.cos(a), r * math.sin(a)) for r, a in flat.point], flat.element, flat.line)
+        deck = Deck("BELT", [], from_geometry=False)
+        deck.body(belt, 1)
+        deck.material(1, 1000.0, 0.0)
+        deck.hold(2, belt.line["top"][1:])   # not the node of the pair, which would have no friction
+        deck.press(belt, belt.line["bottom"], -self.PULL / self.THICK)
+        inner = [3 * k for k in range(pairs)]
+        deck.ground([belt.point[node] for node in inner], 1001)
+        for k, node in enumerate(inner):
+            (x, y) = (value / self.RADIUS for value in belt.point[node])
+            deck.wide("CORD2R", k + 1, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, x, y, 0.0)
+            deck.card("CGAP", 2001 + k, 21, 1001 + k, node + 1, "", "", "", k + 1)
+        deck.card("PGAP", 21, 0.0, "", "", "", "", mu)
+        deck.card("SUPORT", inner[pairs // 2] + 1, 1)
+        return deck.text()
+
+    def test_tensions(self):
+        mean = self.RADIUS + self.THICK / 2
+        for mu in (0.1, 0.3):
+            for rule in RULES:
+                rows, _ = run(self.text(mu), rule)
+                left = self.PULL - abs(sum(float(row["friction_force"]) for row in rows)) * self.RADIUS / mean
+                self.assertAlmostEqual(math.log(self.PULL / left) / (mu * math.pi * self.RADIUS / mean), 1.0, delta=0.005, msg=f"{mu} {rule}")
+
+
+class Wedge(unittest.TestCase):
+    """A wedge is pressed between walls; without load it stays if mu is above the tangent of its half angle. Half of the model."""
+
+    def text(self, slope, mu, n=8):
+        flat = squared([k / n for k in range(n + 1)], [2.0 * k / n for k in range(n + 1)])
+        wedge = Mesh([(s * (1.0 + slope * y), y) for s, y in flat.point], flat.element, flat.line)
+        flank = [node for node, (s, _) in enumerate(flat.point) if s == 1.0]
+        deck = Deck("WEDGE", [], from_geometry=False)
+        deck.body(wedge, 1)
+        deck.material(1, 1000.0, 0.3)
+        deck.hold(1, wedge.on(0, 0.0))
+        deck.press(wedge, wedge.line["top"], 1.0)
+        deck.ground([wedge.point[node] for node in flank], 1001)
+        deck.wide("CORD2R", 1, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, -1.0, slope, 0.0)
+        deck.pairs(2001, [(1001 + k, node + 1) for k, node in enumerate(flank)], 21, friction=mu)
+        deck.card("SUPORT", wedge.line["top"][0] + 1, 2)
+        deck.sequence(("PRESSED", 1.0, 4), ("FREE", 0.0, 8))
+        return deck.text()
+
+    def test_stays(self):
+        for rule in RULES:
+            for slope in (0.1, 0.29):
+                _, summary = run(self.text(slope, 0.3), rule)
+                pressed, left = values(summary, "total_contact_force")
+                angle = math.atan(slope)
+                self.assertAlmostEqual(pressed, (1.0 + 2.0 * slope) / (math.sin(angle) + 0.3 * math.cos(angle)), delta=1e-3)   # all slips
+                self.assertGreater(left, 0.5 * pressed)
+
+    def test_jumps_out(self):
+        for rule in RULES:
+            _, summary = run(self.text(0.31, 0.3), rule)
+            self.assertEqual([0.0, 0.0], [values(summary, key)[1] for key in ("total_contact_force", "max_displacement")])
+
+
+if __name__ == "__main__":
+    unittest.main()
