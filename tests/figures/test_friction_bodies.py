@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Friction of bodies with known answers: a punch on an unlike half-plane, a belt on a drum, a wedge between walls. Both contact solvers."""
+"""Friction of bodies with known answers: a punch on an unlike half-plane, a belt on a drum, a wedge between walls, an arch of blocks. Both contact solvers."""
 import math
 import re
 import unittest
@@ -104,6 +104,59 @@ class Wedge(unittest.TestCase):
         for rule in RULES:
             _, summary = run(self.text(0.31, 0.3), rule)
             self.assertEqual([0.0, 0.0], [values(summary, key)[1] for key in ("total_contact_force", "max_displacement")])
+
+
+class Arch(unittest.TestCase):
+    """Twelve stiff blocks carry their weight as a half circle; only friction and contact hold them. If the abutments spread, the thrust falls to its limit:
+    hinges open at the crown and at the haunches."""
+
+    INNER, OUTER, BLOCKS, PARTS = 0.9, 1.1, 12, 4
+
+    def least(self):
+        """The thrust that carries half of the arch, from the outer edge of the crown to the inner edge of a joint: the largest of all joints."""
+        def thrust(angle):
+            area = (self.OUTER ** 2 - self.INNER ** 2) / 2 * (math.pi / 2 - angle)
+            moment = self.INNER * math.cos(angle) * area - (self.OUTER ** 3 - self.INNER ** 3) / 3 * (1 - math.sin(angle))
+            return moment / (self.OUTER - self.INNER * math.sin(angle))
+
+        return max(thrust(math.pi * k / self.BLOCKS) for k in range(self.BLOCKS // 2))
+
+    def text(self, mu=0.8, spread=1e-3):
+        deck, across = Deck("ARCH", [], from_geometry=False), range(self.PARTS + 1)
+        radii = [self.INNER + (self.OUTER - self.INNER) * k / self.PARTS for k in across]
+        deck.ground([(r, 0.0) for r in radii], 101)
+        deck.ground([(-r, 0.0) for r in radii], 201)
+        below = [101 + k for k in across]
+        for joint in range(self.BLOCKS + 1):
+            angle = math.pi * joint / self.BLOCKS
+            first = 1000 * (joint + 1)
+            above = [(first if joint < self.BLOCKS else 201) + k for k in across]
+            deck.wide("CORD2R", joint + 1, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, -math.sin(angle), math.cos(angle), 0.0)
+            for k, ends in enumerate(zip(below, above)):
+                deck.card("CGAP", 20001 + 100 * joint + k, 21, *ends, "", "", "", joint + 1)
+            if joint < self.BLOCKS:
+                flat = squared(radii, [angle + math.pi * k / self.PARTS / self.BLOCKS for k in across])
+                deck.body(Mesh([(r * math.cos(a), r * math.sin(a)) for r, a in flat.point], flat.element, flat.line), 1, first)
+                deck.card("SUPORT", first, 1, first, 2, first + self.PARTS, 2 if abs(math.cos(angle)) > 0.5 else 1)
+                below = [first + k for k in flat.line["top"]]
+        deck.card("PGAP", 21, 0.0, "", "", "", "", mu)
+        deck.material(1, 1e5, 0.2, 1.0, 1.0)
+        deck.card("GRAV", 1, 0, 1.0, 0.0, -1.0, 0.0)
+        for k in across:
+            deck.wide("SPCD", 2, 101 + k, 1, spread)
+            deck.wide("SPCD", 2, 201 + k, 1, -spread)
+        for case, sets in enumerate(((1.0, 1), (1.0, 1, 1.0, 2)), 1):
+            deck.card("LOAD", case + 10, 1.0, *sets)
+            deck.card("NLPARM", case, 8 if case == 2 else 1)
+            deck.load_case("SPREAD" if case == 2 else "WEIGHT", case + 10, case)
+        return deck.text()
+
+    def test_thrust(self):
+        for rule in RULES:
+            rows, _ = run(self.text(), rule)
+            before, thrust = (abs(sum(float(row["friction_force"]) for row in rows if row["subcase"] == case and row["pair"].startswith("200"))) for case in "12")
+            self.assertGreater(before, 1.2 * thrust)
+            self.assertAlmostEqual(thrust / self.least(), 1.0, delta=1e-3, msg=rule)
 
 
 if __name__ == "__main__":
