@@ -313,7 +313,7 @@ contains
     type(answer_type), intent(in) :: answer        !! of the last solve
     logical, allocatable :: weak(:)
     real(wp) :: off(scene%model%contact%pairs)   !! error of the pressure [stress]
-    real(wp), allocatable :: compliance(:)
+    real(wp), allocatable :: compliance(:)       !! [rows]
     integer :: k, z
 
     compliance = linear%rule%compliance()
@@ -329,7 +329,7 @@ contains
     ! From here on `off` is the error of the force. The smallest gap error is the compliance times this error.
     off = off*line%tributary + self%sensitivity%rounding*maxval(answer%contact%force)
     weak = merge(answer%contact%force <= off, &
-                 answer%contact%gap <= compliance*off, &
+                 answer%contact%gap <= compliance(:size(off))*off, &
                  answer%contact%touching)
   end function find_weak
 

@@ -68,8 +68,8 @@ contains
     if (allocated(self%problem%friction)) then
       call self%limit_friction(0*self%problem%friction)
       call self%start_rigid(smooth)
-      call self%limit_friction(0*self%problem%friction + unlimited*maxval(abs(self%resultant)/ &
-                                                                          self%problem%motion%units()))
+      call self%limit_friction(0*self%problem%friction + &
+                               unlimited*maxval([0.0_wp, abs(self%resultant)/self%problem%motion%units()]))
     end if
     call self%start_rigid(self%rigid)
     if (smooth%balanced) call self%limit_friction(0*self%problem%friction)
@@ -169,7 +169,7 @@ contains
       given = self%search%upper(scene%model%contact%pairs + 1:)
       limit = self%problem%friction*max(state%contact%force(self%problem%pair_of), 0.0_wp)
       before = change
-      change = maxval(abs(limit - given))/maxval(state%contact%force)
+      change = maxval(abs(limit - given))/max(maxval(state%contact%force), tiny(change))
       call self%limit_friction(limit)
       if (change <= exact .or. change <= rounding .and. change > slowly*before) return
       ! Limits that jump to and fro settle if half of the change is taken.

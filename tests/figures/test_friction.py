@@ -123,6 +123,17 @@ class Incline(unittest.TestCase):
             said, _ = run(self.text(0.301, 0.3), rule, status=1)
             self.assertIn("neither contact nor friction resists it", said)
 
+    def test_lifted(self):
+        """Nothing touches: the friction limits are zero, with either contact solver."""
+        lifted = self.text(0, 0.3).replace("SUPORT,5,1,5,2,6,2", "SPC1,1,12,7,8").replace("-1.\n", "1.\n")
+        for rule in RULES:
+            with tempfile.TemporaryDirectory() as folder:
+                path = pathlib.Path(folder) / "deck.dat"
+                path.write_text(lifted.replace("ENDDATA", f"PARAM,RULE,{rule}\nENDDATA"), encoding="ascii")
+                subprocess.run([PROGRAM, "--quiet", path.name], cwd=folder, stderr=subprocess.DEVNULL, timeout=60, check=True)
+                listing = path.with_suffix(".lst").read_text()
+            self.assertNotIn("attempts:", listing)
+
     def test_without_friction(self):
         said, _ = run(self.text(0.05, 0.3).replace("ENDDATA", "PARAM,FRICTION,NO\nENDDATA"), "AUTO", status=1)
         self.assertIn("and no contact resists it", said)
