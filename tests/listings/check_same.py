@@ -23,7 +23,9 @@ MESH_ERROR, FEW_SOLVES, OF_THE_MATRIX = re.compile("mesh_error_.*"), 1e-3, {"con
 KINDS = [{"ux", "uy"}, {"rx", "ry"}, {"sx", "sy", "sz", "txy", "equivalent_stress"}, {"force_x", "force_y"}, {"mesh_error_x", "mesh_error_y"}]
 #: Tables and rows of the summary about rounding, or about the path.
 WAY = {"equilibrium_residual", "smallest_force", "smallest_gap", "largest_force_gap_product", "stress_off_curve", "energy_balance",
-       "iteration_error_displacement", "iteration_error_force", "pivots"}
+       "friction_above_limit", "largest_force_slip_product", "iteration_error_displacement", "iteration_error_force", "pivots"}
+#: Figures that set the scale of others: without a push, the friction force is the rounding of the contact force.
+QUANTITY = {"friction_force": "total_contact_force", "total_friction_force": "total_contact_force", "stress": "max_equivalent_stress", "half_width": "stick_half_width"}
 
 
 def run(program, deck, parameter, word, output):
@@ -54,6 +56,7 @@ def scale(name, column, row, rows):
     if name == "summary":   # one that is far below the others has their rounding
         key = rows[0].index("key")   # load cases precede it
         figure = row[key].removeprefix("increment_error_")
+        figure = QUANTITY.get(figure, figure)
         alike = [row] + [other for other in rows[1:] if other[:key] == row[:key] and
                          (other[key] == figure or figure.startswith("approach_") and other[key].startswith("approach_"))]
         return max(abs(real(other[column]) or 0.0) for other in alike)
