@@ -20,7 +20,7 @@ module epcont_app_help
   character(len=*), parameter :: page(*) = [character(len=280) :: &
     '.TH EPCONT 1 '//program_date//' "'//program_name//' '//program_version//'" "User Commands"', &
     '.SH NAME'//newline// &
-    program_name//' \- frictionless elastoplastic contact of plane and axisymmetric bodies', &
+    program_name//' \- elastoplastic contact of plane and axisymmetric bodies', &
     '.SH SYNOPSIS', &
     '.B '//program_name, &
     '.RI [ options ]', &
@@ -61,7 +61,7 @@ contains
     integer :: k
 
     text = 'usage: epcont [options] DECK...'//newline//newline// &
-           'Solves frictionless elastoplastic contact of plane and axisymmetric bodies.'//newline// &
+           'Solves elastoplastic contact of plane and axisymmetric bodies.'//newline// &
            'Input: NASTRAN bulk data. Results: DECK.lst and DECK.*.csv.'//newline//newline
     do k = 1, size(options)
       option = options(k)

@@ -1,4 +1,4 @@
-!> epcont: frictionless elastoplastic contact of plane and axisymmetric bodies. Only this program sets the
+!> epcont: elastoplastic contact of plane and axisymmetric bodies. Only this program sets the
 !> exit status.
 program epcont_main
   use, intrinsic :: iso_c_binding, only: c_bool, c_int

@@ -293,7 +293,7 @@ module epcont_deck_catalogue
     '  FID; id; friction', &
     '  FSTIF; real ignored; stiffness of sticking: exact', &
     '  ; blank;', &
-    '  MU1; real zero from=0 to=100; coefficient of friction']
+    '  MU1; real needed from=0 to=100; coefficient of friction']
 
   character(len=*), parameter :: cards(*) = [scene_cards, load_cards]
 

@@ -49,7 +49,7 @@ contains
       integer :: k
 
       call listing%line(program_name//' '//program_version// &
-                        '   frictionless elastoplastic contact in two dimensions')
+                        '   elastoplastic contact in two dimensions')
       call listing%line('')
       if (len(run%deck%title) > 0) call listing%say(printable(run%deck%title))
       if (.not. run%has_cases()) call list_titles(run, listing)
