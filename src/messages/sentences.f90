@@ -125,10 +125,12 @@ contains
     class(solution_type), intent(in) :: run
     character(len=:), allocatable :: text
 
+    text = ' displacements grow without bound (perfectly plastic material)'
+    if (any(abs(run%answer%contact%escape) > 0.0_wp)) text = ' '//escaping(run)
     associate (last => run%answer%history(size(run%answer%history)))
       text = when(run%answer%runs_away, 'limit load exceeded ')//'at load factor '// &
              short_real(last%load_factor)//when(run%model%controls%sequence, ' of the load case')// &
-             when(run%answer%runs_away, ': displacements grow without bound (perfectly plastic material)', &
+             when(run%answer%runs_away, ':'//text, &
                   ' after '//plural(last%iteration, 'iteration')//' displacements still change by '// &
                   short_real(last%change)//' of the largest (increase PARAM MAXIT, or '// &
                   other_way(run)//')')// &

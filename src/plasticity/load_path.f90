@@ -188,6 +188,7 @@ contains
     type(planned_model), intent(inout) :: scene   !! gets the loads of the result
     type(equilibrium_iteration), intent(inout) :: iteration
     class(observer), intent(inout) :: watch
+    logical :: escapes   !! more of the loads move a body that is in equilibrium so far
 
     self%runs_away = iteration%runs_away
     self%factorizations = iteration%factorizations()
@@ -195,9 +196,14 @@ contains
     self%lacks_memory = any(iteration%linear%body%lacks_memory)
     if (self%failed_body > 0) return
     associate (contact => iteration%state%contact)
-      if (self%carried .and. scene%model%controls%flow_theory .and. contact%state == contact_no_equilibrium) &
+      escapes = self%carried .and. scene%model%controls%flow_theory .and. &
+                contact%state == contact_no_equilibrium
+      if (escapes) then
         self%lost_contact = sum(self%contact%force) <= little*self%largest_force
-      if (self%lost_contact .or. &
+        self%runs_away = .not. self%lost_contact
+        self%contact%escape = contact%escape
+      end if
+      if (escapes .or. &
           .not. (iteration%converged .or. .not. self%carried .or. contact%state /= contact_solved)) then
         call iteration%return_to(scene, self%solved_state, self%load_factor, watch)
         if (iteration%failed_body > 0) self%condition = huge(1.0_wp)

@@ -72,7 +72,17 @@ class Cylinders(unittest.TestCase):
         self.assertLessEqual(sum(row["state"] == "sticks" for row in rows if row["subcase"] == "2"), 1)
         for rule in RULES:
             said, _ = run(friction.cattaneo(n=4, pushes=(1.001,)).text(), rule, status=1)
-            self.assertRegex(said, r"SUBCASE 2: the load moves the body of GRID \d+ along \+x \(SUPORT at GRID \d+\), and neither contact nor friction resists it")
+            self.assertRegex(said, r": the load moves the body of GRID \d+ along \+x \(SUPORT at GRID \d+\), and neither contact nor friction resists it")
+
+    def test_load_that_slips(self):
+        """A push of 1.25 mu P slips at .8 of it: results are those of the last increment before, halved to 1/64 of 1/4 of the load."""
+        deck = friction.cattaneo(n=4, pushes=(1.25,)).text().replace("NLPARM  2       1", "NLPARM  2       4")
+        for rule in RULES:
+            said, listing = run(deck, rule, status=1)
+            self.assertIn("SUBCASE 2: limit load exceeded at load factor", said)
+            self.assertIn("neither contact nor friction resists it. Results are for load factor 0.7969, the last converged load step", said)
+            forces = [line.split()[-1] for line in listing.splitlines() if "total friction force" in line]
+            self.assertAlmostEqual(float(forces[-1]) / (1.25 * 204 / 256 * 0.25892247145), 1.0, delta=1e-5)
 
 
 class Slipping(unittest.TestCase):
