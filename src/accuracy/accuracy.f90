@@ -45,6 +45,8 @@ module epcont_accuracy_accuracy
     real(wp), allocatable :: body_force(:, :)
     type(contact_sensitivity) :: sensitivity
     logical, allocatable :: weak(:)                !! pairs with uncertain contact state [pairs]
+    !> Tangential rows that may slip although they stick, or the reverse; not allocated: unknown
+    logical, allocatable :: weak_friction(:)       !! [tangential rows]
     !> The SUPORT DOF of the mode carries a point load [motions]
     logical, allocatable, private :: point_load(:)
   contains
@@ -224,7 +226,7 @@ contains
     where (self%zone%pressure >= 0.0_wp) self%zone%pressure = &
       max(self%zone%pressure, &
           self%total_force/sum(answer%contact%force)*answer%zones%max_pressure)
-    self%weak = self%find_weak(scene, linear, line, answer)
+    call self%find_weak(scene, linear, line, answer)
   end subroutine assess_sums
 
   !> Estimate errors of the total contact force and its resultants on bodies. Zero if loads alone determine
@@ -304,16 +306,16 @@ contains
     end do
   end function beside_point_loads
 
-  !> Find pairs with a force below its error, and open pairs that such a force would close [pairs].
-  pure function find_weak(self, scene, linear, line, answer) result(weak)
-    class(accuracy_type), intent(in) :: self
+  !> Find pairs with a force below its error, and open pairs that such a force would close; and with friction
+  !! those that may slip although they stick, or stick although they slip.
+  pure subroutine find_weak(self, scene, linear, line, answer)
+    class(accuracy_type), intent(inout) :: self
     type(planned_model), intent(in) :: scene       !! solved model
     type(linear_problem), intent(in) :: linear     !! of its last solve
     type(contact_line), intent(in) :: line         !! of its pairs
     type(answer_type), intent(in) :: answer        !! of the last solve
-    logical, allocatable :: weak(:)
     real(wp) :: off(scene%model%contact%pairs)   !! error of the pressure [stress]
-    real(wp), allocatable :: compliance(:)       !! [rows]
+    real(wp), allocatable :: compliance(:)       !! [length/force] [rows]
     integer :: k, z
 
     compliance = linear%rule%compliance()
@@ -328,10 +330,16 @@ contains
     end do
     ! From here on `off` is the error of the force. The smallest gap error is the compliance times this error.
     off = off*line%tributary + self%sensitivity%rounding*maxval(answer%contact%force)
-    weak = merge(answer%contact%force <= off, &
-                 answer%contact%gap <= compliance(:size(off))*off, &
-                 answer%contact%touching)
-  end function find_weak
+    associate (contact => answer%contact, n => size(off), sliding => scene%model%contact%sliding)
+      self%weak = merge(contact%force <= off, contact%gap <= compliance(:n)*off, contact%touching)
+      if (.not. allocated(contact%slip)) return
+      ! Friction has the error of its limit.
+      off = scene%model%contact%friction*off
+      self%weak_friction = contact%touching(sliding) .and. &
+        merge(scene%model%contact%friction(sliding)*contact%force(sliding) - abs(contact%friction_force) <= &
+              off(sliding), abs(contact%slip) <= compliance(n + 1:)*off(sliding), contact%sticking)
+    end associate
+  end subroutine find_weak
 
   !> Find the elements with the largest errors, largest first; of equal ones (up to rounding), the first.
   !! Empty if there are no elements.

@@ -302,7 +302,7 @@ contains
         total%work = total%work + force*opening
         total%terms = total%terms + abs(force*opening)
         if (k > model%contact%pairs) then
-          call check_friction(model, forces, k, opening, found)
+          call check_friction(model, forces, k, opening, roundings*epsilon(1.0_wp)*travel, found)
           cycle
         end if
         rounding = roundings*epsilon(1.0_wp)*max(abs(model%contact%initial_gap(k)), travel)
@@ -316,11 +316,12 @@ contains
   end subroutine add_pairs
 
   !> Check the friction of a pair: its force is at most mu R, and it is mu R against any slip.
-  pure subroutine check_friction(model, force, row, displacement, found)
+  pure subroutine check_friction(model, force, row, displacement, rounding, found)
     type(model_type), intent(in) :: model
     real(wp), intent(in) :: force(:)       !! of all rows [force]
     integer, intent(in) :: row             !! tangential row
     real(wp), intent(in) :: displacement   !! of B relative to A [length]
+    real(wp), intent(in) :: rounding       !! of this displacement [length]
     type(certificate_type), intent(inout) :: found   !! its `slid` is that before, then that of this answer
     real(wp) :: most, slip
 
@@ -330,7 +331,8 @@ contains
       most = model%contact%friction(model%contact%sliding(j))*max(force(model%contact%sliding(j)), 0.0_wp)
     end associate
     found%excess = max(found%excess, abs(force(row)) - most)
-    found%force_slip = max(found%force_slip, abs(slip)*abs(most + sign(force(row), slip*force(row))))
+    found%force_slip = max(found%force_slip, max(abs(slip) - rounding, 0.0_wp)* &
+                           abs(most + sign(force(row), slip*force(row))))
   end subroutine check_friction
 
   !> Find the checked values and their limits, in the order of `figure_name`.

@@ -258,24 +258,33 @@ contains
                                    sum(run%accuracy%element))//' of the error; element '// &
                text_of(run%model%mesh%element_id(run%accuracy%worst(1)))//' is at '// &
                centre_name(run%model, run%accuracy%worst(1)))
-    if (.not. any(run%accuracy%weak)) return   ! nor is it known of each pair
-    call list_pairs('closed pair', 'carry less force than its estimated error and may be open', .true.)
-    call list_pairs('open pair', 'have a gap below its estimated error and may be closed', .false.)
+    associate (contact => run%answer%contact, found => run%accuracy, id => run%model%contact%pair_id, &
+               pair => run%model%contact%sliding)
+      call list_pairs('closed pair', 'carry less force than its estimated error and may be open', &
+                      ': the mesh is too coarse', id, contact%touching, found%weak)
+      call list_pairs('open pair', 'have a gap below its estimated error and may be closed', '', id, &
+                      .not. contact%touching, found%weak)
+      if (.not. allocated(found%weak_friction)) return
+      call list_pairs('sticking pair', 'are within the estimated error of their limit and may slip', '', &
+                      id(pair), contact%touching(pair) .and. contact%sticking, found%weak_friction)
+      call list_pairs('slipping pair', 'slip less than the estimated error and may stick', '', id(pair), &
+                      contact%touching(pair) .and. .not. contact%sticking, found%weak_friction)
+    end associate
 
   contains
 
-    !> List pairs in contact, or open pairs, whose state is uncertain.
-    subroutine list_pairs(noun, what, touching)
+    !> List the pairs of a state that is uncertain.
+    subroutine list_pairs(noun, what, if_most, id, chosen, weak)
       character(len=*), intent(in) :: noun, what
-      logical, intent(in) :: touching
-      logical, allocatable :: chosen(:)
+      character(len=*), intent(in) :: if_most   !! in place of their ids, if most are uncertain; empty: ids
+      integer, intent(in) :: id(:)              !! [pairs]
+      logical, intent(in) :: chosen(:), weak(:)   !! in this state, and uncertain [pairs]
 
-      chosen = run%answer%contact%touching .eqv. touching
-      associate (uncertain => chosen .and. run%accuracy%weak)
+      associate (uncertain => chosen .and. weak)
         if (any(uncertain)) call listing%say(text_of(count(uncertain))//' of '// &
             plural(count(chosen), noun)//' '//what// &
-            when(2*count(uncertain) > count(chosen) .and. touching, ': the mesh is too coarse', &
-                 ': '//joined(pack(run%model%contact%pair_id, uncertain), ' ', most_pairs)))
+            when(2*count(uncertain) > count(chosen) .and. if_most /= '', if_most, &
+                 ': '//joined(pack(id, uncertain), ' ', most_pairs)))
       end associate
     end subroutine list_pairs
   end subroutine list_mesh

@@ -154,7 +154,7 @@ contains
         return
       end if
       call plan%say('elastic material only: one solve, no iteration')
-      if (scene%model%controls%sequence) &
+      if (scene%model%controls%sequence .and. .not. scene%iteration%follows) &
         call plan%say('a sequence of load cases: without plastic strain, each is independent of those before')
       return
     end if
