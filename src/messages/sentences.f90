@@ -58,6 +58,14 @@ contains
     end select
   end function sentence_of
 
+  !> Does the rest of the loads move a body, after a part of them was in equilibrium? No solve of it is in the
+  !! history then.
+  pure logical function has_escaped(run)
+    class(solution_type), intent(in) :: run
+
+    has_escaped = any(abs(run%answer%contact%escape) > 0.0_wp)
+  end function has_escaped
+
   !> Name the body that the load moves, and its direction.
   pure function escaping(run) result(text)
     class(solution_type), intent(in) :: run
@@ -125,12 +133,16 @@ contains
     class(solution_type), intent(in) :: run
     character(len=:), allocatable :: text
 
-    text = ' displacements grow without bound (perfectly plastic material)'
-    if (any(abs(run%answer%contact%escape) > 0.0_wp)) text = ' '//escaping(run)
+    if (has_escaped(run)) then
+      text = 'limit load exceeded after load factor '//short_real(run%answer%load_factor)// &
+             when(run%model%controls%sequence, ' of the load case')//': '//escaping(run)// &
+             '. Results are those at this load factor'
+      return
+    end if
     associate (last => run%answer%history(size(run%answer%history)))
       text = when(run%answer%runs_away, 'limit load exceeded ')//'at load factor '// &
              short_real(last%load_factor)//when(run%model%controls%sequence, ' of the load case')// &
-             when(run%answer%runs_away, ':'//text, &
+             when(run%answer%runs_away, ': displacements grow without bound (perfectly plastic material)', &
                   ' after '//plural(last%iteration, 'iteration')//' displacements still change by '// &
                   short_real(last%change)//' of the largest (increase PARAM MAXIT, or '// &
                   other_way(run)//')')// &
@@ -160,6 +172,8 @@ contains
     if (run%verdict%reason == reason_lost_contact) text = ' after load factor '// &
       short_real(run%answer%load_factor)
     if (run%verdict%reason /= reason_limit_load) return
+    text = ' after load factor '//short_real(run%answer%load_factor)//':'
+    if (has_escaped(run)) return
     text = ' at load factor '//short_real(run%answer%history(size(run%answer%history))%load_factor)
     if (run%answer%carried) text = text//'; last converged '//short_real(run%answer%load_factor)//':'
   end function limit_load

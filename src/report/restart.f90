@@ -31,7 +31,7 @@ contains
 
     if (.not. run%has_end()) then
       call raise(error, status_no_answer, path// &
-                 ': not written: the last load case did not reach its end, or nothing can yield')
+                 ': not written: the last load case did not reach its end, or nothing can yield or slip')
       return
     end if
     values = [real(run%deck%subcase(run%case)%id, wp), marks_of(run%model)]

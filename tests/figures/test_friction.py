@@ -79,8 +79,10 @@ class Cylinders(unittest.TestCase):
         deck = friction.cattaneo(n=4, pushes=(1.25,)).text().replace("NLPARM  2       1", "NLPARM  2       4")
         for rule in RULES:
             said, listing = run(deck, rule, status=1)
-            self.assertIn("SUBCASE 2: limit load exceeded at load factor", said)
-            self.assertIn("neither contact nor friction resists it. Results are for load factor 0.7969, the last converged load step", said)
+            self.assertIn("SUBCASE 2: limit load exceeded after load factor 0.7969 of the load case: the load moves the body", said)
+            self.assertIn("neither contact nor friction resists it. Results are those at this load factor", said)
+            at_once, _ = run(friction.cattaneo(n=4, pushes=(90.0,)).text(), rule, status=1)   # 1/64 is too much
+            self.assertIn("exceeded after load factor 0.0 of", at_once)
             forces = [line.split()[-1] for line in listing.splitlines() if "total friction force" in line]
             self.assertAlmostEqual(float(forces[-1]) / (1.25 * 204 / 256 * 0.25892247145), 1.0, delta=1e-5)
 
