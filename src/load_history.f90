@@ -77,6 +77,7 @@ contains
 
     if (self%iteration%follows) self%loads = self%model%loads   ! else the path has one step, which keeps them
     if (allocated(self%increment_error)) deallocate (self%increment_error)
+    if (allocated(self%start) .and. .not. self%is_flow()) deallocate (self%start)
   end subroutine begin_case
 
   !> Follow the loads in this number of load steps, and evaluate the state found.
@@ -292,7 +293,7 @@ contains
   end subroutine begin_replay
 
   !> End a load case: estimate the error of its increments, and keep its end for the next one of a sequence.
-  !! Without plastic strain, equilibrium does not depend on the loads before.
+  !! Elastic bodies without contact do not depend on the loads before, but friction in the next one does.
   subroutine end_case(self, valid)
     class(loaded_model), intent(inout) :: self
     logical, intent(in) :: valid   !! the answer is valid
@@ -300,12 +301,16 @@ contains
     if (valid .and. self%is_flow() .and. allocated(self%other)) self%increment_error = self%errors()
     if (allocated(self%start)) deallocate (self%start)
     if (allocated(self%other_start)) deallocate (self%other_start)
-    if (.not. (valid .and. self%has_memory())) return
+    if (.not. (valid .and. self%model%controls%sequence)) return
     allocate (self%start)
     self%start%path_end = self%end_of()
     if (allocated(self%certificate%history)) self%start%replayed = self%certificate%history
     if (allocated(self%certificate%worked)) self%start%worked = self%certificate%worked
-    if (allocated(self%other)) call move_alloc(self%other_end, self%other_start)
+    if (.not. self%is_flow()) then
+      self%other_start = self%start%path_end
+    else if (allocated(self%other)) then
+      call move_alloc(self%other_end, self%other_start)
+    end if
   end subroutine end_case
 
   !> Store the ends of the last load case in an archive, or restore them as the start of the next one. They
@@ -335,14 +340,14 @@ contains
   pure logical function has_end(self)
     class(loaded_model), intent(in) :: self
 
-    has_end = allocated(self%start)
+    has_end = allocated(self%start) .and. self%has_memory()
   end function has_end
 
   !> Can a load case start where the one before has ended?
   pure logical function can_start(self)
     class(loaded_model), intent(in) :: self
 
-    can_start = self%has_end() .or. .not. self%has_memory()
+    can_start = allocated(self%start) .or. .not. self%has_memory()
   end function can_start
 
   !> Are the loads followed in increments: by flow theory, or with friction?

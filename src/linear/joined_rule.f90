@@ -62,7 +62,7 @@ contains
 
     self%failed = .false.
     call self%line%take_load(scene%model%loads%load)
-    if (allocated(self%search%gamma)) redundant = self%rigid%redundant
+    if (allocated(self%rigid%redundant)) redundant = self%rigid%redundant   ! not if it was not balanced
     self%search%lower = self%problem%lower
     self%search%upper = self%problem%upper
     if (allocated(self%problem%friction)) then

@@ -38,7 +38,7 @@ contains
     type(solved_state), intent(in) :: state
 
     self%times_before = 0.0_wp
-    if (self%times /= 0.0_wp .and. self%times /= 1.0_wp) then
+    if (allocated(self%last) .and. self%times /= 0.0_wp .and. self%times /= 1.0_wp) then
       self%before = self%last%deformation
       self%force = self%last%contact%force
       self%approach = self%last%contact%approach

@@ -146,6 +146,18 @@ class Incline(unittest.TestCase):
                 listing = path.with_suffix(".lst").read_text()
             self.assertNotIn("attempts:", listing)
 
+    def test_contact_off(self):
+        """The block, held at its top, is pushed without contact; then friction resists its way back."""
+        cases = "".join(f"SUBCASE {case}\nLOAD = {load}\n{contact}" for case, load, contact in ((1, 1, ""), (2, 11, "BCONTACT = NONE\n"), (3, 1, "")))
+        deck = ("SOL 106\nCEND\nSPC = 1\n" + cases + self.text(0, 0.3).replace("SUPORT,5,1,5,2,6,2", "SPC1,1,12,7,8\nLOAD,11,1.,1.,1,1.,2")
+                .replace("ENDDATA", "FORCE,2,5,,1.,1.\nFORCE,2,6,,1.,1.\nENDDATA"))
+        for rule in RULES:
+            rows, _ = run(deck, rule)
+            for row in (row for row in rows if row["subcase"] == "3"):
+                self.assertLess(float(row["slip"]), -1e-4)
+                self.assertAlmostEqual(float(row["friction_force"]), 0.3 * float(row["force"]), delta=1e-12)
+            self.assertEqual(rows[-1]["subcase"], "3")
+
     def test_without_friction(self):
         said, _ = run(self.text(0.05, 0.3).replace("ENDDATA", "PARAM,FRICTION,NO\nENDDATA"), "AUTO", status=1)
         self.assertIn("and no contact resists it", said)

@@ -121,6 +121,12 @@ class LoadCases(unittest.TestCase):
             with self.subTest(rule):
                 self.check("layer_lines/layer_lines.dat", param=f"PARAM,RULE,{rule}\n")
 
+    def test_after_a_case_without_equilibrium(self):
+        for rule in "CONRY", "JOINED":
+            status, tables = run(of_factors(INPUT / "ball/ball_on_flat.dat", [1.0, -1.0, 0.5], param=f"PARAM,RULE,{rule}\n"))
+            self.assertEqual(status, 1)
+            self.assertEqual([row["value"] for row in tables["summary"] if row["key"] == "status"], ["valid", "no equilibrium", "valid"])
+
     def test_in_proportion(self):
         """If loads grow or fall while the contacts stay, much is kept from case to case."""
         for rule in ["CONRY", "JOINED"]:
