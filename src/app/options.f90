@@ -28,7 +28,7 @@ module epcont_app_options
                 more='For many small decks. The listing then contains the requested tables of nodes and '// &
                      'elements.'), &
     option_type('--vtk', 'write DECK.vtu and DECK.contact.vtu for ParaView'), &
-    option_type('--vtk-all', 'the same after each increment of flow theory, and DECK.pvd for all', &
+    option_type('--vtk-all', 'the same after each increment, and DECK.pvd for all', &
                 more='Of increment 1: DECK.inc1.vtu, or DECK.case2.inc1.vtu with several load cases. '// &
                      'The time in DECK.pvd is the load factor, plus the number of the load case less 1.'), &
     option_type('--memory', 'reject decks that need more memory (default 16)', 'GB'), &
