@@ -185,7 +185,8 @@ contains
       found%worked%moment = answer%moment
       found%worked%turn = turn
       found%worked%off_curve = found%off_curve
-      if (present(worked) .and. .not. unstressed) &
+      ! The energy of a nonlinear elastic material is not quadratic.
+      if (present(worked) .and. .not. (unstressed .or. any(model%sections%curve%elastic))) &
         found%energy = max(found%energy, found%worked%imbalance(worked, total%energy))
     end if
     found%curve_tolerance = max(valid_to, curve_tolerance)
