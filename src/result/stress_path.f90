@@ -2,6 +2,7 @@
 !> component falls while the loads grow, and if stress deviators hardly turn (paper, introduction).
 module epcont_result_stress_path
   use epcont_base_kinds, only: wp
+  use epcont_base_tolerances, only: no_effect
   use epcont_base_tolerances, only: rounded_off
   use epcont_element_kinematics, only: components
   use epcont_material_elasticity, only: equivalent_stress
@@ -46,9 +47,10 @@ contains
       end associate
     end do
     path%falling = count(falling)
-    path%worst = maxloc(turn, dim=1, mask=answer%plastic)
-    if (path%worst == 0) return
-    path%turn = turn(path%worst)
+    if (.not. any(answer%plastic)) return
+    path%turn = maxval(turn, mask=answer%plastic)
+    ! If angles are equal up to rounding, the first element is named.
+    path%worst = findloc(answer%plastic .and. turn >= (1.0_wp - no_effect)*path%turn, .true., dim=1)
     path%mean_turn = sum(turn)/count(answer%plastic)
   end function find_stress_path
 
