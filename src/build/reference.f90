@@ -146,7 +146,7 @@ contains
       call check_choices(deck, choice, id, word, 'the deck has no such set', set_remedy(id), found)
   end subroutine chosen_sets
 
-  !> Remedy for a set that does not exist: the sets of the deck.
+  !> Name the sets of the deck, as a remedy for a set that does not exist.
   pure function set_remedy(ids) result(text)
     integer, intent(in) :: ids(:)   !! sets of all cards
     character(len=:), allocatable :: text

@@ -95,9 +95,8 @@ contains
     self%off_curve = numbers(2)
   end subroutine pass
 
-  !> Find the larger of the energy that is missing or left in an increment and the largest negative
-  !! dissipation of a point, over the sum of absolute energies. Stress errors may cause as much as
-  !! `off_curve`.
+  !> Find the error of the energy balance of an increment, or the largest negative dissipation of a point if
+  !! that is larger, over the sum of absolute energies. Errors of the stresses (`off_curve`) are subtracted.
   pure real(wp) function imbalance(self, before, points)
     class(work_state), intent(in) :: self
     type(work_state), intent(in) :: before

@@ -25,11 +25,11 @@ module epcont_contact_friction
   real(wp), parameter :: escaped = 1.0e4_wp
   !> Force, in scaled units, of a pair that overlaps and cannot deform.
   real(wp), parameter :: crushed = 1.0e8_wp
-  !> Maximum number of pairs for which other solutions are sought: the time grows with its fourth power.
+  !> With more pairs, no other solutions are sought: the time grows with the fourth power of their number.
   integer, parameter :: search_limit = 100
-  !> Number of pairs that are searched whatever the spectral radius.
+  !> With at most this number of pairs, other solutions are always sought.
   integer, parameter :: few_pairs = 10
-  !> Steps of the power iteration for the spectral radius.
+  !> Number of steps of the power iteration.
   integer, parameter :: power_steps = 30
 
 contains
@@ -84,7 +84,7 @@ contains
                           spread(0.0_wp, 1, size(edge, 1)), rigid)
   end function forces_in_cones
 
-  !> First guess of the states: those of the known forces, else of the guess, else all pairs stick.
+  !> Find the states to begin with: those of the known forces or of a guess, or all pairs stick.
   pure type(pair_states) function first_states(problem, own, start) result(states)
     type(contact_problem), intent(in) :: problem
     type(friction_problem), intent(in) :: own
@@ -193,7 +193,7 @@ contains
               state%states%closed .and. other%states%slip /= state%states%slip
   end subroutine compare_from
 
-  !> Spectral radius of the matrix mu |dR/dT| of all pairs, all closed.
+  !> Compute the spectral radius of mu |dR/dT|, with all pairs closed.
   real(wp) function coupling_radius(problem) result(radius)
     type(friction_problem), intent(in) :: problem
     type(friction_bounds) :: without

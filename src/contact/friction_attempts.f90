@@ -1,6 +1,7 @@
-!> Attempts to find the states of pairs with friction: exchanges of all wrong pairs, problems with given
-!> bounds that are mu R of the problem before, and paths from sticking pairs to Coulomb friction. Each ends
-!> with the equations of Coulomb friction and the test of their signs.
+!> Attempts to find the states of pairs with friction. First, all wrong pairs are exchanged. Then problems
+!> with given bounds are solved, which are mu R of the problem before. Then paths lead from sticking pairs to
+!> Coulomb friction. Each answer is solved again with the equations of Coulomb friction, and its signs are
+!> tested.
 module epcont_contact_friction_attempts
   use epcont_base_kinds, only: i8, wp
   use epcont_base_tolerances, only: negligible, solved_to
@@ -23,7 +24,7 @@ module epcont_contact_friction_attempts
   integer, parameter, public :: random_limit = 40
   !> Number of further paths; they and random states are tried for at most this number of pairs.
   integer, parameter :: path_limit = 10, few_pairs = 50
-  !> Maximum number of pairs for a path: its time grows with their fourth power.
+  !> With more pairs, no path is followed: the time grows with the fourth power of their number.
   integer, parameter :: many_pairs = 400
   !> Bound of the forces of sticking pairs, far above all forces in scaled units.
   real(wp), parameter :: unbounded = 1.0e30_wp

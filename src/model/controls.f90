@@ -36,7 +36,8 @@ module epcont_model_controls
     logical :: by_inversion = .false.  !! PARAM FLEXIB INVERT: flexibility by inversion, at any cost
     logical :: paper_ratio = .false.   !! PARAM MUP PAPER: Poisson's ratio (2-4) in the equivalent strain
     logical :: steps_by_accuracy = .false.   !! flow theory: PARAM ACCURACY chooses the number of increments
-    logical :: flow_theory = .false.   !! PARAM THEORY FLOW: each increment continues from the one before
+    !> Each increment continues from the one before: PARAM THEORY FLOW, and elastic models with friction
+    logical :: flow_theory = .false.
     logical :: sequence = .false.      !! each load case starts from the end of the one before
     logical :: original = .false.      !! PARAM ORIGINAL YES: the methods of the program of about 1980
   end type controls_type

@@ -3,7 +3,7 @@ module epcont_report_figure_list
   use epcont_base_kinds, only: wp
   use epcont_messages_names, only: percent, when
   use epcont_messages_outcome, only: reason_of
-  use epcont_report_columns, only: estimate, full_number, known, listed_number
+  use epcont_report_columns, only: estimate, full_number, known, listed_number, number, rounding
   implicit none
   private
   public :: figure_list, figure_type, new_figure_list
@@ -24,7 +24,7 @@ module epcont_report_figure_list
     type(figure_type), allocatable :: figure(:)   !! with free space
     integer :: count = 0
   contains
-    procedure :: put, list_as, put_word, put_error, put_increment_error
+    procedure :: put, put_relative, list_as, put_word, put_error, put_increment_error
     procedure, private :: append
   end type figure_list
 
@@ -50,6 +50,18 @@ contains
     if (present(note)) figure%note = note
     call self%append(figure)
   end subroutine put
+
+  !> Add a number that the listing has relative to another one.
+  subroutine put_relative(self, key, unit, value, name, relative)
+    class(figure_list), intent(inout) :: self
+    character(len=*), intent(in) :: key, unit
+    real(wp), intent(in) :: value
+    character(len=*), intent(in) :: name   !! in the listing
+    real(wp), intent(in) :: relative       !! its value there, which may be rounding
+
+    call self%put(key, unit, number, value, name)
+    call self%list_as(listed_number(rounding, relative, 0.0_wp))
+  end subroutine put_relative
 
   !> Replace the text of the last number in the listing.
   subroutine list_as(self, listed)

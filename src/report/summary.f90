@@ -185,22 +185,18 @@ contains
 
     associate (c => run%certificate)
       call figures%put('equilibrium_residual', none, rounding, c%equilibrium, 'equilibrium residual')
-      call figures%put('smallest_force', force, number, c%smallest_force, &
-                       'largest pull / largest force')
-      call figures%list_as(listed_number(rounding, max(0.0_wp, -c%smallest_force)/c%force_scale, 0.0_wp))
-      call figures%put('smallest_gap', length, number, c%smallest_gap, &
-                       'largest overlap of a pair / largest length')
-      call figures%list_as(listed_number(rounding, c%overlap/c%length_scale, 0.0_wp))
-      call figures%put('largest_force_gap_product', 'force*length', number, c%force_gap, &
-                       'largest force times gap')
-      call figures%list_as(listed_number(rounding, c%force_gap/c%force_scale/c%length_scale, 0.0_wp))
+      call figures%put_relative('smallest_force', force, c%smallest_force, 'largest pull / largest force', &
+                                max(0.0_wp, -c%smallest_force)/c%force_scale)
+      call figures%put_relative('smallest_gap', length, c%smallest_gap, &
+                                'largest overlap of a pair / largest length', c%overlap/c%length_scale)
+      call figures%put_relative('largest_force_gap_product', 'force*length', c%force_gap, &
+                                'largest force times gap', c%force_gap/c%force_scale/c%length_scale)
       if (run%model%contact%has_friction()) then
-        call figures%put('friction_above_limit', force, number, c%excess, &
-                         'friction above mu R / largest force')
-        call figures%list_as(listed_number(rounding, c%excess/c%force_scale, 0.0_wp))
-        call figures%put('largest_force_slip_product', 'force*length', number, c%force_slip, &
-                         'largest missing friction times slip')
-        call figures%list_as(listed_number(rounding, c%force_slip/c%force_scale/c%length_scale, 0.0_wp))
+        call figures%put_relative('friction_above_limit', force, c%excess, &
+                                  'friction above mu R / largest force', c%excess/c%force_scale)
+        call figures%put_relative('largest_force_slip_product', 'force*length', c%force_slip, &
+                                  'largest missing friction times slip', &
+                                  c%force_slip/c%force_scale/c%length_scale)
       end if
       call figures%put('stress_off_curve', none, rounding, c%off_curve, 'stress error')
       call figures%put('curve_tolerance', none, size_of, c%curve_tolerance, &
