@@ -19,7 +19,7 @@ module epcont_evaluation
   use epcont_plasticity_law_of_state, only: factor_law, linearise
   use epcont_plasticity_newton, only: newton_method
   use epcont_plasticity_observer, only: observer
-  use epcont_result_answer, only: answer_type
+  use epcont_result_answer, only: answer_type, pair_sticks
   use epcont_result_body_force, only: find_body_forces
   use epcont_result_contact_line, only: contact_line, find_contact_line
   use epcont_result_displacement_gradient, only: find_gradients
@@ -57,11 +57,9 @@ module epcont_evaluation
     type(certificate_type) :: certificate
     type(accuracy_type) :: accuracy
     type(kept_factors) :: kept           !! from load case to load case
-    !> Flow theory: plastic history before the increment, for the certificate [points]
-    type(replayed_history), allocatable :: replayed(:)
-    !> Tangential displacements before the increment, for the certificate [length] [tangential rows]
-    real(wp), allocatable :: slid(:)
-    type(work_state), allocatable :: worked   !! the same: forces and energy; not allocated: unknown
+    ! State before the increment, for the certificate; not allocated if the loads are not followed:
+    type(replayed_history), allocatable :: replayed(:)   !! plastic history [points]
+    type(work_state), allocatable :: worked              !! forces, energy and displacements
     type(stress_path), allocatable :: stress_path        !! total theory; not allocated: unknown
   contains
     procedure :: evaluate
@@ -81,8 +79,7 @@ contains
 
     call self%find_results(watch)
     associate (model => self%model, answer => self%answer)
-      call certify(model, answer, self%iteration%off_curve, self%certificate, self%replayed, self%slid, &
-                   self%worked)
+      call certify(model, answer, self%iteration%off_curve, self%certificate, self%replayed, self%worked)
       if (answer%converged .and. self%certificate%valid) &
         self%certificate%scene = look_through(model, answer%displacement, answer%contact%force)
     end associate
@@ -130,7 +127,7 @@ contains
     associate (contact => answer%contact, pair => model%contact%sliding, mu => model%contact%friction)
       sticking = .false.
       sideways = 0.0_wp
-      sticking(pair) = contact%sticking
+      sticking(pair) = answer%friction_states(pair) == pair_sticks
       sideways(pair) = contact%friction_force
       missing = 0.0_wp
       where (contact%force > 0.0_wp) &

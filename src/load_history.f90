@@ -29,7 +29,7 @@ module epcont_load_history
   type, extends(path_end) :: case_end
     ! Of the certificate:
     type(replayed_history), allocatable :: replayed(:)   !! plastic history [points]
-    type(work_state), allocatable :: worked   !! forces and energy
+    type(work_state) :: worked   !! forces, energy and displacements
   end type case_end
 
   type, extends(evaluated_model) :: loaded_model
@@ -139,9 +139,9 @@ contains
           if (.not. self%certificate%valid) exit
         end if
         call path%commit(self%planned_model, kept%linear, answer)
-        if (is_result .and. allocated(self%certificate%history)) self%replayed = self%certificate%history
-        if (is_result) self%slid = self%certificate%slid
-        if (is_result .and. allocated(self%certificate%worked)) self%worked = self%certificate%worked
+        if (.not. is_result) cycle
+        self%replayed = self%certificate%history
+        self%worked = self%certificate%worked
       end do
       complete = path%is_complete()
       call path%finish(kept%linear, kept%virgin, answer)
@@ -220,7 +220,7 @@ contains
   pure type(increment_record) function end_figures(self)
     class(loaded_model), intent(in) :: self
 
-    end_figures = increment_of(self%answer, size(self%answer%history))
+    end_figures = increment_of(self%answer, size(self%answer%history), self%model%contact%sliding)
     end_figures%stress = self%answer%stress
     if (allocated(self%answer%contact%friction_force)) &
       end_figures%friction = self%answer%contact%friction_force
@@ -249,8 +249,14 @@ contains
 
     if (self%increments == size(self%increment)) call self%make_room(max(1, 2*self%increments))
     self%increments = self%increments + 1
-    self%increment(self%increments) = increment_of(self%answer, iterations)
-    if (self%keeps_states) self%increment(self%increments)%state = state_to_draw(self%answer)
+    associate (now => self%increment(self%increments), worked => self%certificate%worked)
+      now = increment_of(self%answer, iterations, self%model%contact%sliding)
+      now%friction_work = worked%friction_work
+      now%dissipated = worked%dissipated
+      if (self%increments > 1) &
+        now%dissipated = now%dissipated + self%increment(self%increments - 1)%dissipated
+      if (self%keeps_states) now%state = state_to_draw(self%answer)
+    end associate
   end subroutine add_increment
 
   !> Change the length of the list. gfortran 12 leaks an array constructor of such a type.
@@ -279,14 +285,12 @@ contains
     class(loaded_model), intent(inout) :: self
 
     if (allocated(self%replayed)) deallocate (self%replayed)
-    if (allocated(self%slid)) deallocate (self%slid)
     if (allocated(self%worked)) deallocate (self%worked)
-    if (.not. self%is_flow()) return
+    if (.not. (self%is_flow() .or. self%model%controls%sequence)) return
     if (allocated(self%start)) then
-      if (allocated(self%start%replayed)) self%replayed = self%start%replayed
-      self%slid = self%model%contact%slides(self%start%state%displacement)   ! its pairs may be others
-      if (allocated(self%start%worked)) self%worked = self%start%worked
-    else if (self%iteration%yields) then
+      self%replayed = self%start%replayed
+      self%worked = self%start%worked
+    else
       allocate (self%replayed(self%model%mesh%points))
       self%worked = work_without_end(self%model)
     end if
@@ -304,8 +308,8 @@ contains
     if (.not. (valid .and. self%model%controls%sequence)) return
     allocate (self%start)
     self%start%path_end = self%end_of()
-    if (allocated(self%certificate%history)) self%start%replayed = self%certificate%history
-    if (allocated(self%certificate%worked)) self%start%worked = self%certificate%worked
+    self%start%replayed = self%certificate%history
+    self%start%worked = self%certificate%worked
     if (.not. self%is_flow()) then
       self%other_start = self%start%path_end
     else if (allocated(self%other)) then
@@ -323,13 +327,10 @@ contains
 
     if (file%reading) allocate (self%start)
     call self%start%pass(file)
-    if (allocated(self%start%replayed)) replayed = transfer(self%start%replayed, [0.0_wp])
+    if (.not. file%reading) replayed = transfer(self%start%replayed, [0.0_wp])
     call file%pass(replayed)
-    if (allocated(replayed)) then
-      self%start%replayed = transfer(replayed, [replayed_history()])
-      if (file%reading) allocate (self%start%worked)
-      call self%start%worked%pass(file)
-    end if
+    self%start%replayed = transfer(replayed, [replayed_history()])
+    call self%start%worked%pass(file)
     other = [allocated(self%other_start)]
     call file%pass(other)
     if (file%reading .and. other(1)) allocate (self%other_start)

@@ -17,7 +17,7 @@ module epcont_accuracy_accuracy
   use epcont_linear_linear_problem, only: linear_problem
   use epcont_model_arrays, only: angle
   use epcont_plan_planned_model, only: planned_model
-  use epcont_result_answer, only: answer_type
+  use epcont_result_answer, only: answer_type, pair_slips, pair_sticks
   use epcont_result_contact_line, only: contact_line
   implicit none
   private
@@ -316,7 +316,7 @@ contains
     type(answer_type), intent(in) :: answer        !! of the last solve
     real(wp) :: off(scene%model%contact%pairs)   !! error of the pressure [stress]
     real(wp), allocatable :: compliance(:)       !! [length/force] [rows]
-    integer :: k, z
+    integer :: k, state(size(scene%model%contact%sliding)), z
 
     compliance = linear%rule%compliance()
     off = 0.0_wp
@@ -335,9 +335,10 @@ contains
       if (.not. allocated(contact%slip)) return
       ! Friction has the error of its limit.
       off = scene%model%contact%friction*off
-      self%weak_friction = contact%touching(sliding) .and. &
-        merge(scene%model%contact%friction(sliding)*contact%force(sliding) - abs(contact%friction_force) <= &
-              off(sliding), abs(contact%slip) <= compliance(n + 1:)*off(sliding), contact%sticking)
+      state = answer%friction_states(sliding)
+      self%weak_friction = state == pair_sticks .and. &
+        scene%model%contact%friction(sliding)*contact%force(sliding) - abs(contact%friction_force) <= &
+        off(sliding) .or. state == pair_slips .and. abs(contact%slip) <= compliance(n + 1:)*off(sliding)
     end associate
   end subroutine find_weak
 

@@ -8,7 +8,7 @@ module epcont_certificate_certificate
   use epcont_base_tolerances, only: valid_to
   use epcont_certificate_element_checks, only: checked_elements, check_elements, ratio
   use epcont_certificate_free_expansion, only: expansion_type, held_stress, part_of_held
-  use epcont_certificate_increment_work, only: point_energies, work_state
+  use epcont_certificate_increment_work, only: point_energies, work_state, work_without_end
   use epcont_certificate_mass_force, only: given_load
   use epcont_certificate_scene, only: overlaps_type
   use epcont_certificate_tied, only: check_springs, check_ties, gather_ties, longest_arms
@@ -62,10 +62,10 @@ module epcont_certificate_certificate
     logical :: balanced = .false.         !! all values except `off_curve` are within tolerance
     logical :: valid = .false.            !! `off_curve` is within tolerance too
     type(overlaps_type) :: scene          !! penetration of bodies; searched if all else is valid
-    !> Flow theory: plastic history after the increment, from displacements alone [points]
+    !> Increments: plastic history after the increment, from displacements alone [points]
     type(replayed_history), allocatable :: history(:)
     real(wp), allocatable :: slid(:)      !! tangential displacements [length] [tangential rows]
-    type(work_state), allocatable :: worked   !! flow theory: forces and energy after the increment
+    type(work_state), allocatable :: worked   !! increments: forces and energy after the increment
   contains
     procedure :: figures
     procedure :: has_spoilt
@@ -92,7 +92,7 @@ module epcont_certificate_certificate
     real(wp) :: stored = 0.0_wp, work = 0.0_wp   !! work of the stresses, and of the forces [energy]
     real(wp) :: terms = 0.0_wp                   !! sum of absolute terms of these two sums
     type(expansion_type) :: expansion
-    type(point_energies) :: energy               !! flow theory
+    type(point_energies) :: energy               !! increments
     real(wp) :: strained = 0.0_wp                !! sum of volume times largest strain over all points
                                                  !! [length**3]
   end type balance_type
@@ -101,18 +101,17 @@ contains
 
   !> Check an answer. Its inputs are the displacements with and without rigid-body displacements, the
   !! reactions, the stresses at the integration points and the contact forces.
-  subroutine certify(model, answer, curve_tolerance, found, before, slid, worked)
+  subroutine certify(model, answer, curve_tolerance, found, before, worked)
     type(model_type), intent(in) :: model   !! model
     type(answer_type), intent(in) :: answer   !! answer to check
     real(wp), intent(in) :: curve_tolerance   !! largest stress error that the iteration allows
     type(certificate_type), intent(out) :: found   !! the certificate, without its search for penetration
-    !> Flow theory: history before the increment [points]
+    !> Increments: history before the increment [points]
     type(replayed_history), intent(in), optional :: before(:)
-    !> Tangential displacements before the increment; absent: zero [length] [tangential rows]
-    real(wp), intent(in), optional :: slid(:)
-    !> Flow theory: forces and energy before the increment; absent: unknown
+    !> Increments: forces, energy and displacements before the increment; absent: unknown, without slip
     type(work_state), intent(in), optional :: worked
-    real(wp) :: load(directions, model%mesh%nodes)
+    real(wp), dimension(directions, model%mesh%nodes) :: load
+    real(wp), dimension(directions, model%mesh%nodes) :: start   ! displacements before the increment
     type(balance_type) :: total
     real(wp) :: forces, largest_force, largest_stress, length
     real(wp), dimension(size(model%constraints%platen)) :: torque, turn   ! of the rotating platens
@@ -133,7 +132,7 @@ contains
     if (present(before)) found%history = before
     call add_elements(model, answer, largest_stress, total, found, before)
     if (present(before)) then
-      allocate (found%worked)
+      found%worked = work_without_end(model)
       found%worked%stored = 0.5_wp*springs + total%energy%stored
       found%worked%force = total%residual
     end if
@@ -157,9 +156,10 @@ contains
       total%terms = sum(abs(load*u)) + sum(abs(reaction*u)) + abs(total%stored) + &
               part_of_held*total%expansion%held_work
     end associate
-    allocate (found%slid(size(model%contact%sliding)), source=0.0_wp)
-    if (present(slid)) found%slid = slid
-    if (model%contact%pairs > 0) call add_pairs(model, answer, load, total, found)
+    start = 0.0_wp
+    if (present(worked)) start = worked%displacement
+    found%slid = model%contact%slides(answer%displacement)
+    if (model%contact%pairs > 0) call add_pairs(model, answer, load, start, total, found)
     largest_force = max(maxval(total%element_force), maxval(abs(load)), &
         part_of_held*total%expansion%held_force)
     if (any(answer%contact%force > 0.0_wp)) largest_force = max(largest_force, found%force_scale)
@@ -185,6 +185,9 @@ contains
       found%worked%moment = answer%moment
       found%worked%turn = turn
       found%worked%off_curve = found%off_curve
+      found%worked%dissipated = total%energy%dissipated + total%energy%rubbed
+      if (present(worked)) found%worked%friction_work = &
+        -0.5_wp*sum((worked%friction + found%worked%friction)*(answer%displacement - start))
       ! The energy of a nonlinear elastic material is not quadratic.
       if (present(worked) .and. .not. (unstressed .or. any(model%sections%curve%elastic))) &
         found%energy = max(found%energy, found%worked%imbalance(worked, total%energy))
@@ -275,13 +278,15 @@ contains
 
   !> Find the smallest force and gap and the largest product of pairs, and check friction. Add the work of the
   !! forces, and subtract these from the residual.
-  subroutine add_pairs(model, answer, load, total, found)
+  subroutine add_pairs(model, answer, load, start, total, found)
     type(model_type), intent(in) :: model        !! the model
     type(answer_type), intent(in) :: answer      !! answer to check
     real(wp), intent(in) :: load(:, :)           !! [force] [directions, nodes]
+    real(wp), intent(in) :: start(:, :)          !! displacements before the increment [directions, nodes]
     type(balance_type), intent(inout) :: total   !! sums to add to
     type(certificate_type), intent(inout) :: found
-    real(wp) :: apart(directions), gap, opening, rounding, travel
+    real(wp), dimension(directions) :: apart, force_here, moved   ! moved: since the start
+    real(wp) :: gap, opening, rounding, travel
     real(wp), allocatable :: forces(:)   ! of all rows [force]
     integer :: i, k, node
 
@@ -292,18 +297,24 @@ contains
     do k = 1, model%contact%rows()
       associate (force => forces(k), normal => model%contact%normal(:, k))
         apart = 0.0_wp
+        moved = 0.0_wp
         travel = 0.0_wp
         do i = model%contact%row_start(k), model%contact%row_start(k + 1) - 1
           node = model%contact%row_node(i)
           apart = apart + model%contact%row_weight(i)*answer%displacement(:, node)
+          moved = moved + model%contact%row_weight(i)*(answer%displacement(:, node) - start(:, node))
           travel = max(travel, maxval(abs(answer%displacement(:, node))))
-          total%residual(:, node) = total%residual(:, node) - model%contact%row_weight(i)*force*normal
+          force_here = model%contact%row_weight(i)*force*normal
+          total%residual(:, node) = total%residual(:, node) - force_here
+          if (k > model%contact%pairs .and. allocated(found%worked)) &
+            found%worked%friction(:, node) = found%worked%friction(:, node) + force_here
         end do
         opening = sum(normal*apart)
         total%work = total%work + force*opening
         total%terms = total%terms + abs(force*opening)
         if (k > model%contact%pairs) then
-          call check_friction(model, forces, k, opening, roundings*epsilon(1.0_wp)*travel, found)
+          call check_friction(model, forces, k, sum(normal*moved), roundings*epsilon(1.0_wp)*travel, &
+                              total%energy, found)
           cycle
         end if
         rounding = roundings*epsilon(1.0_wp)*max(abs(model%contact%initial_gap(k)), travel)
@@ -317,23 +328,24 @@ contains
   end subroutine add_pairs
 
   !> Check the friction of a pair: its force is at most mu R, and it is mu R against any slip.
-  pure subroutine check_friction(model, force, row, displacement, rounding, found)
+  pure subroutine check_friction(model, force, row, slip, rounding, energy, found)
     type(model_type), intent(in) :: model
     real(wp), intent(in) :: force(:)       !! of all rows [force]
     integer, intent(in) :: row             !! tangential row
-    real(wp), intent(in) :: displacement   !! of B relative to A [length]
-    real(wp), intent(in) :: rounding       !! of this displacement [length]
-    type(certificate_type), intent(inout) :: found   !! its `slid` is that before, then that of this answer
-    real(wp) :: most, slip
+    real(wp), intent(in) :: slip           !! of B relative to A in the increment [length]
+    real(wp), intent(in) :: rounding       !! of the slip [length]
+    type(point_energies), intent(inout) :: energy
+    type(certificate_type), intent(inout) :: found
+    real(wp) :: beyond, most   ! slip above rounding [length]
 
     associate (j => row - model%contact%pairs)
-      slip = displacement - found%slid(j)
-      found%slid(j) = displacement
       most = model%contact%friction(model%contact%sliding(j))*max(force(model%contact%sliding(j)), 0.0_wp)
     end associate
     found%excess = max(found%excess, abs(force(row)) - most)
-    found%force_slip = max(found%force_slip, max(abs(slip) - rounding, 0.0_wp)* &
-                           abs(most + sign(force(row), slip*force(row))))
+    beyond = sign(max(abs(slip) - rounding, 0.0_wp), slip)
+    found%force_slip = max(found%force_slip, abs(beyond)*abs(most + sign(force(row), slip*force(row))))
+    energy%rubbed = energy%rubbed - force(row)*beyond
+    energy%least = min(energy%least, -force(row)*beyond)
   end subroutine check_friction
 
   !> Find the checked values and their limits, in the order of `figure_name`.

@@ -1,5 +1,5 @@
-!> Energy balance of an increment of flow theory, by the trapezoidal rule: the work of loads, supports and
-!> contact forces is the change of stored energy, the dissipation and the work in thermal strains.
+!> Energy balance of an increment, by the trapezoidal rule: the work of loads, supports and contact forces,
+!> friction included, is the change of stored energy, the dissipation and the work in thermal strains.
 module epcont_certificate_increment_work
   use epcont_base_archive, only: archive
   use epcont_base_kinds, only: wp
@@ -10,12 +10,13 @@ module epcont_certificate_increment_work
   private
   public :: point_energies, work_state, work_without_end
 
-  !> Energies of points [energy].
+  !> Energies of points and pairs [energy].
   type :: point_energies
     real(wp) :: stored = 0.0_wp       !! elastic, and by the back stress, after the increment
-    real(wp) :: dissipated = 0.0_wp   !! in the increment
+    real(wp) :: dissipated = 0.0_wp   !! by yielding, in the increment
+    real(wp) :: rubbed = 0.0_wp       !! by friction, with the forces at its end
     real(wp) :: heat = 0.0_wp         !! work of the stresses in thermal strains, in the increment
-    real(wp) :: least = 0.0_wp        !! smallest dissipation of a point
+    real(wp) :: least = 0.0_wp        !! smallest dissipation of a point or pair
   contains
     procedure :: add_point
     procedure :: include
@@ -25,9 +26,12 @@ module epcont_certificate_increment_work
   type :: work_state
     !> Sums of loads, reactions and contact forces [force] [directions, nodes]
     real(wp), allocatable :: force(:, :)
+    real(wp), allocatable :: friction(:, :)       !! the part of it that is friction
     real(wp), allocatable :: displacement(:, :)   !! [length] [directions, nodes]
     real(wp), allocatable :: moment(:), turn(:)   !! of supports of rotating platens [force*length], [rad]
     real(wp) :: stored = 0.0_wp                   !! energy, springs included
+    real(wp) :: dissipated = 0.0_wp               !! energy, by yielding and friction, in the increment
+    real(wp) :: friction_work = 0.0_wp            !! by trapezoids; may be negative if increments are large
     real(wp) :: off_curve = 0.0_wp                !! stress error
   contains
     procedure :: imbalance
@@ -40,9 +44,10 @@ contains
   pure type(work_state) function work_without_end(model) result(state)
     type(model_type), intent(in) :: model
 
-    allocate (state%force, state%displacement, mold=model%mesh%x)
+    allocate (state%force, mold=model%mesh%x)
     state%force = 0.0_wp
-    state%displacement = 0.0_wp
+    state%friction = state%force
+    state%displacement = state%force
     allocate (state%moment(size(model%constraints%platen)), source=0.0_wp)
     state%turn = state%moment
   end function work_without_end
@@ -87,6 +92,7 @@ contains
 
     numbers = [self%stored, self%off_curve]
     call file%pass(self%force)
+    call file%pass(self%friction)
     call file%pass(self%displacement)
     call file%pass(self%moment)
     call file%pass(self%turn)
@@ -95,8 +101,9 @@ contains
     self%off_curve = numbers(2)
   end subroutine pass
 
-  !> Find the error of the energy balance of an increment, or the largest negative dissipation of a point if
-  !! that is larger, over the sum of absolute energies. Errors of the stresses (`off_curve`) are subtracted.
+  !> Find the error of the energy balance of an increment, or the largest negative dissipation of a point or
+  !! pair if that is larger, over the sum of absolute energies. Errors of the stresses (`off_curve`) are
+  !! subtracted.
   pure real(wp) function imbalance(self, before, points)
     class(work_state), intent(in) :: self
     type(work_state), intent(in) :: before

@@ -34,7 +34,8 @@ module epcont_report_columns
   integer, parameter :: longest_cell = 40
 
   !> Units of columns.
-  character(len=*), parameter, public :: length = 'length', force = 'force', stress = 'force/length2'
+  character(len=*), parameter, public :: length = 'length', force = 'force', stress = 'force/length2', &
+    energy = 'force*length'
 
   !> Larger values are written as `> 10` and `> 1E6`: rounding changes their digits.
   real(wp), parameter :: largest_off_curve = 10.0_wp, largest_factor = 1.0e6_wp

@@ -4,6 +4,7 @@ module epcont_report_friction_table
   use epcont_report_columns, only: column, force, known, length, number, state, stress, table_type, &
       unknown, whole
   use epcont_report_run, only: run_results
+  use epcont_result_answer, only: pair_open, pair_slips
   implicit none
   private
   public :: friction_columns, put_friction, put_stick_zones
@@ -34,24 +35,23 @@ contains
     type(run_results), intent(in) :: run
     type(table_type), intent(inout) :: table
     real(wp) :: shear
-    character(len=6) :: does
-    integer :: j
+    character(len=6), parameter :: does(pair_open:pair_slips) = ['open  ', 'sticks', 'slips ']
+    integer :: how(size(run%model%contact%sliding)), j
 
     associate (contact => run%answer%contact, rows => run%model%contact, travel => run%certificate%slid)
       call table%begin('FRICTION', friction_columns, &
                        [0.0_wp, 0.0_wp, 0.0_wp, spread(maxval(contact%force), 1, 3), &
                         maxval(run%answer%pressure), maxval(abs(contact%slip)), maxval(abs(travel))])
+      how = run%answer%friction_states(rows%sliding)
       do j = 1, size(rows%sliding)
         associate (k => rows%sliding(j))
-          does = 'open'
-          if (contact%touching(k)) does = merge('sticks', 'slips ', contact%sticking(j))
           shear = 0.0_wp
           if (contact%force(k) > 0.0_wp) &
             shear = run%answer%pressure(k)*contact%friction_force(j)/contact%force(k)
           if (run%answer%pressure(k) < 0.0_wp) shear = unknown
           call table%row([rows%pair_id(k)], [run%model%mesh%x(:, rows%pair_node(2, k)), rows%friction(k), &
                          contact%force(k), contact%friction_force(j), rows%friction(k)*contact%force(k), &
-                         shear, contact%slip(j), travel(j)], [does])
+                         shear, contact%slip(j), travel(j)], [does(how(j))])
         end associate
       end do
     end associate

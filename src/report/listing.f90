@@ -18,6 +18,7 @@ module epcont_report_listing
   use epcont_messages_scene_text, only: deeper
   use epcont_report_summary, only: figure_type
   use epcont_report_tables, only: put_table
+  use epcont_result_answer, only: pair_slips, pair_sticks
   implicit none
   private
   public :: list_scene, list_case
@@ -266,9 +267,9 @@ contains
                       .not. contact%touching, found%weak)
       if (.not. allocated(found%weak_friction)) return
       call list_pairs('sticking pair', 'are within the estimated error of their limit and may slip', '', &
-                      id(pair), contact%touching(pair) .and. contact%sticking, found%weak_friction)
+                      id(pair), run%answer%friction_states(pair) == pair_sticks, found%weak_friction)
       call list_pairs('slipping pair', 'slip less than the estimated error and may stick', '', id(pair), &
-                      contact%touching(pair) .and. .not. contact%sticking, found%weak_friction)
+                      run%answer%friction_states(pair) == pair_slips, found%weak_friction)
     end associate
 
   contains

@@ -16,7 +16,7 @@ module epcont_report_restart
 
   !> Head of the file: the bytes `epcontRS`, version of the format, number of values, checksum of the values.
   integer, parameter :: head = 4
-  real(wp), parameter :: magic = transfer('epcontRS', 1.0_wp), version = 1.0_wp
+  real(wp), parameter :: magic = transfer('epcontRS', 1.0_wp), version = 2.0_wp
 
 contains
 

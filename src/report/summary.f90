@@ -7,14 +7,15 @@ module epcont_report_summary
   use epcont_base_tolerances, only: valid_to
   use epcont_certificate_scene, only: little, overlap_place
   use epcont_element_kinematics, only: directions
-  use epcont_report_columns, only: factor, force, known, length, listed_number, number, part, rounding, &
-      size_of, stress
+  use epcont_report_columns, only: energy, factor, force, known, length, listed_number, number, part, &
+      rounding, size_of, stress
   use epcont_model_arrays, only: angle
   use epcont_model_springs, only: spring_stretch
   use epcont_messages_names, only: direction_of, motion_name, point_name, when
   use epcont_messages_outcome, only: limit_of_pressure, reason_of, unbounded
   use epcont_report_figure_list, only: figure_list, figure_type, new_figure_list
   use epcont_report_run, only: run_results
+  use epcont_result_answer, only: pair_slips, pair_sticks
   use epcont_result_stresses, only: first_largest, place_of_point
   implicit none
   private
@@ -98,13 +99,12 @@ contains
     type(run_results), intent(in) :: run
     type(figure_list), intent(inout) :: figures
 
-    associate (contact => run%answer%contact, pair => run%model%contact%sliding)
+    associate (contact => run%answer%contact, pair => run%model%contact%sliding, &
+               state => run%answer%friction_states(run%model%contact%sliding))
       call figures%put('total_friction_force', force, number, sum(abs(contact%friction_force)), &
                        'total friction force')
-      call figures%put_word('pairs_sticking', text_of(count(contact%touching(pair) .and. contact%sticking)), &
-                            'pairs that stick')
-      call figures%put_word('pairs_slipping', text_of(count(contact%touching(pair) .and. .not. &
-                                                            contact%sticking)), 'pairs that slip')
+      call figures%put_word('pairs_sticking', text_of(count(state == pair_sticks)), 'pairs that stick')
+      call figures%put_word('pairs_slipping', text_of(count(state == pair_slips)), 'pairs that slip')
       call figures%put('max_slip', length, number, maxval(abs(contact%slip), mask=contact%touching(pair)), &
                        'largest slip in this increment')
       if (size(run%answer%stick_zones) > 0) call figures%put('stick_half_width', length, known, &
@@ -143,7 +143,7 @@ contains
       id = text_of(run%model%mesh%node_id(run%model%constraints%platen(k)%leader))
       call figures%put('angle_'//id, radian, number, run%answer%angle(k), &
                        'rotation of GRID '//id//' [radian]')
-      if (run%model%constraints%platen(k)%held) call figures%put('moment_'//id, 'force*length', number, &
+      if (run%model%constraints%platen(k)%held) call figures%put('moment_'//id, energy, number, &
                                                      run%answer%moment(k), &
                                              'moment of the support of GRID '//id)
     end do
@@ -189,12 +189,12 @@ contains
                                 max(0.0_wp, -c%smallest_force)/c%force_scale)
       call figures%put_relative('smallest_gap', length, c%smallest_gap, &
                                 'largest overlap of a pair / largest length', c%overlap/c%length_scale)
-      call figures%put_relative('largest_force_gap_product', 'force*length', c%force_gap, &
+      call figures%put_relative('largest_force_gap_product', energy, c%force_gap, &
                                 'largest force times gap', c%force_gap/c%force_scale/c%length_scale)
       if (run%model%contact%has_friction()) then
         call figures%put_relative('friction_above_limit', force, c%excess, &
                                   'friction above mu R / largest force', c%excess/c%force_scale)
-        call figures%put_relative('largest_force_slip_product', 'force*length', c%force_slip, &
+        call figures%put_relative('largest_force_slip_product', energy, c%force_slip, &
                                   'largest missing friction times slip', &
                                   c%force_slip/c%force_scale/c%length_scale)
       end if

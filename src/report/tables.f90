@@ -9,6 +9,7 @@ module epcont_report_tables
       off_curve, rounding, state, stress, table_type, unknown, whole, word
   use epcont_messages_outcome, only: limit_of_pressure
   use epcont_report_friction_table, only: friction_columns, put_friction
+  use epcont_report_increment_table, only: increment_columns, put_increments
   use epcont_report_run, only: run_results
   use epcont_result_stresses, only: place_of_point
   implicit none
@@ -101,18 +102,6 @@ module epcont_report_tables
     column(whole, 'plastic_elements', '', 'elements that yield in this solve', 'yielding', 10), &
     column(whole, 'pivots', '', 'of the contact solver', width=10), &
     column(number, 'load_factor', '', 'part of the loads that the iteration is for', width=0)]
-
-  type(column), parameter :: increment_columns(*) = [ &
-    column(whole, 'increment', '', 'counted from the start of the load case', width=10), &
-    column(number, 'load_factor', '', 'part of the way from the loads before to those of the load case', &
-           'load factor'), &
-    column(known, 'max_pressure', stress, 'empty if there is no boundary', 'p_max'), &
-    column(known, 'half_width', length, 'of the zone with that pressure; empty if unknown', 'half-width'), &
-    column(number, 'approach', length, 'the first one in the summary'), &
-    column(number, 'total_contact_force', force, 'sum over the pairs', 'total force'), &
-    column(whole, 'pairs_in_contact', '', 'their number', 'in contact', 12), &
-    column(whole, 'plastic_elements', '', 'elements that have yielded', 'yielded', 10), &
-    column(whole, 'iterations', '', 'solves from the start of the load case', 'solves', 9)]
 
   type(column), parameter :: pivot_columns(*) = [ &
     column(whole, 'iteration', '', 'counted through all load steps'), &
@@ -280,26 +269,6 @@ contains
       end do
     end associate
   end subroutine put_plastic
-
-  !> Increments of flow theory: one row for each.
-  subroutine put_increments(run, table)
-    type(run_results), intent(in) :: run
-    type(table_type), intent(inout) :: table
-    real(wp) :: approach
-    integer :: k
-
-    call table%begin('INCREMENTS', increment_columns, &
-                     [1.0_wp, maxval(run%increment%pressure), maxval(run%increment%half_width), &
-                      maxval([abs(run%answer%contact%approach), 0.0_wp]), maxval(run%increment%force)])
-    do k = 1, size(run%increment)
-      associate (now => run%increment(k))
-        approach = unknown
-        if (size(now%approach) > 0) approach = now%approach(1)
-        call table%row([k, now%touching, now%yielded, now%iterations], &
-                       [now%load_factor, now%pressure, now%half_width, approach, now%force])
-      end associate
-    end do
-  end subroutine put_increments
 
   !> The first pivots of the simplex in each solve.
   subroutine put_pivots(run, table)

@@ -15,7 +15,7 @@ module epcont_report_vtk
   use epcont_model_model, only: model_type
   use epcont_report_file, only: new_text_file, remove_file, text_file
   use epcont_messages_names, only: when
-  use epcont_result_answer, only: answer_type
+  use epcont_result_answer, only: answer_type, pair_sticks
   use epcont_result_contact_line, only: contact_line, find_contact_line
   implicit none
   private
@@ -138,7 +138,7 @@ contains
       if (contact%has_friction()) then
         slip(contact%sliding) = found%slip
         friction(contact%sliding) = found%friction_force
-        sticking(contact%sliding) = found%sticking
+        sticking(contact%sliding) = answer%friction_states(contact%sliding) == pair_sticks
       end if
     end associate
     zone = 0

@@ -11,6 +11,9 @@ module epcont_result_answer
   private
   public :: answer_type
 
+  !> States of a pair with friction.
+  integer, parameter, public :: pair_open = 0, pair_sticks = 1, pair_slips = 2
+
   !> If rounding takes a larger part of a pivot, the factors may be too stiff to show the error.
   real(wp), parameter :: largest_mended = 1.0e-4_wp
 
@@ -49,6 +52,7 @@ module epcont_result_answer
     real(wp) :: last_correction = huge(1.0_wp)
   contains
     procedure :: largest_pressure
+    procedure :: friction_states
     procedure :: lost
     procedure :: rounding
   end type answer_type
@@ -62,6 +66,16 @@ contains
     largest_pressure = 0.0_wp
     if (any(self%contact%touching)) largest_pressure = maxval(self%pressure, mask=self%contact%touching)
   end function largest_pressure
+
+  !> State of each pair with friction [tangential rows].
+  pure function friction_states(self, sliding) result(state)
+    class(answer_type), intent(in) :: self
+    integer, intent(in) :: sliding(:)   !! pair of each tangential row
+    integer :: state(size(sliding))
+
+    state = pair_open
+    where (self%contact%touching(sliding)) state = merge(pair_sticks, pair_slips, self%contact%sticking)
+  end function friction_states
 
   !> Find the part of the weakest pivot that rounding has taken; or, if the answer was refined with factors
   !! that show the error, the part of the answer.

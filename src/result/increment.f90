@@ -1,11 +1,11 @@
-!> Figures of an increment of flow theory, and the error that the size of the increments causes in those at
+!> Figures of an increment, and the error that the size of the increments causes in those at
 !> the end of a load case.
 !>
 !> The error of backward Euler is proportional to the size of the increments, if these are small. So the
 !> difference to a second run with another number of increments gives it.
 module epcont_result_increment
   use epcont_base_kinds, only: wp
-  use epcont_result_answer, only: answer_type
+  use epcont_result_answer, only: answer_type, pair_slips, pair_sticks
   implicit none
   private
   public :: errors_of_increments, increment_errors, increment_of, increment_record, other_number
@@ -28,6 +28,10 @@ module epcont_result_increment
     real(wp) :: half_width = -1.0_wp    !! of the zone with this pressure; negative: unknown [length]
     real(wp) :: force = 0.0_wp          !! sum of the contact forces [force]
     real(wp) :: sticks = -1.0_wp        !! largest half-width that sticks; negative: unknown [length]
+    real(wp) :: friction_force = 0.0_wp            !! sum of the friction forces' magnitudes [force]
+    integer :: sticking = -1, slipping = -1        !! pairs; negative: no friction
+    real(wp) :: friction_work = 0.0_wp             !! in this increment, by the trapezoidal rule [energy]
+    real(wp) :: dissipated = 0.0_wp                !! since the start of the load case, also by yielding
     real(wp), allocatable :: approach(:)    !! of each rigid-body mode [length] [modes]
     ! At the end of a load case only:
     real(wp), allocatable :: stress(:, :)   !! [stress] [4, elements]
@@ -47,9 +51,10 @@ module epcont_result_increment
 contains
 
   !> Collect the figures of a state.
-  pure type(increment_record) function increment_of(answer, iterations) result(record)
+  pure type(increment_record) function increment_of(answer, iterations, sliding) result(record)
     class(answer_type), intent(in) :: answer
     integer, intent(in) :: iterations
+    integer, intent(in) :: sliding(:)   !! pair of each tangential row
     integer :: z
 
     record%load_factor = answer%load_factor
@@ -60,6 +65,11 @@ contains
     record%force = sum(answer%contact%force)
     record%approach = answer%contact%approach
     if (allocated(answer%stick_zones)) record%sticks = maxval([answer%stick_zones%half_width, -1.0_wp])
+    if (size(sliding) > 0) then
+      record%friction_force = sum(abs(answer%contact%friction_force))
+      record%sticking = count(answer%friction_states(sliding) == pair_sticks)
+      record%slipping = count(answer%friction_states(sliding) == pair_slips)
+    end if
     if (size(answer%zones) == 0) return
     z = maxloc(answer%zones%max_pressure, dim=1)
     record%half_width = answer%zones(z)%half_width

@@ -130,7 +130,7 @@ class Edits(Case):
         deck = self.place / "friction.dat"
         cards = re.sub(r"(?m)^BCONP .*", "BCONP,1,1,2,,,7", LINES.read_text())
         deck.write_text(cards.replace("ENDDATA", "BFRIC,7,,,0.02\nENDDATA"))
-        self.check(deck, 2, "friction")
+        self.check(deck, 2, "friction", "increments")
 
     def test_ties(self):
         """MPC and MPCADD with springs (CELAS1); an RBE2 that rotates under a MOMENT, fixed there or not, with a spring (CELAS2)."""

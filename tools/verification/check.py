@@ -185,6 +185,7 @@ def recompute(scene, tables):
                 rest.setdefault((node, i), []).append(w * (force * pair.normal[i] + friction * pair.tangent[i]))
         if rubbed:
             moved = math.fsum(w * u[node][i] * pair.tangent[i] for node, w in pair.weights.items() for i in (0, 1))
+            works.append(friction * moved)
             pressure = float(tables.contact[name]["pressure"] or 0.0)
             result.tangents.append((friction, float(rubbed["friction"]) * force, moved, rubbed, force, friction / force * pressure if force else 0.0))
     found = {master: angle(scene, u, master) for master in scene.rotating}
@@ -242,8 +243,6 @@ def check(scene, tables, tolerance, found=None):
     bounds["equilibrium"] = bounds["energy"] = max(loose, lost)
     bounds["off_curve"] = max(tolerance, lost, scene.drift)
     allowed = {**bounds, "off_curve": max(tolerance, scene.off_curve + scene.drift) + 4 * lost}  # a large prescribed displacement leaves no digits in the tables
-    if found.tangents:   # friction dissipates work in increments that the tables do not have
-        figures, bounds = {**figures, "energy": float(tables.summary.get(KEYS["energy"], "nan"))}, {**bounds, "energy": tolerance}
     lines, faults = [], 0
 
     def line(name, ours, theirs, good):
@@ -301,6 +300,23 @@ def friction_lines(scene, found, tables, tolerance):
         yield f"friction {column}, largest error", worst, "", worst <= small
     worst = max((row[1] - abs(row[0]) for row in rows if row[3]["state"] == "slips"), default=0.0)
     yield "friction of slipping pairs", worst, "", worst <= bound
+    steps = [row for _, row in tables.rows(tables.path("increments"))] if tables.path("increments").exists() else []
+    if not steps:
+        return
+    end = {**tables.summary, "increment": str(len(steps)), "friction_force": tables.summary.get("total_friction_force"),
+           "approach": next((value for key, value in tables.summary.items() if key.startswith("approach_")), "")}
+    for column, told in steps[-1].items():
+        if column in end:
+            yield f"increments {column}, last", float(end[column] or "nan"), told, told == end[column]
+    start = tables.friction_before() if len(steps) == 1 else None   # the tables hold the ends of load cases only
+    if start is None:
+        return
+    slips = [(start.get(name, (0.0, 0.0)), float(row["friction_force"]), float(row["slid"])) for name, row in tables.friction.items()]
+    terms = math.fsum(abs(force) + abs(one) for (one, _), force, _ in slips) * found.length
+    for column, ours in (("friction_work", math.fsum((one + force) / 2 * (begun - slid) for (one, begun), force, slid in slips)),
+                         ("dissipated", math.fsum(force * (begun - slid) for (_, begun), force, slid in slips))):
+        if column == "friction_work" or not scene.end:   # yielding dissipates, too
+            yield f"increments {column}", ours, steps[0][column], abs(ours - float(steps[0][column])) <= tolerance * abs(ours) + ROUNDINGS * terms
 
 
 def approaches(scene, tables, found):

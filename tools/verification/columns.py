@@ -299,7 +299,7 @@ def not_read(tables):
                    if path.name not in {tables.path(name).name for name in ("summary", "nodes", "elements", "contact", "zones", "bodies", "history", "cases", "increments", "plastic", "friction")})
     lines = [f"not read: {name}.csv {', '.join(columns)}" for name, columns in (("summary", keys), *tables.unread.items()) if columns]
     if tables.path("increments").exists():
-        lines.append("not read: increments.csv half_width, iterations")
+        lines.append("not read: increments.csv half_width, iterations; with friction, only its last row is")
     if len(tables.history) > 1:
         lines.append("not read: history.csv pairs_in_contact, plastic_elements, load_factor, but of its last row")
     lines += [f"not read: {', '.join(files)}"] if files else []

@@ -51,6 +51,15 @@ class Tables:
             if row.pop("subcase", None) == (None if self.case is None else str(self.case)):
                 yield line, row
 
+    def friction_before(self):
+        """Friction force and tangential displacement of each pair at the start of the load case, if its table has them; None if unknown."""
+        cases = list(dict.fromkeys(row.get("subcase") for row in tables.rows(self.path("summary"))))
+        own = cases.index(None if self.case is None else str(self.case))
+        if not own:
+            return {}
+        rows = [row for row in tables.rows(self.path("friction")) if row["subcase"] == cases[own - 1]]
+        return {int(row["pair"]): (float(row["friction_force"]), float(row["slid"])) for row in rows} or None
+
     def read_summary(self):
         path, values, units = self.path("summary"), {}, {}
         for line, row in self.rows(path):
