@@ -125,7 +125,7 @@ contains
     logical :: sticking(size(touching))
 
     associate (contact => answer%contact, pair => model%contact%sliding, mu => model%contact%friction)
-      sticking = .false.
+      sticking = mu > 0.0_wp   ! pairs that supports hold on a line of symmetry have no tangential row
       sideways = 0.0_wp
       sticking(pair) = answer%friction_states(pair) == pair_sticks
       sideways(pair) = contact%friction_force

@@ -337,11 +337,12 @@ contains
     if (other(1)) call self%other_start%pass(file)
   end subroutine pass_ends
 
-  !> Is there an end of a load case for the next one to start from?
+  !> Is there an end of a load case for the next one to start from? Friction may come with the contacts that
+  !! are off in this one.
   pure logical function has_end(self)
     class(loaded_model), intent(in) :: self
 
-    has_end = allocated(self%start) .and. self%has_memory()
+    has_end = allocated(self%start) .and. (self%has_memory() .or. self%model%contact%contact_is_off)
   end function has_end
 
   !> Can a load case start where the one before has ended?

@@ -315,7 +315,7 @@ module epcont_deck_catalogue
     ' (2-4); default EXACT', &
     'ORIGINAL; word NO YES; methods of about 1980: SOLVER BAND, FLEXIB INVERT, RULE CONRY, METHOD'// &
     ' SECANT, TOL 0.01, NLOAD 1, THEORY TOTAL, MUP PAPER, no ACCURACY; default NO', &
-    'NLOAD; whole from=1 to=10000 for=MATS1; load steps; default 1', &
+    'NLOAD; whole from=1 to=10000 for=MATS1/PGAP/BFRIC; load steps; default 1', &
     'SAVE; word NO YES; YES saves the end of the last load case in DECK.restart, from which'// &
     ' another deck continues (RESTART); default NO', &
     'SEARCH; real positive for=BCONP; search distance of BCONP; default twice the longest'// &

@@ -213,6 +213,7 @@ contains
     self%problem%guess_force = contact%row_forces()
     call solve_contact(self%problem, again)
     if (allocated(again%several)) contact%several = again%several
+    contact%searched = again%searched
   end subroutine find_others
 
   !> Add the deformation under some forces.

@@ -88,7 +88,8 @@ contains
     end do
   end subroutine remark_answer
 
-  !> Warn of further answers with friction, and note the pairs whose friction force is undetermined.
+  !> Warn of further answers with friction, or note that they are not searched for. Note the pairs whose
+  !! friction force is undetermined.
   subroutine warn_of_friction(run, found)
     class(solution_type), intent(in) :: run
     type(findings), intent(inout) :: found
@@ -102,6 +103,8 @@ contains
           text_of(run%model%contact%pair_id(findloc(several, .true., dim=1))))
       end associate
     end if
+    if (.not. run%answer%contact%searched) call found%add_note(place_type(), &
+      'friction may allow other answers; they are not searched for, as there are more than 100 pairs')
     still = pack([(k, k=1, run%model%contact%pairs)], run%model%contact%friction > 0.0_wp)
     still = pack(still, [(all(run%model%contact%sliding /= still(k)), k=1, size(still))])
     if (size(still) > 0) call found%add_note(place_type(), plural(size(still), 'pair')// &

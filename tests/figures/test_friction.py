@@ -16,15 +16,15 @@ PROGRAM = os.environ["EPCONT_PROGRAM"]
 RULES = ("CONRY", "JOINED")
 
 
-def run(text, rule, status=0, increments=False):
-    """Rows of friction, the summary of each load case and, on request, the increments; or what was said, if the status is another one."""
+def run(text, rule, status=0, increments=False, listing=False):
+    """Rows of friction, the summary of each load case and, on request, the increments; or what was said and the listing."""
     with tempfile.TemporaryDirectory() as folder:
         path = pathlib.Path(folder) / "deck.dat"
         path.write_text(text.replace("BEGIN BULK", f"BEGIN BULK\nPARAM,RULE,{rule}"), encoding="ascii")
         done = subprocess.run([PROGRAM, "--quiet", path.name], cwd=folder, capture_output=True, text=True, timeout=60, check=False)
         if done.returncode != status:
             raise AssertionError(done.stdout + done.stderr)
-        if status:
+        if status or listing:
             return done.stderr, path.with_suffix(".lst").read_text()
         return [list(csv.DictReader(path.with_suffix(f".{table}.csv").read_text().splitlines()))
                 for table in ["friction", "summary"] + ["increments"] * increments]

@@ -25,7 +25,9 @@ class Punch(unittest.TestCase):
     def test_stick_half_width(self):
         for mu, known in self.KNOWN.items():
             for rule in RULES:
-                rows, _ = run(self.text(mu), rule)
+                rows, summary = run(self.text(mu), rule)
+                # The listing extrapolates the distance from full slip, from the line of symmetry on.
+                self.assertAlmostEqual(values(summary, "stick_half_width")[0] / known, 1.0, delta=0.015, msg=f"{mu} {rule}")
                 count = next(k for k, row in enumerate(rows) if row["state"] == "slips")
                 self.assertEqual({"slips"}, {row["state"] for row in rows[count:]})
                 # In the stick zone the distance from the limit falls with the root of the distance from the end.
@@ -38,6 +40,17 @@ class Punch(unittest.TestCase):
         largest = max(abs(float(row["friction_force"])) for row in one)
         for row, other in zip(one, ten):
             self.assertAlmostEqual(float(row["friction_force"]), float(other["friction_force"]), delta=1e-3 * largest)
+
+
+class Many(unittest.TestCase):
+    """A punch with so much friction that several answers are possible."""
+
+    def test_other_answers_not_searched(self):
+        for n, notes in ((101, 1), (99, 0)):
+            deck = re.sub(r"(?m)^PGAP .*", "PGAP,21,0.,,,,,20.", flat_punch(n=n, size=4.0, element="cquad4", growth=(1.5, 1.5)).text())
+            _, listing = run(deck, "CONRY", listing=True)
+            said = "friction may allow other answers; they are not searched for, as there are more than 100 pairs"
+            self.assertEqual(listing.count(said), notes)
 
 
 class Belt(unittest.TestCase):
