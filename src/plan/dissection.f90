@@ -2,14 +2,13 @@
 !>
 !> A separator divides a set of nodes into two halves. Without the separator the halves are independent, so
 !> each is eliminated first, in the same manner, and the separator after them (George, SIAM J. Numer. Anal. 10
-!> (1973) 345). The separator is the shortest within a band about the median of one coordinate. This is the
-!> coordinate whose median has the fewest nodes with neighbours on the other side.
+!> (1973) 345). The separator has the nodes of one half with neighbours in the other. The halves are those
+!> below and above the median of one coordinate, for which the separator is shortest.
 module epcont_plan_dissection
   use epcont_base_incidence, only: incidence
   use epcont_base_kinds, only: wp
+  use epcont_base_sorting, only: halve
   use epcont_model_model, only: model_type
-  use epcont_plan_separator, only: between, edge, find_separator, left, new_parted_graph, outside, &
-    parted_graph, right
   use epcont_system_threads, only: threads_over
   implicit none
   private
@@ -23,13 +22,6 @@ module epcont_plan_dissection
 
   !> Sets with at most this number of nodes are not divided. Between 12 and 24 the time hardly depends on it.
   integer, parameter :: few = 16
-  !> Part of a set on each side of the band. Between 0.3 and 0.4 operations differ by 3 %. Wider bands help
-  !! regular meshes (by 20 % triangles in alternating directions) and take longer.
-  real(wp), parameter :: end_part = 0.35_wp
-  !> In larger sets the band becomes narrower, by the square root of their size, because paths through a wide
-  !! band take more rounds. The limit keeps the band wider than the tolerance of `threshold`.
-  integer, parameter :: large = 30000
-  real(wp), parameter :: least_square = 1.0_wp/6.0_wp
   !> A coordinate is used only if neither half has more than this part of the set.
   real(wp), parameter :: largest_half = 2.0_wp/3.0_wp
   !> Halves with more nodes are tasks of their own: these take a millisecond or more.
@@ -37,25 +29,23 @@ module epcont_plan_dissection
   !> Coordinates along which sets are divided, and number of nodes whose median represents that of a set.
   integer, parameter :: axes = 5, most_sampled = 128
 
-  !> Bits of `noted`, one for each axis: the node is in the lower half, in the upper half, has neighbours
-  !! across the median while it is in the lower half, in the upper half.
-  integer, parameter :: lower(axes) = [1, 2, 4, 8, 16], to_upper = axes, to_across = 2*axes
-  integer, parameter :: both = 2**to_across - 1
+  !> Position of a node: in one of the halves, or in the separator.
+  integer, parameter :: left = 1, right = 2, edge = 3
 
   !> State of a dissection.
   type :: dissector
-    type(parted_graph) :: graph                ! of the nodes that are not eliminated last
+    type(incidence) :: beside                  ! neighbours of the nodes that are not eliminated last
     real(wp), allocatable :: coordinate(:, :)  ! of these nodes [axes, nodes]
-    integer, allocatable :: noted(:)           ! bits of nodes in the set being divided; 0 of others [nodes]
+    !> Bits of nodes in the set being divided: one for each axis if the node is below the median, and one more
+    !! that is always set; 0 for nodes outside the set [nodes]
+    integer, allocatable :: noted(:)
     integer, allocatable :: order(:)           ! [nodes]
     !> If a front begins at this position: position of the first node eliminated into it; otherwise 0
     integer, allocatable :: below(:)
   contains
     procedure :: divide
-    procedure :: arrange
-    procedure :: lay_band
-    procedure :: best_axis
-    procedure :: widen_band
+    procedure :: cut
+    procedure :: look_across
   end type dissector
 
 contains
@@ -83,7 +73,7 @@ contains
         work%coordinate(:, i) = [x + y, x - y, x, y, further(free(i))]
       end associate
     end do
-    work%graph = new_parted_graph(neighbours(model, free, pairs))
+    work%beside = neighbours(model, free, pairs)
     !$omp parallel num_threads(threads_over(size(free)))
     !$omp single
     call work%divide(1, size(free))
@@ -95,136 +85,98 @@ contains
     found%below = work%below(found%first(:size(found%first) - 1))
   end function dissect
 
-  !> Divide the nodes between two positions of the order, or make them a front if each of them has neighbours
-  !! across. The halves are independent, so threads may work on both.
+  !> Divide the nodes between two positions of the order, or make them a front if one of the halves would have
+  !! only nodes with neighbours across. The halves are independent, so threads may work on both.
   recursive subroutine divide(self, first, last)
     class(dissector), intent(inout) :: self
     integer, intent(in) :: first, last
-    integer :: nodes_of(left:edge)
+    integer :: lefts, node(last - first + 1), rights, side(last - first + 1)
 
     self%below(first) = first
     if (last - first < few) return
-    call self%lay_band(self%order(first:last))
-    call find_separator(self%graph, self%order(first:last))
-    call self%arrange(first, last, nodes_of)
-    if (any(nodes_of(:right) > last - first)) return
-    !$omp task shared(self) firstprivate(first, nodes_of) if(nodes_of(left) > many)
-    call self%divide(first, first + nodes_of(left) - 1)
+    node = self%order(first:last)
+    call self%cut(node, side)
+    self%noted(node) = 0
+    lefts = count(side == left)
+    rights = count(side == right)
+    if (lefts == 0 .or. rights == 0) return
+    self%order(first:last) = [pack(node, side == left), pack(node, side == right), pack(node, side == edge)]
+    !$omp task shared(self) firstprivate(first, lefts) if(lefts > many)
+    call self%divide(first, first + lefts - 1)
     !$omp end task
-    call self%divide(first + nodes_of(left), last - nodes_of(edge))
-    if (nodes_of(edge) > 0) self%below(last - nodes_of(edge) + 1) = first
+    call self%divide(first + lefts, first + lefts + rights - 1)
+    if (lefts + rights < size(node)) self%below(first + lefts + rights) = first
     !$omp taskwait
   end subroutine divide
 
-  !> Order a set: left, right, separator. Afterwards its nodes are outside again.
-  subroutine arrange(self, first, last, nodes_of)
-    class(dissector), intent(inout) :: self
-    integer, intent(in) :: first, last            !! positions of the set
-    integer, intent(out) :: nodes_of(left:edge)   !! number of nodes of each
-    integer :: i, next(left:edge), node(last - first + 1)
-
-    node = self%order(first:last)
-    nodes_of = 0
-    do i = 1, size(node)
-      associate (n => nodes_of(self%graph%side(node(i))))
-        n = n + 1
-      end associate
-    end do
-    next = first + [0, nodes_of(left), 0, size(node) - nodes_of(edge)]
-    do i = 1, size(node)
-      associate (side => self%graph%side(node(i)))
-        self%order(next(side)) = node(i)
-        next(side) = next(side) + 1
-        side = outside
-      end associate
-      self%noted(node(i)) = 0
-    end do
-  end subroutine arrange
-
-  !> Mark the nodes of a set as left of a band, in it, or right of it. If no coordinate divides the set,
-  !! because it has too few values, the positions of the nodes are used instead.
-  recursive subroutine lay_band(self, set)
+  !> Divide a set. If no coordinate divides it, because it has too few values, the positions of the nodes are
+  !! used instead.
+  recursive subroutine cut(self, set, side)
     class(dissector), intent(inout) :: self
     integer, intent(in) :: set(:)
-    real(wp) :: at_left, at_right, beside, sample(most_sampled, axes), median(axes)
-    integer :: axis, i, n
+    integer, intent(out) :: side(:)    !! position of each node
+    real(wp) :: sample(most_sampled, axes), middle(axes)
+    integer :: across(size(set))       ! bit of each axis: the node has neighbours in the other half
+    integer :: lower(axes)             ! number of nodes below each median
+    integer :: crossing(2, axes)       ! those with neighbours across, of the lower and of the upper half
+    integer :: axis, i, n, smaller
 
     n = 0
     do i = 1, size(set), (size(set) - 1)/most_sampled + 1
       n = n + 1
       sample(n, :) = self%coordinate(:, set(i))
     end do
-    median = [(threshold(sample(:n, axis), n/2), axis=1, axes)]
-    axis = self%best_axis(set, median)
+    middle = [(median(sample(:n, axis)), axis=1, axes)]
+    lower = 0
+    do i = 1, size(set)
+      associate (is_lower => merge(1, 0, self%coordinate(:, set(i)) <= middle))
+        lower = lower + is_lower
+        self%noted(set(i)) = 2**axes + sum(is_lower*[(2**n, n=0, axes - 1)])
+      end associate
+    end do
+    call self%look_across(set, across, crossing)
+    axis = minloc(minval(crossing, dim=1), dim=1, &
+                  mask=max(lower, size(set) - lower) <= largest_half*size(set))
     if (axis == 0) then
       do i = 1, size(set)
         self%coordinate(:, set(i)) = i
       end do
-      call self%lay_band(set)
+      call self%cut(set, side)
       return
     end if
-    beside = min(1.0_wp, max(least_square, real(large, wp)/size(set)))
-    beside = n*(0.5_wp - (0.5_wp - end_part)*sqrt(beside))
-    at_left = threshold(sample(:n, axis), nint(beside))
-    at_right = threshold(sample(:n, axis), n - nint(beside))
-    do i = 1, size(set)
-      associate (c => self%coordinate(axis, set(i)))
-        self%graph%side(set(i)) = merge(left, merge(right, between, c > at_right), c <= at_left)
-      end associate
-    end do
-    call self%widen_band(set, axis)
-  end subroutine lay_band
+    side = merge(left, right, btest(self%noted(set), axis - 1))
+    smaller = minloc(crossing(:, axis), dim=1)
+    where (btest(across, axis - 1) .and. side == smaller) side = edge
+  end subroutine cut
 
-  !> Find the coordinate whose median has the fewest nodes of one half with neighbours in the other half; 0 if
-  !! no median divides the set.
-  integer function best_axis(self, set, median)
-    class(dissector), intent(inout) :: self
+  !> Find the nodes of a set that have neighbours across a median, and count those of the lower and of the
+  !! upper half.
+  subroutine look_across(self, set, across, crossing)
+    class(dissector), intent(in) :: self
     integer, intent(in) :: set(:)
-    real(wp), intent(in) :: median(:)   !! [axes]
-    integer :: below(axes), from_lower(axes), from_upper(axes), across, i, j
+    integer, intent(out) :: across(:)        !! bit of each axis [set]
+    integer, intent(out) :: crossing(:, :)   !! [2, axes]
+    integer :: axis, i, j
 
-    below = 0
+    crossing = 0
     do i = 1, size(set)
-      associate (is_lower => merge(1, 0, self%coordinate(:, set(i)) <= median))
-        below = below + is_lower
-        self%noted(set(i)) = sum(lower*is_lower) + shiftl(sum(lower*(1 - is_lower)), to_upper)
+      across(i) = 0
+      associate (own => self%noted(set(i)))
+        do j = self%beside%start(set(i)), self%beside%start(set(i) + 1) - 1
+          associate (other => self%noted(self%beside%group(j)))
+            if (other > 0) across(i) = ior(across(i), ieor(own, other))
+          end associate
+        end do
+        if (across(i) == 0) cycle
+        do axis = 1, axes
+          if (.not. btest(across(i), axis - 1)) cycle
+          associate (many => crossing(merge(left, right, btest(own, axis - 1)), axis))
+            many = many + 1
+          end associate
+        end do
       end associate
     end do
-    from_lower = 0
-    from_upper = 0
-    do i = 1, size(set)
-      across = 0
-      do j = self%graph%beside%start(set(i)), self%graph%beside%start(set(i) + 1) - 1
-        across = ior(across, self%noted(self%graph%beside%group(j)))
-      end do
-      across = iand(iand(across, both), not(self%noted(set(i))))
-      if (across == 0) cycle
-      self%noted(set(i)) = self%noted(set(i)) + shiftl(across, to_across)
-      from_upper = from_upper + merge(1, 0, iand(across, lower) /= 0)
-      from_lower = from_lower + merge(1, 0, iand(shiftr(across, to_upper), lower) /= 0)
-    end do
-    best_axis = minloc(min(from_lower, from_upper), dim=1, &
-                       mask=max(below, size(set) - below) <= largest_half*size(set))
-  end function best_axis
-
-  !> Add left and right nodes that are neighbours to the band. They exist where elements are longer than the
-  !! band is wide.
-  subroutine widen_band(self, set, axis)
-    class(dissector), intent(inout) :: self
-    integer, intent(in) :: set(:), axis
-    integer :: i, j
-
-    associate (beside => self%graph%beside, side => self%graph%side)
-      do i = 1, size(set)
-        if (side(set(i)) /= right .or. .not. btest(self%noted(set(i)), to_across + axis - 1)) cycle
-        do j = beside%start(set(i)), beside%start(set(i) + 1) - 1
-          if (side(beside%group(j)) /= left) cycle
-          side(beside%group(j)) = between
-          side(set(i)) = between
-        end do
-      end do
-    end associate
-  end subroutine widen_band
+  end subroutine look_across
 
   !> Find the neighbours of each of some nodes among these nodes, by their positions in the list.
   function neighbours(model, node, pairs) result(beside)
@@ -274,26 +226,13 @@ contains
     end subroutine add
   end function neighbours
 
-  !> Find a value that is not exceeded by this number of keys, within a sixteenth of all keys, as far as equal
-  !! keys allow. Bisection is faster than sorting.
-  pure real(wp) function threshold(key, wanted)
+  !> Largest of the lower half of some keys.
+  pure real(wp) function median(key)
     real(wp), intent(in) :: key(:)
-    integer, intent(in) :: wanted
-    integer, parameter :: most_steps = 50
-    real(wp) :: high, low
-    integer :: below, step
+    integer :: i, item(size(key))
 
-    low = minval(key)
-    high = maxval(key)
-    do step = 1, most_steps
-      threshold = 0.5_wp*(low + high)
-      below = count(key <= threshold)
-      if (16*abs(below - wanted) <= size(key)) exit
-      if (below > wanted) then
-        high = threshold
-      else
-        low = threshold
-      end if
-    end do
-  end function threshold
+    item = [(i, i=1, size(key))]
+    call halve(key, item)
+    median = maxval(key(item(:size(key)/2)))
+  end function median
 end module epcont_plan_dissection
