@@ -34,7 +34,7 @@ contains
   subroutine put_friction(run, table)
     type(run_results), intent(in) :: run
     type(table_type), intent(inout) :: table
-    real(wp) :: shear
+    real(wp) :: shear(size(run%model%contact%sliding))
     character(len=6), parameter :: does(pair_open:pair_slips) = ['open  ', 'sticks', 'slips ']
     integer :: how(size(run%model%contact%sliding)), j
 
@@ -42,16 +42,14 @@ contains
       call table%begin('FRICTION', friction_columns, &
                        [0.0_wp, 0.0_wp, 0.0_wp, spread(maxval(contact%force), 1, 3), &
                         maxval(run%answer%pressure), maxval(abs(contact%slip)), maxval(abs(travel))])
+      shear = run%answer%shear(rows%sliding)
+      where (run%answer%pressure(rows%sliding) < 0.0_wp) shear = unknown
       how = run%answer%friction_states(rows%sliding)
       do j = 1, size(rows%sliding)
         associate (k => rows%sliding(j))
-          shear = 0.0_wp
-          if (contact%force(k) > 0.0_wp) &
-            shear = run%answer%pressure(k)*contact%friction_force(j)/contact%force(k)
-          if (run%answer%pressure(k) < 0.0_wp) shear = unknown
           call table%row([rows%pair_id(k)], [run%model%mesh%x(:, rows%pair_node(2, k)), rows%friction(k), &
                          contact%force(k), contact%friction_force(j), rows%friction(k)*contact%force(k), &
-                         shear, contact%slip(j), travel(j)], [does(how(j))])
+                         shear(j), contact%slip(j), travel(j)], [does(how(j))])
         end associate
       end do
     end associate

@@ -122,8 +122,8 @@ contains
     subroutine list_summary()
       call listing%heading('SUMMARY')
       call list_figures(listing, figures, [character(len=21) :: 'max_pressure', 'total_contact_force', &
-        'pairs_in_contact', 'total_friction_force', 'pairs_sticking', 'pairs_slipping', 'max_slip', &
-        'stick_half_width', 'approach_', 'angle_', 'moment_', 'spring_', 'plastic_elements', &
+        'pairs_in_contact', 'total_friction_force', 'max_shear', 'pairs_sticking', 'pairs_slipping', &
+        'max_slip', 'stick_half_width', 'approach_', 'angle_', 'moment_', 'spring_', 'plastic_elements', &
         'max_equivalent_stress', 'max_plastic_strain', 'max_displacement', 'lowest_temperature', &
         'highest_temperature', 'status'])
       call listing%heading('CERTIFICATE  (recomputed from displacements and forces alone; tolerance '// &

@@ -98,11 +98,18 @@ contains
   subroutine put_friction(run, figures)
     type(run_results), intent(in) :: run
     type(figure_list), intent(inout) :: figures
+    real(wp) :: most(size(run%model%contact%sliding))   ! largest possible friction [force]
 
     associate (contact => run%answer%contact, pair => run%model%contact%sliding, &
                state => run%answer%friction_states(run%model%contact%sliding))
+      most = run%model%contact%friction(pair)*contact%force(pair)
       call figures%put('total_friction_force', force, number, sum(abs(contact%friction_force)), &
                        'total friction force')
+      call figures%list_as(listed_number(number, sum(abs(contact%friction_force)), sum(most)))
+      call figures%put('max_shear', stress, known, maxval(abs(run%answer%shear(pair))), &
+                       'largest shear traction')
+      call figures%list_as(listed_number(known, maxval(abs(run%answer%shear(pair))), &
+                                         maxval(run%answer%pressure(pair)*run%model%contact%friction(pair))))
       call figures%put_word('pairs_sticking', text_of(count(state == pair_sticks)), 'pairs that stick')
       call figures%put_word('pairs_slipping', text_of(count(state == pair_slips)), 'pairs that slip')
       call figures%put('max_slip', length, number, maxval(abs(contact%slip), mask=contact%touching(pair)), &
@@ -264,6 +271,14 @@ contains
                              limit_of_pressure(run, k))
       call figures%put_error('half_width_zone_'//text_of(k), length, 'half-width of zone '//text_of(k), &
                              run%accuracy%zone(k)%half_width, run%answer%zones(k)%half_width, '')
+    end do
+    do k = 1, size(run%accuracy%zone)
+      if (run%accuracy%zone(k)%largest_shear <= 0.0_wp) cycle   ! without friction
+      associate (zone => run%accuracy%zone(k))
+        call figures%put_error('shear_zone_'//text_of(k), stress, &
+                               'largest shear traction of zone '//text_of(k), zone%shear, &
+                               zone%largest_shear, limit_of_pressure(run, k))
+      end associate
     end do
     do k = 1, run%motions%count
       call figures%put_error('approach_'//motion_key(run, k), motion_unit(run, k), &

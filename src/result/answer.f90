@@ -53,6 +53,7 @@ module epcont_result_answer
   contains
     procedure :: largest_pressure
     procedure :: friction_states
+    procedure :: shear
     procedure :: lost
     procedure :: rounding
   end type answer_type
@@ -76,6 +77,17 @@ contains
     state = pair_open
     where (self%contact%touching(sliding)) state = merge(pair_sticks, pair_slips, self%contact%sticking)
   end function friction_states
+
+  !> Shear traction of each pair with friction; zero without a pressure [stress] [tangential rows].
+  pure function shear(self, sliding)
+    class(answer_type), intent(in) :: self
+    integer, intent(in) :: sliding(:)   !! pair of each tangential row
+    real(wp) :: shear(size(sliding))
+
+    shear = 0.0_wp
+    where (self%contact%force(sliding) > 0.0_wp .and. self%pressure(sliding) > 0.0_wp) &
+      shear = self%pressure(sliding)*self%contact%friction_force/self%contact%force(sliding)
+  end function shear
 
   !> Find the part of the weakest pivot that rounding has taken; or, if the answer was refined with factors
   !! that show the error, the part of the answer.

@@ -48,6 +48,10 @@ class Cylinders(unittest.TestCase):
                 pushes = self.PUSHES[:case]
                 sticks = math.sqrt(1 - (pushes[0] if case == 1 else (pushes[0] - pushes[1]) / 2))
                 self.assertAlmostEqual(values(summary, "stick_half_width")[case] / sticks, 1, delta=0.01)
+                true = friction.largest_traction(pushes)
+                off = [abs(values(summary, "max_shear")[case] - true), values(summary, "mesh_error_shear_zone_1")[case]]
+                self.assertLess(off[0], off[1])
+                self.assertLess(off[1], 3 * off[0])
                 kinks = [1.0] + [math.sqrt(1 - self.PUSHES[0]), sticks][:case]
                 largest = max(abs(friction.traction(pushes, 0.01 * k)) for k in range(101))
                 for row in rows:

@@ -60,6 +60,11 @@ def traction(pushes, x):
     return one(pushes[0]) - (2.0 * one((pushes[0] - pushes[1]) / 2.0) if len(pushes) > 1 else 0.0)
 
 
+def largest_traction(pushes):
+    """Largest magnitude of that traction."""
+    return max(abs(traction(pushes, 0.0005 * k)) for k in range(2001))
+
+
 def pull_off(friction=0.15, overlap=0.02, long=40.0, nu=0.0, around=8, pull=0.004):
     """A ring shrunk on a tube and pulled off along the axis, against Lame."""
     bore, fit, outer = 20.0, 40.0, 60.0

@@ -284,6 +284,9 @@ def friction_lines(scene, found, tables, tolerance):
     rows, bound = found.tangents, tolerance * found.force
     if not rows:
         return
+    shear = max(abs(row[5]) for row in rows)
+    told = tables.summary.get("max_shear", "nan")
+    yield "max_shear", shear, told, abs(shear - float(told)) <= tolerance * shear
     for key, ours in (("total_friction_force", math.fsum(abs(force) for force, *_ in rows)),
                       ("friction_above_limit", max(0.0, *(abs(row[0]) - row[1] for row in rows)))):
         told = tables.summary.get(key, "nan")
@@ -295,7 +298,7 @@ def friction_lines(scene, found, tables, tolerance):
     strange = sum(float(row[3]["friction"]) not in given for row in rows)
     yield "friction coefficients not in the deck", strange, "", not strange
     for column, number, small in (("limit", 1, bound), ("slid", 2, tolerance * found.length), ("force", 4, bound),
-                                  ("shear", 5, tolerance * max(abs(row[5]) for row in rows))):
+                                  ("shear", 5, tolerance * shear)):
         worst = max(abs(row[number] - float(row[3][column] or 0.0)) for row in rows)
         yield f"friction {column}, largest error", worst, "", worst <= small
     worst = max((row[1] - abs(row[0]) for row in rows if row[3]["state"] == "slips"), default=0.0)
