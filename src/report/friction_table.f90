@@ -41,7 +41,7 @@ contains
     associate (contact => run%answer%contact, rows => run%model%contact, travel => run%certificate%slid)
       call table%begin('FRICTION', friction_columns, &
                        [0.0_wp, 0.0_wp, 0.0_wp, spread(maxval(contact%force), 1, 3), &
-                        maxval(run%answer%pressure), maxval(abs(contact%slip)), maxval(abs(travel))])
+                        maxval(run%answer%pressure), spread(maxval(abs(run%answer%displacement)), 1, 2)])
       shear = run%answer%shear(rows%sliding)
       where (run%answer%pressure(rows%sliding) < 0.0_wp) shear = unknown
       how = run%answer%friction_states(rows%sliding)
@@ -61,7 +61,8 @@ contains
     type(table_type), intent(inout) :: table
     integer :: k
 
-    call table%begin('STICK ZONES  (half-width: up to full slip)', stick_columns)
+    call table%begin('STICK ZONES  (half-width: up to full slip)', stick_columns, &
+                     [sum(run%answer%contact%force), 0.0_wp, 0.0_wp])
     do k = 1, size(run%answer%stick_zones)
       associate (zone => run%answer%stick_zones(k))
         call table%row([k, run%model%contact%pair_id([zone%first, zone%last])], &

@@ -39,6 +39,7 @@ contains
     type(run_results), intent(in) :: run
     type(table_type), intent(inout) :: table
     real(wp) :: approach, rubbing(2)
+    real(wp) :: most   ! friction [force]
     integer :: k
 
     call table%begin('INCREMENTS', increment_columns, &
@@ -56,10 +57,10 @@ contains
       end associate
     end do
     if (.not. (table%listed .and. run%model%contact%has_friction())) return
+    most = maxval(run%increment%force)*maxval(run%model%contact%friction)
     call table%begin('FRICTION OF THE INCREMENTS  (work: in each, by trapezoids; dissipated: since the '// &
                      'first, also by yielding)', friction_columns, &
-                     [1.0_wp, maxval(run%increment%friction_force), &
-                      spread(maxval(abs(run%increment%dissipated)), 1, 2)])
+                     [1.0_wp, most, spread(most*maxval(abs(run%answer%displacement)), 1, 2)])
     do k = 1, size(run%increment)
       associate (now => run%increment(k))
         call table%row([k, now%sticking, now%slipping], [now%load_factor, now%friction_force, &

@@ -4,7 +4,7 @@
 module epcont_report_summary
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: newline, text_of
-  use epcont_base_tolerances, only: valid_to
+  use epcont_base_tolerances, only: rounded_off, valid_to
   use epcont_certificate_scene, only: little, overlap_place
   use epcont_element_kinematics, only: directions
   use epcont_report_columns, only: energy, factor, force, known, length, listed_number, number, part, &
@@ -114,6 +114,8 @@ contains
       call figures%put_word('pairs_slipping', text_of(count(state == pair_slips)), 'pairs that slip')
       call figures%put('max_slip', length, number, maxval(abs(contact%slip), mask=contact%touching(pair)), &
                        'largest slip in this increment')
+      call figures%list_as(listed_number(number, maxval(abs(contact%slip), mask=contact%touching(pair)), &
+                                         maxval(abs(run%answer%displacement))))
       if (size(run%answer%stick_zones) > 0) call figures%put('stick_half_width', length, known, &
         maxval(run%answer%stick_zones%half_width), 'largest half-width that sticks')
     end associate
@@ -309,17 +311,27 @@ contains
       end if
       do k = 1, run%motions%count
         call figures%put_increment_error('approach_'//motion_key(run, k), motion_unit(run, k), &
-          motion_name(run, k), error%approach(k), abs(found%approach(k)))
+          motion_name(run, k), beyond_rounding(error%approach(k)), abs(found%approach(k)))
       end do
       if (run%model%contact%has_friction()) then
         call figures%put_increment_error('friction_force', force, 'friction forces of pairs', &
-                                         error%friction, maxval(abs(run%answer%contact%friction_force)))
+                                         error%friction, maxval(run%model%contact%friction* &
+                                                                run%answer%contact%force))
         call figures%put_increment_error('stick_half_width', length, 'half-width that sticks', &
                                          error%sticks, found%sticks)
       end if
       call figures%put_increment_error('stress', stress, 'stresses of elements', error%stress, &
                                        maxval(run%answer%equivalent_stress))
     end associate
+
+  contains
+
+    !> An error of a displacement; 0 if it is rounding of the largest displacement.
+    real(wp) function beyond_rounding(error)
+      real(wp), intent(in) :: error
+
+      beyond_rounding = merge(error, 0.0_wp, error > rounded_off*maxval(abs(run%answer%displacement)))
+    end function beyond_rounding
   end subroutine put_increment_errors
 
   !> Add the effects of rounding and stiffness errors on contact forces.

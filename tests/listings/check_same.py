@@ -25,7 +25,7 @@ KINDS = [{"ux", "uy"}, {"rx", "ry"}, {"sx", "sy", "sz", "txy", "equivalent_stres
 WAY = {"equilibrium_residual", "smallest_force", "smallest_gap", "largest_force_gap_product", "stress_off_curve", "energy_balance",
        "friction_above_limit", "largest_force_slip_product", "iteration_error_displacement", "iteration_error_force", "pivots"}
 #: Figures that set the scale of others: without a push, the friction force is the rounding of the contact force.
-QUANTITY = {"friction_force": "total_contact_force", "total_friction_force": "total_contact_force", "stress": "max_equivalent_stress", "half_width": "stick_half_width",
+QUANTITY = {"friction_force": "total_contact_force", "max_shear": "max_pressure", "total_friction_force": "total_contact_force", "stress": "max_equivalent_stress", "half_width": "stick_half_width",
             "allowed_worst_penetration": "max_displacement"}
 
 
