@@ -2,7 +2,8 @@
 !>
 !> Total theory makes the model a convex minimisation. Each step is a direction of decreasing energy, and all
 !> points along it satisfy supports and contact, since both its ends do. The search finds the zero of the
-!> slope (f_int - f).d, since differences of the energy itself are lost in rounding.
+!> slope (f_int - f).d, since differences of the energy itself are lost in rounding. Friction forces have no
+!> energy: with friction, the contact forces at the end of the step are loads of the search.
 module epcont_plasticity_newton
   use epcont_base_bracket, only: bracket
   use epcont_base_kinds, only: wp
@@ -76,13 +77,14 @@ contains
     type(solved_state), intent(inout) :: about        !! displacement, strain and points
     type(point_state), allocatable :: point(:)
     real(wp), allocatable :: along(:, :), travel(:, :)
-    real(wp) :: length
+    real(wp) :: length, pushed
 
     along = found%strain - about%strain
     travel = found%displacement - about%displacement
     length = 1.0_wp
-    ! Friction forces have no energy.
-    if (.not. (self%takes_full_step .or. model%contact%has_friction())) call find_length(length, point)
+    pushed = 0.0_wp
+    if (model%contact%has_friction()) pushed = work_of_contact()
+    if (.not. self%takes_full_step) call find_length(length, point)
     self%takes_full_step = .false.
     if (length < 1.0_wp) then
       about%displacement = about%displacement + length*travel
@@ -93,6 +95,21 @@ contains
     end if
 
   contains
+
+    !> Work of the contact forces at the end of the step, along the whole step.
+    pure real(wp) function work_of_contact() result(work)
+      real(wp), allocatable :: force(:)
+      integer :: k
+
+      force = found%contact%row_forces()
+      work = 0.0_wp
+      do k = 1, size(force)
+        associate (start => model%contact%row_start(k:k + 1))
+          work = work + force(k)*model%contact%opening(k, travel(:, &
+            model%contact%row_node(start(1):start(2) - 1)))
+        end associate
+      end do
+    end function work_of_contact
 
     !> Find the zero of the slope of the energy, from 0 to 1.
     subroutine find_length(length, point)
@@ -127,7 +144,7 @@ contains
         work(p) = linear%operator%volume(p)*dot_product(state(p)%stress, along(:, p))
       end do
       !$omp end parallel do
-      slope = -sum(model%loads%load*travel)
+      slope = -sum(model%loads%load*travel) - pushed
       do p = 1, size(work)   ! in fixed order
         slope = slope + work(p)
       end do
