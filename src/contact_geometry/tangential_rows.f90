@@ -7,6 +7,10 @@ module epcont_contact_geometry_tangential_rows
   private
   public :: add_tangential_rows
 
+  !> Part of the weights of a pair that can move along the tangent. A node on a line of symmetry has less, of
+  !! nodes beside the one opposite; friction would carry mu R there, on supports.
+  real(wp), parameter :: least_share = 0.01_wp
+
 contains
 
   !> Append a tangential row for each pair with friction, after the rows of the pairs. If the normal is along
@@ -47,21 +51,25 @@ contains
     end associate
   end subroutine add_tangential_rows
 
-  !> Can a node of a pair move along the tangent in some load case?
+  !> Can more than a small share of a pair's weights move along the tangent in some load case?
   pure logical function can_slide(model, pair, tangent)
     type(model_type), intent(in) :: model
     integer, intent(in) :: pair
     real(wp), intent(in) :: tangent(directions)
+    real(wp) :: moving, share, whole
     integer :: c, e
 
-    can_slide = .true.
+    moving = 0.0_wp
+    whole = 0.0_wp
     do e = model%contact%row_start(pair), model%contact%row_start(pair + 1) - 1
       do c = 1, directions
+        share = abs(model%contact%row_weight(e)*tangent(c))
+        whole = whole + share
         associate (leader => model%constraints%leader(c, model%contact%row_node(e)))
-          if (abs(tangent(c)) > 0.0_wp .and. .not. model%constraints%still(c, leader)) return
+          if (.not. model%constraints%still(c, leader)) moving = moving + share
         end associate
       end do
     end do
-    can_slide = .false.
+    can_slide = moving > least_share*whole
   end function can_slide
 end module epcont_contact_geometry_tangential_rows
