@@ -18,7 +18,8 @@ KINDS = {"contact": {"force": ["force"], "length": ["initial_gap", "gap"], "pres
          "elements": {"stress": ["sx", "sy", "sz", "txy", "equivalent_stress"], "strain": ["equivalent_strain"],
                       "modulus": ["secant_modulus"], "place": ["x", "y"]},
          "plastic": {"plastic strain": ["plastic_x", "plastic_y", "plastic_z", "plastic_xy", "accumulated"]},
-         "increments": {"force": ["total_contact_force"], "pressure": ["max_pressure"], "part": ["load_factor"]}}
+         "friction": {"friction": ["friction_force", "limit"], "pressure": ["shear"], "slip": ["slip", "slid"], "coefficient": ["friction"]},
+         "increments": {"force": ["total_contact_force"], "friction": ["friction_force"], "pressure": ["max_pressure"], "part": ["load_factor"]}}
 
 LONGEST = 1000000   # range of ids
 SEQUENTIAL = "66", "106", "NLSTATIC"   # values of SOL whose SUBCASEs follow each other
@@ -79,6 +80,18 @@ class Deck:
         remembers = self.is_sequence and any(at(card, 3) == "PLASTIC" for card in cards)
         theory = parameter.get("THEORY", "FLOW" if remembers or any(integer(at(card, 6), 1) > 1 for card in cards) else "TOTAL")
         return theory == "FLOW"
+
+    def friction(self, card):
+        """Coefficient of friction of a CGAP or BCONP."""
+        name, column, chosen = ("PGAP", 7, at(card, 2) or card[1]) if card[0] == "CGAP" else ("BFRIC", 4, at(card, 6))
+        if not chosen or any(other[1:3] == ["FRICTION", "NO"] for other in self.of("PARAM")):
+            return 0.0
+        return next(real(at(other, column)) for other in self.of(name) if other[1] == chosen)
+
+    @property
+    def by_increments(self):
+        """Do increments follow each other: with flow theory, or with friction if nothing yields?"""
+        return self.is_flow or not self.of("MATS1") and any(self.friction(card) for card in self.of("CGAP") + self.of("BCONP"))
 
     def increments(self):
         """Their number in this load case: NINC of its NLPARM, or PARAM NLOAD; and EPSU."""

@@ -1,7 +1,7 @@
 """Load histories with flow theory: each increment is the minimum of a convex potential with open gaps (the work of the stresses, flow.py).
 
 The first step of an increment is elastic, the others have tangents by differences. Each step is a linear contact problem (solve.py),
-shortened until the potential decreases. Steps iterate to rounding.
+shortened until the potential decreases; with friction there is no potential, and the residual must decrease. Steps iterate to rounding.
 """
 import numpy as np
 
@@ -21,6 +21,7 @@ class History:
 
     def __init__(self, model):
         self.loads, self.memory, self.far = {}, Memory(model), 0.0
+        self.u = np.zeros(2 * len(model.node))
         self.v = np.zeros(len(model.own))
 
     def follow(self, problem, parts):
@@ -30,17 +31,21 @@ class History:
         problem.memory, end = self.memory, model.loads()
         for part in parts:
             model.take_loads({name: part * value + (1 - part) * self.loads.get(name, 0.0) for name, value in end.items()})
-            problem.g = model.initial + model.gap_matrix @ model.held
             if part != parts[0]:
-                self.memory.commit(self.strain)
+                self.commit()
+            problem.begin(self.u)
             found = self.increment(problem)
-            self.strain = model.strains(problem.move(found))
+            self.strain, self.end = model.strains(problem.move(found)), problem.move(found)
             problem.record(part, found)
         return found
 
+    def commit(self):
+        self.memory.commit(self.strain)
+        self.u = self.end
+
     def finish(self, model):
         """Start the next load case from this one."""
-        self.memory.commit(self.strain)
+        self.commit()
         self.loads = model.loads()
 
     def increment(self, problem):
@@ -57,7 +62,7 @@ class History:
                 self.v = found[0]
                 continue
             self.far = max(self.far, u)
-            self.v = self.v + self.part_of_step(problem, step) * step
+            self.v = self.v + self.part_of_step(problem, step, found[1]) * step
             size = abs(model.tie @ step).max(initial=0.0) / (self.far or 1.0)
             if size <= 1e-12 or size <= 1e-9 and size > before / 2:
                 return found
@@ -76,10 +81,19 @@ class History:
         slopes = model.tie.T @ (model.nodal(stress) + model.stretch.T @ pull - model.force) - model.twist[model.own]
         return terms.sum(), abs(terms).sum(), slopes
 
-    def part_of_step(self, problem, step):
+    def part_of_step(self, problem, step, force):
+        """`force`: contact forces at the end of the step."""
         start, size, slopes = self.potential(problem, self.v)
+        slope, push = slopes @ step, problem.n.T @ force
+
+        def merit(v):
+            value, _, slopes = self.potential(problem, v)
+            return np.linalg.norm(slopes - push) if len(problem.model.sliding) else value
+
+        if len(problem.model.sliding):
+            start, size = merit(self.v), np.linalg.norm(push)
+            slope = -start
         part = 1.0
-        while part > LEAST_PART and \
-                self.potential(problem, self.v + part * step)[0] > start + ENOUGH * part * (slopes @ step) + ROUNDING * size:
+        while part > LEAST_PART and merit(self.v + part * step) > start + ENOUGH * part * slope + ROUNDING * size:
             part /= 2
         return part

@@ -49,6 +49,7 @@ class LinePair:
     normal: list
     gap: float
     stands_on: tuple = ()
+    friction: float = 0.0
 
     def weights(self):
         return {**{name: -share for name, share in self.shares.items()}, self.node: 1.0 - self.shares.get(self.node, 0.0)}
@@ -394,7 +395,8 @@ def pairs_of_lines(deck, parameter, sides, x, held, motion, name=lambda g: g, to
     named = [(lines[int(card[2])], lines[int(card[3])]) for card in cards]
     places = list(x.values()) if isinstance(x, dict) else list(x)
     size = sum(max(p[c] for p in places) - min(p[c] for p in places) for c in (0, 1))
-    for members in joined(named):
+    sets = joined(named)
+    for members in sets:
         slave, master = (Line(list({id(one): one for k in members for one in named[k][which]}.values()), list(found.values())) for which in (0, 1))
         ring = sides[frozenset((slave.segments[0].nodes[0], slave.segments[0].nodes[-1]))].thickness is None
         reach = real(parameter.get("SEARCH", ""), SEARCH * max(one.chord for one in slave.segments + master.segments))
@@ -407,6 +409,9 @@ def pairs_of_lines(deck, parameter, sides, x, held, motion, name=lambda g: g, to
         contacts.append(contact)
     if told is not None:
         came_near(contacts, Counter(told), size)
+    for members, contact in zip(sets, contacts):
+        for pair in contact.pairs:
+            pair.friction = deck.friction(cards[members[0]])
     place = x if isinstance(x, dict) else dict(enumerate(x))
     cut = {one.nodes[-end] for one in found.values() for end in (0, 1)
            if (one.mirrored[end] or one.corner[end]) and {(one.nodes[-end], 0), (one.nodes[-end], 1)} & held}

@@ -11,6 +11,9 @@ from shapes import folded, strain_matrices
 from ties import end_of_chains, resolved, rigid_ties, sums
 from yielding import Law
 
+#: Pairs have friction if this part of their weights can move along the tangent.
+LEAST_SHARE = 0.01
+
 
 class Model:
     """`told`: nodes of the other program's pairs of lines: they identify pairs that came near due to loads."""
@@ -125,7 +128,7 @@ class Model:
 
     def unbalanced(self, u, stress, force):
         """Residual forces at all nodes: of stresses, springs, loads and contact forces."""
-        return self.nodal(stress) + self.stretch.T @ (self.pull @ u) - self.force - self.gap_matrix.T @ force
+        return self.nodal(stress) + self.stretch.T @ (self.pull @ u) - self.force - self.contact_matrix.T @ force
 
     def mean(self, values):
         """Mean of each element, over the volumes of its points."""
@@ -203,7 +206,8 @@ class Model:
         return self.held[2 * lead[0] + lead[1]] if self.is_held[2 * lead[0] + lead[1]] else lead
 
     def pairs(self):
-        """For each pair: id, the two nodes named in tables, normal, gap, and its row of the gap matrix."""
+        """For each pair: id, the two nodes named in tables, normal, gap, its row of the gap matrix, and coefficient of friction. `sliding`: pairs with
+        friction that can move along the tangent; their rows of the contact matrix follow those of the gaps."""
         frames = self.deck.frames()
         given = {int(card[1]): real(at(card, 2)) for card in self.deck.of("PGAP")}
         found = []
@@ -212,7 +216,7 @@ class Model:
             along = self.x[b] - self.x[a]
             n = np.array(frames[int(card[8])]) if at(card, 8) else along / np.linalg.norm(along)
             gap = given[int(card[2] or card[1])] + (along @ n if self.parameter.get("GAPGEOM") == "YES" else 0.0)
-            found.append((int(card[1]), (a, b), n, gap, {a: -1.0, b: 1.0}))
+            found.append((int(card[1]), (a, b), n, gap, {a: -1.0, b: 1.0}, self.deck.friction(card)))
         self.contacts = [range(len(found))]
         held = {(int(f) // 2, int(f) % 2) for f in np.flatnonzero(self.is_held)}
         everywhere = {(row, c) for row in range(len(self.node)) for c in (0, 1) if self.leader.get((row, c), (row, c)) in held}
@@ -221,7 +225,7 @@ class Model:
                                      None if self.told is None else [self.row[node] for node in self.told]):
             self.contacts.append(range(len(found), len(found) + len(contact)))
             for pair in contact:
-                found.append((self.node[pair.node], (pair.other(), pair.node), pair.normal, pair.gap, pair.weights()))
+                found.append((self.node[pair.node], (pair.other(), pair.node), pair.normal, pair.gap, pair.weights(), pair.friction))
                 self.stands_on.append(pair.stands_on)
         self.held_directions = held
         self.pair_weights = [pair[4] for pair in found]
@@ -229,11 +233,19 @@ class Model:
         self.ends = [pair[1] for pair in found]
         self.normal = np.array([pair[2] for pair in found]).reshape(-1, 2)
         self.initial = np.array([pair[3] for pair in found])
-        entries = [(k, 2 * row + c, weight * n[c]) for k, (_, _, n, _, weights) in enumerate(found)
-                   for row, weight in weights.items() for c in (0, 1)]
+        along = self.along(self.normal)
+        across = self.along(self.normal[:, ::-1] * [1.0, -1.0])
+        moves = abs(self.lead) @ (~self.dof_held | (self.given != 0.0)) > 0.0
+        mu = np.array([pair[5] for pair in found])
+        self.sliding = np.flatnonzero((mu > 0.0) & (abs(across) @ moves > LEAST_SHARE * abs(across).sum(axis=1).A1))
+        self.friction = mu[self.sliding]
+        self.contact_matrix = sp.vstack([along, across[self.sliding]], format="csr")
+
+    def along(self, direction):
+        """Matrix of the relative displacements of all pairs along these directions."""
+        entries = [(k, 2 * row + c, weight * direction[k, c]) for k, weights in enumerate(self.pair_weights) for row, weight in weights.items() for c in (0, 1)]
         rows, columns, values = np.array(entries).reshape(-1, 3).T
-        places, shape = (rows.astype(int), columns.astype(int)), (len(found), 2 * len(self.node))
-        self.gap_matrix = sp.csr_matrix((values, places), shape=shape)
+        return sp.csr_matrix((values, (rows.astype(int), columns.astype(int))), shape=(len(self.pair), 2 * len(self.node)))
 
     def load(self):
         self.force = np.zeros(2 * len(self.node))

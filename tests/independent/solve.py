@@ -8,6 +8,9 @@ forces, factored again (SuperLU) for every active set. The set: all pairs exchan
 (primal-dual active set); if that cycles, one at a time, the first wrong one (Murty), with weak springs at the
 SUPORT DOFs until the set is found. The answer is solved without springs and refined.
 
+With friction a pair is open, sticks, or slips one way or the other: semismooth Newton steps compare forces with slips; if they cycle,
+only half of the wrong pairs change in each step, by chance; then Lemke's algorithm finds the states (lemke.py).
+
 Yielding (yielding.py): secant steps, each with its contact, until they converge; then Newton with tangents by
 differences, halved if the residual grows. Both iterate to rounding, whatever METHOD and TOL the deck has.
 
@@ -25,6 +28,7 @@ import scipy.sparse.linalg as spl
 
 from deck import DeckError, read
 from history import Diverged, History
+from lemke import friction_states
 from model import Model
 from pressures import pressures
 
@@ -33,8 +37,10 @@ from pressures import pressures
 #: steps finds the answer, or none.
 SETTLED, SECANT_STEPS, FAR = 1e-4, 500, 1e3
 NEWTON_STEPS = 60
-#: Number of answers with springs that are tried.
-APPROACHES = 10
+#: Number of answers with springs that are tried; stiffness of the springs.
+APPROACHES, WEAK = 10, 1e-7
+#: State of a pair; others: 0 in contact, without slip; -1 or 1: sign of its slip.
+OPEN = 2
 
 
 class NoEquilibrium(Exception):
@@ -44,16 +50,22 @@ class NoEquilibrium(Exception):
 class Problem:
     def __init__(self, model):
         self.model = model
-        self.n = (model.gap_matrix @ model.tie).tocsr()
-        self.g = model.initial + model.gap_matrix @ model.held
-        self.exchanges = 0
-        self.touching = np.ones(len(self.g), bool)   # start of the search
+        self.n = (model.contact_matrix @ model.tie).tocsr()   # rows of gaps, then those of slips
+        self.pairs, self.exchanges = len(model.initial), 0
+        self.state = np.zeros(self.pairs, int)   # start of the search
+        self.begin(np.zeros(2 * len(model.node)))
         nothing = np.zeros((len(model.volume), 4))
         self.elastic = model.of_points("secant_matrix", nothing, 4, 4)
         self.memory = model   # or plastic strains (history.py)
         self.increments = []  # rows of their table, by columns
         self.linearise(self.elastic, nothing)
         self.stiff = abs(self.k.diagonal()).max()
+
+    def begin(self, before):
+        """Slips count from these displacements of all nodes."""
+        model = self.model
+        self.g = np.concatenate([model.initial, np.zeros(len(model.sliding))]) + model.contact_matrix @ model.held
+        self.g[self.pairs:] -= model.contact_matrix[self.pairs:] @ before
 
     def linearise(self, d, initial):
         """Stress = d strain + initial at all points."""
@@ -68,13 +80,18 @@ class Problem:
         weak = np.isin(self.model.own, [i for *_, i in self.model.support])
         return sp.diags(factor * self.stiff * weak)
 
-    def solve(self, touching, spring=0.0):
-        """Displacements, forces of the pairs in contact, gaps."""
-        active = np.flatnonzero(touching)
+    def solve(self, state, spring=0.0):
+        """Displacements, forces of all rows, gaps and slips."""
+        slides, mu = self.model.sliding, self.model.friction
+        sign = np.where(state[slides] == OPEN, 0, state[slides])
+        sticks = (state[slides] == 0) & (abs(self.n[self.pairs:]).sum(axis=1).A1 > 0.0)
+        active = np.flatnonzero(np.concatenate([state != OPEN, sticks]))   # rows without gap or slip
+        bound = sp.csr_matrix((-mu * sign, (self.pairs + np.arange(len(slides)), slides)), shape=2 * self.g.shape)
+        drive = (sp.identity(len(self.g), format="csr") + bound)[:, active]   # all forces, of those of the active rows
         n = self.n[active]
         k = self.k + self.springs(spring) if spring else self.k
         scale = self.stiff
-        matrix = sp.bmat([[k, -n.T * scale], [-n * scale, None]], format="csc") if len(active) else k.tocsc()
+        matrix = sp.bmat([[k, -self.n.T @ drive * scale], [-n * scale, None]], format="csc") if len(active) else k.tocsc()
         pulled = self.f + self.springs(spring) @ self.rest if spring else self.f
         right = np.concatenate([pulled, self.g[active] * scale])
         self.exchanges += 1
@@ -91,32 +108,53 @@ class Problem:
         if not np.all(np.isfinite(z)):
             return None
         v = z[:len(self.f)]
-        force = np.zeros(len(self.g))
-        force[active] = z[len(self.f):] * scale
+        force = drive @ z[len(self.f):] * scale
         gap = self.g + self.n @ v
         gap[active] = 0.0
         return v, force, gap
 
-    def wrong(self, touching, v, force, gap):
-        total = max(abs(force).max(initial=0), 1e-300)
-        reach = max(abs(self.g).max(initial=0), abs(v).max(initial=0), 1e-300)
-        return np.where(touching, force < -1e-11 * total, gap < -1e-11 * reach)
+    def better(self, state, v, force, gap):
+        """The states that forces, gaps and slips call for."""
+        small = 1e-11 * max(abs(force).max(initial=0), 1e-300)
+        near = 1e-11 * max(abs(self.g).max(initial=0), abs(v).max(initial=0), 1e-300)
+        (force, friction), (gap, slip) = ((both[:self.pairs], both[self.pairs:]) for both in (force, gap))
+        new = np.where((state != OPEN) & (force < -small), OPEN, np.where((state == OPEN) & (gap < -near), 0, state))
+        of, mu, rows = self.model.sliding, self.model.friction, self.n[self.pairs:]
+        closes, before = (state[of] == OPEN) & (new[of] != OPEN), np.where(state[of] == OPEN, 0, state[of])
+        soft = rows.multiply(rows) @ (1 / np.maximum(abs(self.k.diagonal()), 1e-12 * self.stiff))
+        stiff = 1 / np.where(soft > 0.0, soft, 1.0)   # converts slips to forces
+        bound = mu * np.where(closes, -stiff * gap[of], force[of])
+        pull = friction - stiff * slip
+        wants = np.where(soft > 0.0, np.where(abs(pull) <= bound, 0, -np.sign(pull)), np.where(abs(slip) <= near, 0, np.sign(slip))).astype(int)
+        wrong = np.where(before == 0, (abs(friction) > bound + small) | (soft == 0.0), before * slip < -near)
+        new[of] = np.where((new[of] != OPEN) & (closes | wrong), wants, new[of])
+        return new
 
-    def find(self, spring, one_by_one, limit):
-        touching, tried = self.touching, set()
+    def find(self, spring, changed, limit):
+        state, tried = self.state, set()
         for _ in range(limit):
-            if not one_by_one and touching.tobytes() in tried:
+            if changed is all_changed and state.tobytes() in tried:
                 return None
-            tried.add(touching.tobytes())
-            answer = self.solve(touching, spring)
+            tried.add(state.tobytes())
+            answer = self.solve(state, spring)
             if answer is None:
                 return None
-            wrong = self.wrong(touching, *answer)
-            if not wrong.any():
-                self.touching = touching
-                return touching, answer
-            touching = touching ^ (wrong if not one_by_one else np.arange(len(wrong)) == np.argmax(wrong))
+            better = self.better(state, *answer)
+            if (better == state).all():
+                self.state = state
+                return state, answer
+            state = changed(state, better)
         return None
+
+    def pivoted(self, chance):
+        """States by Lemke's algorithm, with springs."""
+        factor = spl.splu((self.k + self.springs(WEAK)).tocsc())
+        start = self.g + self.n @ factor.solve(self.f + self.springs(WEAK) @ self.rest)
+        found = friction_states(self.n @ factor.solve(self.n.T.toarray()), start, self.model.sliding, self.model.friction,
+                               chance.uniform(0.1, 1.0, self.pairs + 2 * len(self.model.sliding)))
+        state = found and np.where(found[0], OPEN, found[1])
+        answer = found and self.solve(state, WEAK)
+        return answer and (state, answer)
 
     def check_free(self):
         """DeckError if a rigid-body mode remains even with fixed SUPORT DOFs."""
@@ -132,8 +170,8 @@ class Problem:
         """Keep the figures of an increment that ends at this part of the loads."""
         figures = {key: value for key, value, _ in tables(self, *found)["summary"][1]}
         self.increments.append({"increment": len(self.increments) + 1, "load_factor": part, "max_pressure": figures.get("max_pressure"),
-                                **{key: value for key, value in figures.items()
-                                   if key in ("total_contact_force", "pairs_in_contact", "plastic_elements") or key.startswith("approach")}})
+                                **{key.replace("total_f", "f"): value for key, value in figures.items()
+                                   if key in ("total_contact_force", "plastic_elements", "total_friction_force") or key.startswith(("approach", "pairs_"))}})
 
     def answer(self, history=None, parts=()):
         """`history`: the loads before, with flow theory; `parts` of the loads at the ends of increments."""
@@ -186,37 +224,63 @@ class Problem:
 
     def linear_answer(self):
         """Find the set without springs, or with springs that pull to the previous answer, until they no longer change the set."""
-        found, self.rest = self.find(0.0, False, 200), np.zeros(len(self.f))
-        for _ in range(APPROACHES):
-            found = found or self.find(1e-7, False, 200) or self.find(1e-7, True, 20 * len(self.g) + 200)
-            if found is None:
-                raise NoEquilibrium("no set of pairs found")
-            touching, (self.rest, *_) = found
-            exact = self.without_springs(touching)
+        found, self.rest = self.find(0.0, all_changed, 200), np.zeros(len(self.f))
+        exact = self.without_springs(found[0]) if found else None
+        for attempt in range(APPROACHES):
             if exact is not None:
                 return exact
-            found = None
-        raise NoEquilibrium("a body moves away, or springs change the set of pairs")
+            if len(self.model.sliding):
+                found = self.find_friction(attempt)
+            else:
+                found = self.find(WEAK, all_changed, 200) or self.find(WEAK, one_changed, 20 * self.pairs + 200)
+                if found is None:
+                    break
+            if found:
+                state, (self.rest, *_) = found
+                exact = self.without_springs(state)
+        if exact is None:
+            raise NoEquilibrium("no set of pairs found, or a body moves away")
+        return exact
 
-    def without_springs(self, touching):
+    def find_friction(self, attempt):
+        """States with springs; every second attempt begins with random ones."""
+        chance = np.random.default_rng(attempt)
+        if attempt % 2:
+            self.state = chance.integers(-1, OPEN, self.pairs, endpoint=True) * np.isin(np.arange(self.pairs), self.model.sliding)
+        return self.find(WEAK, all_changed, 200) or self.pivoted(chance) or self.find(WEAK, half_changed(chance), 10 * self.pairs + 100)
+
+    def without_springs(self, state):
         """The answer from a set that is nearly correct; None if this set gives none."""
         for _ in range(50):
-            exact = self.solve(touching)
+            exact = self.solve(state)
             if exact is None:
                 return None
             v, force, gap = exact
-            wrong = self.wrong(touching, *exact)
-            if not wrong.any():
+            better = self.better(state, *exact)
+            if (better == state).all():
                 break
-            touching = touching.copy()
-            touching[np.argmax(wrong)] ^= True
+            state = one_changed(state, better)
         else:
             return None
         # A singular matrix may factor, with noise as last pivot: displacements far above all that forces and gaps explain.
         softest = abs(self.k.diagonal())[abs(self.k.diagonal()) > 0].min(initial=self.stiff)
         if abs(v).max(initial=0) > 1e8 * (abs(self.f).max(initial=0) / softest + abs(self.g).max(initial=0)):
             return None
-        return v, force, gap, touching
+        return v, force, gap, state
+
+
+def all_changed(_, better):
+    return better
+
+
+def half_changed(chance):
+    """Change about half of the wrong states, by chance."""
+    return lambda state, better: np.where(chance.random(len(state)) < 0.5, better, state)
+
+
+def one_changed(state, better):
+    """States with the first difference only."""
+    return np.where(np.arange(len(state)) == np.argmax(better != state), better, state)
 
 
 def product(matrix, z):
@@ -227,13 +291,15 @@ def product(matrix, z):
     return result
 
 
-def tables(problem, v, force, gap, touching):
-    model = problem.model
+def tables(problem, v, force, gap, state):
+    model, touching = problem.model, state != OPEN
     u = model.tie @ v + model.held
     strain = model.strains(u)
     stress, total, secant, plastic = problem.memory.respond(strain)
     reaction = np.where(model.dof_held, model.lead.T @ model.unbalanced(u, stress, force) - model.twist, 0.0)
     reaction, moments = reaction[:len(u)].reshape(-1, 2), reaction[len(u):]
+    slid = model.contact_matrix[problem.pairs:] @ u
+    (force, friction), (gap, slip) = ((both[:problem.pairs], both[problem.pairs:]) for both in (force, gap))
     masters, pulls = model.masters(v), model.pull @ u
     u = u.reshape(-1, 2)
     within = {int(row) for members in model.members for row in members}
@@ -245,6 +311,8 @@ def tables(problem, v, force, gap, touching):
         a, b = model.ends[k]
         contact.append([pair, model.node[a], model.node[b], *model.x[b], *model.normal[k], model.initial[k], force[k],
                         pressure[k] or 0.0, gap[k], "touching" if touching[k] else "open"])
+    rubbed = [[model.pair[k], mu, friction[j], mu * force[k], (pressure[k] or 0.0) * friction[j] / (force[k] or 1.0), slip[j], slid[j],
+               "open" if state[k] == OPEN else "slips" if state[k] else "sticks"] for j, (k, mu) in enumerate(zip(model.sliding, model.friction))]
     nodes = [[node, *model.x[i], *u[i], *reaction[i]] for i, node in enumerate(model.node)]
     sx, sy, sz, txy = stress.T
     mises = np.sqrt(((sx - sy) ** 2 + (sy - sz) ** 2 + (sz - sx) ** 2) / 2 + 3 * txy ** 2)
@@ -266,13 +334,18 @@ def tables(problem, v, force, gap, touching):
         if model.dof_held[k]:
             summary.append([f"moment_{node}", moments[k - len(model.is_held)], ""])
     summary += [[f"spring_{number}", pull, ""] for (number, *_), pull in zip(model.springs, pulls)]
-    if problem.increments:
+    if rubbed:
+        counts = [(word, sum(row[7] == state for row in rubbed)) for word, state in (("stick", "sticks"), ("slipp", "slips"))]
+        summary += [["total_friction_force", float(abs(friction).sum()), ""], *([f"pairs_{word}ing", n, ""] for word, n in counts)]
+    yields = any(law.curve is not None for law, _ in model.groups)
+    if problem.increments and yields:
         remaining = np.column_stack(problem.memory.after(strain))
         plastic_strains = np.array([model.mean(values) for values in remaining.T]).T
     return {"summary": (["key", "value", "unit"], summary),
-            **({"increments": (list(problem.increments[0]), [list(row.values()) for row in problem.increments]),
-                "plastic": ("element plastic_x plastic_y plastic_z plastic_xy accumulated".split(),
-                            [[element, *row] for element, row in zip(model.element, plastic_strains.tolist())])} if problem.increments else {}),
+            **({"increments": (list(problem.increments[0]), [list(row.values()) for row in problem.increments])} if problem.increments else {}),
+            **({"plastic": ("element plastic_x plastic_y plastic_z plastic_xy accumulated".split(),
+                            [[element, *row] for element, row in zip(model.element, plastic_strains.tolist())])} if problem.increments and yields else {}),
+            **({"friction": ("pair friction friction_force limit shear slip slid state".split(), rubbed)} if rubbed else {}),
             "contact": ("pair ga gb x y nx ny initial_gap force pressure gap status".split(), contact),
             "nodes": ("node x y ux uy rx ry".split(), nodes),
             "elements": ("element x y sx sy sz txy equivalent_stress equivalent_strain secant_modulus state".split(), elements)}
@@ -291,7 +364,7 @@ def solve(path, told=None, parts=None):
             if not ended:
                 raise NoEquilibrium("the load case before has no end to start from")
             problem = Problem(Model(deck, told and told.get(deck.number)))
-            if not deck.is_flow:
+            if not deck.by_increments:
                 yield deck.number, tables(problem, *problem.answer()), problem
                 continue
             history = history if history and deck.is_sequence else History(problem.model)
@@ -300,7 +373,7 @@ def solve(path, told=None, parts=None):
             yield deck.number, tables(problem, *found), problem
             history.finish(problem.model)
         except (DeckError, NoEquilibrium, Diverged) as error:
-            ended = not (deck.is_flow and deck.is_sequence)
+            ended = not (deck.by_increments and deck.is_sequence)
             yield deck.number, None, error
 
 

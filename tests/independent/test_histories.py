@@ -12,7 +12,7 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tests" / "tools"), str(pathlib.Path(__file__).parent)]
 import common  # noqa: E402
-from compare import AGREE, COARSE, REFUSED, run  # noqa: E402
+from compare import AGREE, COARSE, REFUSED, compare, run  # noqa: E402
 from solve import solve  # noqa: E402
 from write_random import write  # noqa: E402
 
@@ -21,6 +21,14 @@ verify = common.load("verify")
 #: A bar of one element in plane stress, E = 210000, yield stress 240, tangent modulus 21000, with a stress of 300, -300, 300 and 0: strain at the end
 #: of each SUBCASE, exact with any increments.
 BAR = {1: (.004, .0011428571428571429, .004, .0025714285714285714), 2: (.004, -.004, .004, .0025714285714285714)}
+
+#: A random model with friction that yields.
+YIELDS = 1
+
+
+def wrong_in(found, folder, case):
+    worst, faults = compare(found, folder, "deck", case)
+    return faults + [kind for kind, (value, _) in worst.items() if value > 1e-8]
 
 
 def bar(hardening):
@@ -60,14 +68,39 @@ class Histories(unittest.TestCase):
             self.assertIn(word, (AGREE, REFUSED, COARSE), f"{deck.name} SUBCASE {case}: {said}")
         self.assertGreater(sum(word == AGREE for _, _, word, _ in words), 10)
 
+    def test_random_friction(self):
+        """Pairs stick, slip either way and open; bodies that friction alone restrains; elastic and yielding."""
+        words = [(deck, *found) for deck in write(self.folder, 20, 1, friction=True) for found in run(PROGRAM, deck, 1e-8)]
+        for deck, case, word, said in words:
+            self.assertIn(word, (AGREE, REFUSED, COARSE), f"{deck.name} SUBCASE {case}: {said}")
+        self.assertGreater(sum(word == AGREE for _, _, word, _ in words), 50)
+
+    def test_friction_is_compared(self):
+        """A wrong force, slip or state is found."""
+        deck = self.solved(write(self.folder, 1, 1, friction=True)[0].read_text())
+        number, found, _ = next(solve(deck))
+        self.assertEqual([], wrong_in(found, self.folder, number))
+        for row, column, value in ((0, 2, 0.1), (0, 5, 0.1), (0, 7, "open")):
+            own = found["friction"][1][row][column]
+            found["friction"][1][row][column] = value
+            self.assertNotEqual([], wrong_in(found, self.folder, number), column)
+            found["friction"][1][row][column] = own
+
     def test_deck_of_input(self):
         deck = self.solved((ROOT / "input/hertz/hertz330_unloaded.dat").read_text())
         self.assertEqual(0, self.verified(deck))
 
     def test_verify_finds_wrong_cells(self):
-        deck = self.solved(write(self.folder, 5, 18, histories=True)[4].read_text())
+        self.check_wrong_cells(write(self.folder, 5, 18, histories=True)[4], ("elements", "sx"), ("increments", "max_pressure"), ("plastic", "accumulated"))
+
+    def test_verify_finds_wrong_friction(self):
+        """Of a model that yields: there verify needs the independent history."""
+        self.check_wrong_cells(write(self.folder, YIELDS + 1, 1, friction=True)[YIELDS], ("friction", "friction_force"), ("friction", "slip"))
+
+    def check_wrong_cells(self, deck, *cells):
+        deck = self.solved(deck.read_text())
         self.assertEqual(0, self.verified(deck))
-        for table, column in (("elements", "sx"), ("increments", "max_pressure"), ("plastic", "accumulated")):
+        for table, column in cells:
             path = self.folder / f"deck.{table}.csv"
             text = path.read_text()
             rows = list(csv.DictReader(text.splitlines()))

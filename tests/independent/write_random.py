@@ -15,7 +15,7 @@ import math
 import pathlib
 import random
 
-from random_ties import ties
+from random_ties import ties, turns
 
 HEAT = 10.0   # temperatures, about zero: thermal strains up to the yield strain
 HARDENING = "HR"   # replaced by the hardening of a MATS1
@@ -23,9 +23,11 @@ HARDENING = "HR"   # replaced by the hardening of a MATS1
 
 class Scene:
     def __init__(self, rng, strain, rings=False):
-        self.rings, self.side = rings, {}
+        self.rings, self.round, self.side = rings, False, {}
         self.chance = random.Random(repr(rng.getstate()[1][:4]))   # factor of temperatures alone
         self.heated = self.chance.random() < 0.5
+        self.taken = set()                # DOFs that cannot be dependent (random_ties.py)
+        self.pushed = False               # are there forces along the contact, set 4?
         self.rng, self.lines, self.nodes, self.elements, self.pairs, self.materials = rng, [], 0, 0, 0, 0
         self.spot, self.bodies = {}, []   # coordinates of the nodes, and the nodes of each body
         self.held, self.support = {}, []  # prescribed values by (node, digit), and SUPORT (node, digit)
@@ -161,8 +163,8 @@ class Scene:
         """Several load cases in most models, in any order of their numbers: sets of loads times factors, one with prescribed
         displacements; other supports, which also fix the SUPORT DOFs, with contact or without. Returns the case control."""
         self.supports(1, self.held)
-        if self.support:
-            self.add_long("SUPORT", *[field for pair in self.support for field in pair])
+        for k in range(0, len(self.support), 4):
+            self.add("SUPORT", *[field for pair in self.support[k:k + 4] for field in pair])
         if chance.random() < 0.3:
             return ["LOAD = 1"]
         self.supports(2, {**self.held, **dict.fromkeys(self.support, 0.0)})
@@ -183,8 +185,8 @@ class Scene:
         """A sequence of two to four SUBCASEs in one to four increments: loads up, down, and in other directions; prescribed
         displacements and temperatures in some. Hardening is isotropic, kinematic or mixed. Returns the case control."""
         self.supports(1, self.held)
-        if self.support:
-            self.add_long("SUPORT", *[field for pair in self.support for field in pair])
+        for k in range(0, len(self.support), 4):
+            self.add("SUPORT", *[field for pair in self.support[k:k + 4] for field in pair])
         for k, line in enumerate(self.lines):
             if line.startswith("MATS1"):   # NLELAST has no HR
                 self.lines[k] = line.replace("PLASTIC", "NLELAST") if chance.random() < 0.1 else line.replace(f",{HARDENING},", f",{chance.randint(1, 3)},")
@@ -193,13 +195,15 @@ class Scene:
         for digit in ("2", "6"):
             for node in [node for node, own in self.held if own == digit][:1]:
                 self.add("SPCD", 3, node, digit, chance.uniform(-1e-4, 1e-4))
-        self.add("PARAM", "HRFRAC", chance.uniform(0.1, 1.0))
-        self.add("PARAM", "THEORY", "FLOW")
+        if any(line.startswith("MATS1") for line in self.lines):
+            self.add("PARAM", "HRFRAC", chance.uniform(0.1, 1.0))
+            self.add("PARAM", "THEORY", "FLOW")
         statements = [chance.choice(["SOL 106", "CNTNLSUB = YES"])]
         for k, number in enumerate(chance.sample(range(1, 100), chance.randint(2, 4))):
             factor = chance.uniform(*chance.choice([(0.05, 0.7), (0.3, 1.0), (0.9, 1.2)] if k % 2 else [(0.3, 1.0), (0.7, 1.2), (0.9, 1.2)]))
             self.add("LOAD", 1000 + number, 1.0, factor, 1, *chance.choice([(), (chance.uniform(-1.0, 1.0) * factor, 2 if forces else 1),
-                                                                            (chance.uniform(-1.0, 1.0), 3)]))
+                                                                            (chance.uniform(-1.0, 1.0), 3)]),
+                     *((chance.uniform(-1.0, 1.0), 4) if self.pushed else ()))
             self.add("NLPARM", number, chance.randint(1, 4))
             statements += [f"SUBCASE {number}", f"LOAD = {1000 + number}", f"NLPARM = {number}"]
             statements += ["TEMPERATURE(LOAD) = 7"] * (self.heated and chance.random() < 0.6)
@@ -349,6 +353,7 @@ def nested(rng):
     def on_arc(angle, radius):
         return (radius * math.sin(angle), 0.0 if angle == math.pi / 2 else radius * math.cos(angle))
 
+    scene.round = True
     bodies, faces = [], []
     for low, high in ((0.7, 1.0), (1.0 - fit, 1.4)):
         corners, middles = element(rng, rings)
@@ -370,16 +375,54 @@ def nested(rng):
     return scene
 
 
-def write(directory, number, seed, histories=False):
-    """Returns the paths. `histories`: sequences of SUBCASEs with flow theory."""
+def rub(rng, scene):
+    """Friction, forces along the contact (set 4), and in some models a body that only friction, or a spring, restrains along x. Half of the models are
+    elastic."""
+    mu = rng.uniform(0.05, 1.0)
+    scene.lines = [line.replace("PGAP,900,0.0", f"PGAP,900,0.0,,,,,{mu:.6f}") for line in scene.lines]
+    if any(line.startswith("BCONP") for line in scene.lines):
+        scene.lines = [line.replace(",1.0,,1,0", ",1.0,7,1,0") if line.startswith("BCONP") else line for line in scene.lines]
+        scene.add("BFRIC", 7, "", "", mu)
+    if rng.random() < 0.3:   # others have another coefficient, or none
+        scene.add("PGAP", 901, 0.0, *[""] * 4, rng.choice([0.0, rng.uniform(0.05, 1.0)]))
+        scene.lines = [line.replace(",900,", ",901,") if line.startswith("CGAP") and rng.random() < 0.5 else line for line in scene.lines]
+    if rng.random() < 0.5:
+        table = [k for k, line in enumerate(scene.lines) if line.startswith("TABLES1")]
+        scene.lines = [line for k, line in enumerate(scene.lines) if not line.startswith("MATS1") and not {k, k - 1, k - 2} & {*table}]
+    pressed = 1.5 * any(line.startswith("PLOADX1") for line in scene.lines) + sum(float(line.split(",")[4]) for line in scene.lines if line.startswith("FORCE,1,"))
+    for node in scene.top:
+        scene.add("FORCE", 4, node, 0, mu * pressed / len(scene.top) * rng.uniform(0.3, 1.5), 1.0, 0.0)
+    scene.pushed = True
+    body = scene.bodies[0 if turns(scene) else -1]
+    held = [node for node in body if (node, "1") in scene.held]
+    free = [node for node in scene.top if (node, "2") not in scene.taken]
+    tied = any(line.startswith(("RBE2", "MPC", "CELAS")) for line in scene.lines)
+    if scene.rings or scene.round or tied or not held or not free or rng.random() < 0.3:
+        return
+    for node in held:
+        del scene.held[node, "1"]
+    if rng.random() < 0.5:
+        scene.add("CELAS2", 7900, 10.0 ** rng.uniform(0.0, 3.0), "", "", held[-1], 1)
+    else:
+        scene.suport((held[-1], "1"))
+    if not turns(scene):
+        known = next(scene.spot[node][0] for node, digit in scene.support if digit == "2" and node in body)
+        scene.suport((max(free, key=lambda node: abs(scene.spot[node][0] - known)), "2"))
+
+
+def write(directory, number, seed, histories=False, friction=False):
+    """Returns the paths. `histories`: sequences of SUBCASEs with flow theory; `friction`: the same with friction, half of them elastic."""
     directory.mkdir(parents=True, exist_ok=True)
     paths = [directory / f"model{k:03}.dat" for k in range(number)]
     for k, path in enumerate(paths):
         rng = random.Random(f"{seed} {k}")
         scene = (pressed if k % 2 else [stack, nested, tongue][k // 2 % 3])(rng)
         body_loads(rng, scene)
-        ties(rng, scene)
-        path.write_text(scene.text(histories), encoding="ascii")
+        if not friction or rng.random() < 0.5:
+            ties(rng, scene)
+        if friction:
+            rub(rng, scene)
+        path.write_text(scene.text(histories or friction), encoding="ascii")
     return paths
 
 
@@ -389,8 +432,9 @@ def main():
     parser.add_argument("-n", "--number", type=int, default=40)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--histories", action="store_true", help="sequences of SUBCASEs with flow theory")
+    parser.add_argument("--friction", action="store_true")
     options = parser.parse_args()
-    write(options.directory, options.number, options.seed, options.histories)
+    write(options.directory, options.number, options.seed, options.histories, options.friction)
 
 
 if __name__ == "__main__":
