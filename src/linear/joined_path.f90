@@ -102,11 +102,14 @@ contains
   subroutine begin(self, bodies)
     class(joined_path), intent(inout) :: self
     integer, intent(in) :: bodies     !! number of bodies
+    real(wp) :: load
     integer :: n
 
     n = size(self%gap)
     self%two = self%upper < huge(1.0_wp)
-    self%inside = spread(spread(sum(abs(self%unbalanced))/max(1.0_wp, n/real(bodies, wp)), 1, n), 2, 2)
+    load = sum(abs(self%unbalanced))
+    if (load <= 0.0_wp) load = maxval(max(-self%gap, 0.0_wp)/self%compliance, mask=.not. self%two)
+    self%inside = spread(spread(load/max(1.0_wp, n/real(bodies, wp)), 1, n), 2, 2)
     self%force = self%lower + self%inside(:, 1)
     self%open = spread(max(self%gap, self%compliance*self%inside(:, 1)), 2, 2)
     where (.not. self%two) self%open(:, 2) = 0.0_wp

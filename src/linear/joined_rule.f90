@@ -11,6 +11,7 @@ module epcont_linear_joined_rule
   use epcont_element_kinematics, only: directions
   use epcont_flexibility_flexibility, only: gap_opening, terms_of_openings
   use epcont_linear_contact_rule, only: contact_loads, contact_rule, contact_sensitivity
+  use epcont_linear_friction_limits, only: friction_limits
   use epcont_linear_joined_response, only: are_unique, respond_joined, sensitivity_probe
   use epcont_linear_joined_search, only: joined_search
   use epcont_linear_joined_springs, only: new_springs
@@ -43,9 +44,9 @@ module epcont_linear_joined_rule
 
   !> Largest number of solves with given friction limits. They end if no limit changes by more than `exact` of
   !! the largest force, or by more than `rounding`, which no longer falls.
-  integer, parameter :: most_limits = 60
+  integer, parameter :: most_limits = 30
   real(wp), parameter :: exact = 1.0e-14_wp, rounding = 1.0e-11_wp
-  !> If the change falls to more than this fraction, only half of it is taken.
+  !> A fall of the change to more than this fraction is slow.
   real(wp), parameter :: slowly = 1.0_wp/3
   !> Friction force without limit, over the loads on rigid-body modes: it shows if friction can carry these.
   real(wp), parameter :: unlimited = 1.0e4_wp
@@ -73,6 +74,8 @@ contains
     end if
     call self%start_rigid(self%rigid)
     if (smooth%balanced) call self%limit_friction(0*self%problem%friction)
+    if (allocated(self%line%last) .and. allocated(self%problem%friction)) call self%limit_friction( &
+      self%problem%friction*max(self%line%last%contact%force(self%problem%pair_of), 0.0_wp))
     if (.not. self%rigid%balanced) return
     if (allocated(redundant)) then
       if (all(redundant .eqv. self%rigid%redundant)) return
@@ -148,33 +151,33 @@ contains
     call watch%lap(stage_contact)
   end subroutine solve
 
-  !> Find the active set. With friction, the friction limits of the forces found are given to the next solve.
+  !> Find the active set. With friction, the limits of the forces found are given to the next search.
   subroutine find_set(self, scene, bodies, state, watch)
     class(joined_rule), intent(inout) :: self
     type(planned_model), intent(in) :: scene
     class(factored_bodies), intent(inout) :: bodies
     type(solved_state), intent(inout) :: state
     class(stopwatch), intent(inout) :: watch
-    real(wp), allocatable :: given(:), limit(:)
+    type(friction_limits) :: limits
+    real(wp), allocatable :: limit(:)
+    logical, allocatable :: closed(:)
     real(wp) :: before, change
-    logical :: halves
     integer :: i
 
     call self%search%find_set(scene, bodies, self%rigid%redundant, allocated(self%line%last), state, watch)
     if (.not. allocated(self%problem%friction)) return
-    halves = .false.
     change = huge(change)
     do i = 1, most_limits
       if (state%contact%state /= contact_solved) return
-      given = self%search%upper(scene%model%contact%pairs + 1:)
-      limit = self%problem%friction*max(state%contact%force(self%problem%pair_of), 0.0_wp)
+      if (allocated(closed)) then
+        if (any(closed .neqv. self%search%closed)) call limits%forget()
+      end if
+      closed = self%search%closed
+      limit = self%search%upper(scene%model%contact%pairs + 1:)
       before = change
-      change = maxval(abs(limit - given))/max(maxval(state%contact%force), tiny(change))
+      call limits%update(self%problem, state%contact%force, closed, limit, change)
       call self%limit_friction(limit)
       if (change <= exact .or. change <= rounding .and. change > slowly*before) return
-      ! Limits that jump to and fro settle if half of the change is taken.
-      halves = halves .or. i > 2 .and. change > slowly*before
-      if (halves) call self%limit_friction(0.5_wp*(given + limit))
       call self%search%find_set(scene, bodies, self%rigid%redundant, .true., state, watch)
     end do
     state%contact%state = contact_stalled
