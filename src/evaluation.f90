@@ -6,7 +6,6 @@ module epcont_evaluation
   use epcont_certificate_certificate, only: certificate_type, certify
   use epcont_certificate_increment_work, only: work_state
   use epcont_certificate_scene, only: look_through
-  use epcont_certificate_yielding, only: replayed_history
   use epcont_contact_problem, only: contact_solved
   use epcont_flexibility_flexibility, only: pair_forces
   use epcont_linear_linear_problem, only: linear_problem
@@ -57,9 +56,8 @@ module epcont_evaluation
     type(certificate_type) :: certificate
     type(accuracy_type) :: accuracy
     type(kept_factors) :: kept           !! from load case to load case
-    ! State before the increment, for the certificate; not allocated if the loads are not followed:
-    type(replayed_history), allocatable :: replayed(:)   !! plastic history [points]
-    type(work_state), allocatable :: worked              !! forces, energy and displacements
+    !> State before the increment, for the certificate; not allocated if the loads are not followed
+    type(work_state), allocatable :: worked
     type(stress_path), allocatable :: stress_path        !! total theory; not allocated: unknown
   contains
     procedure :: evaluate
@@ -79,7 +77,7 @@ contains
 
     call self%find_results(watch)
     associate (model => self%model, answer => self%answer)
-      call certify(model, answer, self%iteration%off_curve, self%certificate, self%replayed, self%worked)
+      call certify(model, answer, self%iteration%off_curve, self%certificate, self%worked)
       if (answer%converged .and. self%certificate%valid) &
         self%certificate%scene = look_through(model, answer%displacement, answer%contact%force)
     end associate

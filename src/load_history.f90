@@ -6,7 +6,6 @@ module epcont_load_history
   use epcont_base_kinds, only: wp
   use epcont_certificate_certificate, only: certificate_type
   use epcont_certificate_increment_work, only: work_state, work_without_end
-  use epcont_certificate_yielding, only: replayed_history
   use epcont_contact_problem, only: contact_solved
   use epcont_evaluation, only: evaluated_model
   use epcont_model_load_set, only: load_set
@@ -27,9 +26,7 @@ module epcont_load_history
 
   !> End of a load case, from which the next one of a sequence starts.
   type, extends(path_end) :: case_end
-    ! Of the certificate:
-    type(replayed_history), allocatable :: replayed(:)   !! plastic history [points]
-    type(work_state) :: worked   !! forces, energy and displacements
+    type(work_state) :: worked   !! of the certificate
   end type case_end
 
   type, extends(evaluated_model) :: loaded_model
@@ -139,9 +136,7 @@ contains
           if (.not. self%certificate%valid) exit
         end if
         call path%commit(self%planned_model, kept%linear, answer)
-        if (.not. is_result) cycle
-        self%replayed = self%certificate%history
-        self%worked = self%certificate%worked
+        if (is_result) self%worked = self%certificate%worked
       end do
       complete = path%is_complete()
       call path%finish(kept%linear, kept%virgin, answer)
@@ -284,14 +279,11 @@ contains
   subroutine begin_replay(self)
     class(loaded_model), intent(inout) :: self
 
-    if (allocated(self%replayed)) deallocate (self%replayed)
     if (allocated(self%worked)) deallocate (self%worked)
     if (.not. (self%is_flow() .or. self%model%controls%sequence)) return
     if (allocated(self%start)) then
-      self%replayed = self%start%replayed
       self%worked = self%start%worked
     else
-      allocate (self%replayed(self%model%mesh%points))
       self%worked = work_without_end(self%model)
     end if
   end subroutine begin_replay
@@ -308,7 +300,6 @@ contains
     if (.not. (valid .and. self%model%controls%sequence)) return
     allocate (self%start)
     self%start%path_end = self%end_of()
-    self%start%replayed = self%certificate%history
     self%start%worked = self%certificate%worked
     if (.not. self%is_flow()) then
       self%other_start = self%start%path_end
@@ -322,14 +313,10 @@ contains
   pure subroutine pass_ends(self, file)
     class(loaded_model), intent(inout) :: self
     type(archive), intent(inout) :: file
-    real(wp), allocatable :: replayed(:)
     logical, allocatable :: other(:)
 
     if (file%reading) allocate (self%start)
     call self%start%pass(file)
-    if (.not. file%reading) replayed = transfer(self%start%replayed, [0.0_wp])
-    call file%pass(replayed)
-    self%start%replayed = transfer(replayed, [replayed_history()])
     call self%start%worked%pass(file)
     other = [allocated(self%other_start)]
     call file%pass(other)

@@ -8,7 +8,7 @@ module epcont_certificate_certificate
   use epcont_base_tolerances, only: valid_to
   use epcont_certificate_element_checks, only: checked_elements, check_elements, ratio
   use epcont_certificate_free_expansion, only: expansion_type, held_stress, part_of_held
-  use epcont_certificate_increment_work, only: point_energies, work_state, work_without_end
+  use epcont_certificate_increment_work, only: point_energies, work_state
   use epcont_certificate_mass_force, only: given_load
   use epcont_certificate_scene, only: overlaps_type
   use epcont_certificate_tied, only: check_springs, check_ties, gather_ties, longest_arms
@@ -62,10 +62,7 @@ module epcont_certificate_certificate
     logical :: balanced = .false.         !! all values except `off_curve` are within tolerance
     logical :: valid = .false.            !! `off_curve` is within tolerance too
     type(overlaps_type) :: scene          !! penetration of bodies; searched if all else is valid
-    !> Increments: plastic history after the increment, from displacements alone [points]
-    type(replayed_history), allocatable :: history(:)
-    real(wp), allocatable :: slid(:)      !! tangential displacements [length] [tangential rows]
-    type(work_state), allocatable :: worked   !! increments: forces and energy after the increment
+    type(work_state), allocatable :: worked   !! increments: state and energy after the increment
   contains
     procedure :: figures
     procedure :: has_spoilt
@@ -101,14 +98,12 @@ contains
 
   !> Check an answer. Its inputs are the displacements with and without rigid-body displacements, the
   !! reactions, the stresses at the integration points and the contact forces.
-  subroutine certify(model, answer, curve_tolerance, found, before, worked)
+  subroutine certify(model, answer, curve_tolerance, found, worked)
     type(model_type), intent(in) :: model   !! model
     type(answer_type), intent(in) :: answer   !! answer to check
     real(wp), intent(in) :: curve_tolerance   !! largest stress error that the iteration allows
     type(certificate_type), intent(out) :: found   !! the certificate, without its search for penetration
-    !> Increments: history before the increment [points]
-    type(replayed_history), intent(in), optional :: before(:)
-    !> Increments: forces, energy and displacements before the increment; absent: unknown, without slip
+    !> Increments: state and energy before the increment
     type(work_state), intent(in), optional :: worked
     real(wp), dimension(directions, model%mesh%nodes) :: load
     real(wp), dimension(directions, model%mesh%nodes) :: start   ! displacements before the increment
@@ -129,10 +124,10 @@ contains
     face = largest_face(model)
     largest_stress = max(largest_of(size(answer%point_stress), answer%point_stress), &
                          part_of_held*held_stress(model), given_force/face)
-    if (present(before)) found%history = before
-    call add_elements(model, answer, largest_stress, total, found, before)
-    if (present(before)) then
-      found%worked = work_without_end(model)
+    if (present(worked)) found%worked = worked
+    call add_elements(model, answer, largest_stress, total, found)
+    if (present(worked)) then
+      found%worked%friction = 0.0_wp
       found%worked%stored = 0.5_wp*springs + total%energy%stored
       found%worked%force = total%residual
     end if
@@ -158,7 +153,6 @@ contains
     end associate
     start = 0.0_wp
     if (present(worked)) start = worked%displacement
-    found%slid = model%contact%slides(answer%displacement)
     if (model%contact%pairs > 0) call add_pairs(model, answer, load, start, total, found)
     largest_force = max(maxval(total%element_force), maxval(abs(load)), &
         part_of_held*total%expansion%held_force)
@@ -167,7 +161,7 @@ contains
       largest_force = most_roundings*found%rounding_stress*face/valid_to
       total%terms = total%terms + largest_force*maxval(abs(answer%displacement))
     end if
-    if (present(before)) found%worked%force = found%worked%force - total%residual
+    if (present(worked)) found%worked%force = found%worked%force - total%residual
     call gather_ties(model, total%residual, torque)
     call check_ties(model, answer%displacement, turn, found%ties)
     total%work = total%work + sum(answer%moment*turn)
@@ -180,16 +174,16 @@ contains
     found%energy = ratio(max(abs(total%work - total%stored), total%expansion%work - total%stored) - &
         found%rounding_stress*total%strained, &
                          total%terms)
-    if (present(before)) then
+    if (present(worked)) then
       found%worked%displacement = answer%displacement
       found%worked%moment = answer%moment
       found%worked%turn = turn
       found%worked%off_curve = found%off_curve
       found%worked%dissipated = total%energy%dissipated + total%energy%rubbed
-      if (present(worked)) found%worked%friction_work = &
+      found%worked%friction_work = &
         -0.5_wp*sum((worked%friction + found%worked%friction)*(answer%displacement - start))
       ! The energy of a nonlinear elastic material is not quadratic.
-      if (present(worked) .and. .not. (unstressed .or. any(model%sections%curve%elastic))) &
+      if (.not. (unstressed .or. any(model%sections%curve%elastic))) &
         found%energy = max(found%energy, found%worked%imbalance(worked, total%energy))
     end if
     found%curve_tolerance = max(valid_to, curve_tolerance)
@@ -219,17 +213,18 @@ contains
   !> Add the internal forces of elements and the work of their stresses. Put the largest stress error and the
   !! effects of rounding and rigid-body displacements into the certificate. Threads share the elements in
   !! fixed parts, which are added in order.
-  subroutine add_elements(model, answer, largest_stress, total, found, before)
+  subroutine add_elements(model, answer, largest_stress, total, found)
     type(model_type), intent(in) :: model        !! the model
     type(answer_type), intent(in) :: answer      !! answer to check
     real(wp), intent(in) :: largest_stress       !! of the model [stress]
     type(balance_type), intent(inout) :: total   !! sums to add to
     type(certificate_type), intent(inout) :: found
-    type(replayed_history), intent(in), optional :: before(:)
+    type(replayed_history), allocatable :: before(:)   ! not allocated: absent
     real(wp) :: slope(directions, most_nodes, most_points, size(model%mesh%kinds))
     type(checked_elements) :: part
     integer :: first, k
 
+    if (allocated(found%worked)) before = found%worked%history
     do k = 1, size(model%mesh%kinds)
       call find_slopes(model%mesh%kinds(k), slope(:, :, :, k))
     end do
@@ -265,7 +260,7 @@ contains
       end do
     end do
     if (allocated(part%history)) &
-      found%history(lbound(part%work, 1):ubound(part%work, 1)) = part%history
+      found%worked%history(lbound(part%work, 1):ubound(part%work, 1)) = part%history
     call total%energy%include(part%energy)
     total%strained = total%strained + part%strained
     call total%expansion%include(part%expansion)

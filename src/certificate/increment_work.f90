@@ -22,12 +22,13 @@ module epcont_certificate_increment_work
     procedure :: include
   end type point_energies
 
-  !> Forces and displacements at the end of an increment.
+  !> Forces, displacements and plastic history at the end of an increment.
   type :: work_state
     !> Sums of loads, reactions and contact forces [force] [directions, nodes]
     real(wp), allocatable :: force(:, :)
     real(wp), allocatable :: friction(:, :)       !! the part of it that is friction
     real(wp), allocatable :: displacement(:, :)   !! [length] [directions, nodes]
+    type(replayed_history), allocatable :: history(:)   !! plastic, from displacements alone [points]
     real(wp), allocatable :: moment(:), turn(:)   !! of supports of rotating platens [force*length], [rad]
     real(wp) :: stored = 0.0_wp                   !! energy, springs included
     real(wp) :: dissipated = 0.0_wp               !! energy, by yielding and friction, in the increment
@@ -48,6 +49,7 @@ contains
     state%force = 0.0_wp
     state%friction = state%force
     state%displacement = state%force
+    allocate (state%history(model%mesh%points))
     allocate (state%moment(size(model%constraints%platen)), source=0.0_wp)
     state%turn = state%moment
   end function work_without_end
@@ -88,9 +90,12 @@ contains
   pure subroutine pass(self, file)
     class(work_state), intent(inout) :: self
     type(archive), intent(inout) :: file
-    real(wp), allocatable :: numbers(:)
+    real(wp), allocatable :: history(:), numbers(:)
 
     numbers = [self%stored, self%off_curve]
+    if (.not. file%reading) history = transfer(self%history, [0.0_wp])
+    call file%pass(history)
+    self%history = transfer(history, [replayed_history()])
     call file%pass(self%force)
     call file%pass(self%friction)
     call file%pass(self%displacement)

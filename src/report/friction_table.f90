@@ -38,7 +38,8 @@ contains
     character(len=6), parameter :: does(pair_open:pair_slips) = ['open  ', 'sticks', 'slips ']
     integer :: how(size(run%model%contact%sliding)), j
 
-    associate (contact => run%answer%contact, rows => run%model%contact, travel => run%certificate%slid)
+    associate (contact => run%answer%contact, rows => run%model%contact, &
+               travel => run%model%contact%slides(run%answer%displacement))
       call table%begin('FRICTION', friction_columns, &
                        [0.0_wp, 0.0_wp, 0.0_wp, spread(maxval(contact%force), 1, 3), &
                         maxval(run%answer%pressure), spread(maxval(abs(run%answer%displacement)), 1, 2)])
