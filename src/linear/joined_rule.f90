@@ -176,8 +176,12 @@ contains
       limit = self%search%upper(scene%model%contact%pairs + 1:)
       before = change
       call limits%update(self%problem, state%contact%force, closed, limit, change)
+      if (change <= exact .or. change <= rounding .and. change > slowly*before) then
+        ! differences that are rounding have spoilt the limits
+        call self%limit_friction(self%problem%friction*max(state%contact%force(self%problem%pair_of), 0.0_wp))
+        return
+      end if
       call self%limit_friction(limit)
-      if (change <= exact .or. change <= rounding .and. change > slowly*before) return
       call self%search%find_set(scene, bodies, self%rigid%redundant, .true., state, watch)
     end do
     state%contact%state = contact_stalled
