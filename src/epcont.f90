@@ -96,9 +96,9 @@ contains
 
     !> Check that the loads can start from the end of those of the solution.
     subroutine check_sequence()
-      if (.not. model%controls%flow_theory .and. &
+      if (.not. model%controls%by_increments .and. &
           any([(allocated(model%sections%curve(k)%strain), k=1, size(model%sections%curve))])) &
-        call refuse('total theory has no memory of earlier loads', 'set controls%flow_theory')
+        call refuse('total theory has no memory of earlier loads', 'set controls%by_increments')
       if (.not. solution%model%controls%sequence) return   ! a new solution
       if (.not. solution%can_start()) &
         call refuse('the loads before did not reach their end', 'use another solution')

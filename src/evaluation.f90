@@ -202,7 +202,7 @@ contains
 
     if (allocated(self%stress_path)) deallocate (self%stress_path)
     associate (answer => self%answer, controls => self%model%controls, linear => self%kept%linear)
-      if (controls%flow_theory .or. controls%paper_ratio .or. .not. (answer%converged .and. &
+      if (controls%by_increments .or. controls%paper_ratio .or. .not. (answer%converged .and. &
           any(answer%plastic) .and. answer%condition < huge(1.0_wp))) return
       loads = self%model%loads
       call self%model%loads%set_between(none, loads, 1.0_wp + growth)

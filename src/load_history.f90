@@ -130,7 +130,7 @@ contains
       do
         call path%advance(self%planned_model, kept%linear, answer, watch)
         if (.not. answer%converged .or. answer%lost_contact .or. path%is_complete()) exit
-        if (.not. self%model%controls%flow_theory) cycle
+        if (.not. self%model%controls%by_increments) cycle
         if (is_result) then
           call self%check_increment(path%iterations(), watch)
           if (.not. self%certificate%valid) exit
@@ -343,7 +343,7 @@ contains
   pure logical function is_flow(self)
     class(loaded_model), intent(in) :: self
 
-    is_flow = self%model%controls%flow_theory .and. self%iteration%follows
+    is_flow = self%model%controls%by_increments .and. self%iteration%follows
   end function is_flow
 
   !> Does the answer of a load case depend on those before?

@@ -122,7 +122,8 @@ contains
     where (work%total(3, :) > 0.0_wp) field%missing = work%total(3, :)/(work%total(3, :) + work%total(4, :))
     field%energy = sum(linear%operator%volume*sum(answer%strain*answer%point_stress, dim=1))
     ! Residual stresses do no work in the total strains.
-    if (scene%model%controls%flow_theory) field%energy = max(field%energy, sum([(linear%operator%volume(p)* &
+    if (scene%model%controls%by_increments) field%energy = max(field%energy, sum([( &
+      linear%operator%volume(p)* &
       linear%materials%section(linear%materials%of_point(p))%elastic_work(answer%point_stress(:, p)), &
       p=1, scene%model%mesh%points)]))
   end subroutine compare_fields

@@ -61,7 +61,7 @@ contains
     call check_choices(deck, deck%subcase%contact, nint(deck%card(card_bconp)%value(1, :)), 'BCONTACT', &
                        'there is no such BCONP', 'give ALL, NONE or the id of a BCONP', found)
     call choose_load_steps()
-    call check_history(deck, data%controls%flow_theory, found)
+    call check_history(deck, data%controls%by_increments, found)
     if (deck%linear%line > 0 .and. deck%card(card_mats1)%count > 0) &
       call found%add_note(deck%linear, 'SOL: materials with MATS1 yield, as with SOL 106')
     call note_unused(deck, load_cards, used, found)
@@ -104,7 +104,7 @@ contains
       cases%case%load_steps = data%controls%load_steps
       cases%case%most_iterations = data%controls%most_iterations
       cases%case%tolerance = data%controls%tolerance
-      cases%case%steps_by_accuracy = data%controls%flow_theory .and. data%controls%accuracy > 0.0_wp .and. &
+      cases%case%steps_by_accuracy = data%controls%by_increments .and. data%controls%accuracy > 0.0_wp .and. &
                                      deck%parameter_row('NLOAD') == 0
       associate (nlparm => deck%card(card_nlparm), choice => deck%subcase%nlparm)
         do k = 1, size(choice)
@@ -128,9 +128,9 @@ contains
   end subroutine read_cases
 
   !> Check that a sequence has flow theory, and that a part of a longer history can be one.
-  subroutine check_history(deck, flow_theory, found)
+  subroutine check_history(deck, by_increments, found)
     type(deck_type), intent(in) :: deck
-    logical, intent(in) :: flow_theory
+    logical, intent(in) :: by_increments
     type(findings), intent(inout) :: found
     type(place_type) :: place
     character(len=:), allocatable :: name
@@ -158,7 +158,7 @@ contains
                              'write SOL 106 or CNTNLSUB = YES: each starts from the end of the one before')
       end if
     end if
-    if (deck%is_sequence() .and. yields .and. .not. flow_theory) call found%add_error(place, &
+    if (deck%is_sequence() .and. yields .and. .not. by_increments) call found%add_error(place, &
       'a sequence of SUBCASEs needs flow theory: total theory has no memory of earlier loads', &
       'remove PARAM THEORY or ORIGINAL, or write CNTNLSUB = NO: each begins with the unloaded state')
   end subroutine check_history

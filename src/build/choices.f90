@@ -33,9 +33,9 @@ contains
     controls%load_steps = nint(deck%parameter_value('NLOAD', real(controls%load_steps, wp)))
     controls%by_inversion = deck%parameter_word('FLEXIB') == 'INVERT'
     controls%paper_ratio = deck%parameter_word('MUP') == 'PAPER'
-    controls%flow_theory = deck%parameter_word('THEORY') == 'FLOW'
+    controls%by_increments = deck%parameter_word('THEORY') == 'FLOW'
     associate (mats1 => deck%card(card_mats1))
-      if (deck%parameter_row('THEORY') == 0) controls%flow_theory = &
+      if (deck%parameter_row('THEORY') == 0) controls%by_increments = &
         any(mats1%value(mats1%column('HR'), :) > 1.0_wp) .or. deck%is_sequence() .and. &
         any(mats1%word(mats1%column('TYPE'), :) == 'PLASTIC')
     end associate

@@ -123,9 +123,9 @@ contains
     integer :: s
 
     ! With friction the answer depends on the path of the loads, also if nothing yields.
-    if (model%contact%has_friction()) model%controls%flow_theory = model%controls%flow_theory .or. .not. &
+    if (model%contact%has_friction()) model%controls%by_increments = model%controls%by_increments .or. .not. &
       any([(allocated(model%sections%curve(s)%strain), s=1, size(model%sections%curve))])
-    if (model%controls%flow_theory) then
+    if (model%controls%by_increments) then
       if (model%controls%paper_ratio) call found%add_error(of_theory, 0, 2, &
         ': FLOW does not go with MUP PAPER, a ratio of total theory', 'use MUP EXACT, or THEORY TOTAL')
       if (any(model%controls%method == [method_secant, method_modsec])) &
@@ -136,7 +136,7 @@ contains
     do s = 1, size(model%sections%curve)
       associate (curve => model%sections%curve(s))
         if (curve%kinematic == 0.0_wp) cycle
-        if (.not. model%controls%flow_theory) then
+        if (.not. model%controls%by_increments) then
           call found%add_error(of_theory, 0, 2, ': TOTAL has no kinematic hardening (MATS1 HR 2 or 3)', &
                                'use THEORY FLOW, or HR 1')
           exit

@@ -10,8 +10,8 @@ module epcont_linear_joined_rule
   use epcont_contact_uniqueness, only: find_undetermined_motions
   use epcont_element_kinematics, only: directions
   use epcont_flexibility_flexibility, only: gap_opening, terms_of_openings
+  use epcont_linalg_anderson, only: anderson_mixer
   use epcont_linear_contact_rule, only: contact_loads, contact_rule, contact_sensitivity
-  use epcont_linear_friction_limits, only: friction_limits
   use epcont_linear_joined_response, only: are_unique, respond_joined, sensitivity_probe
   use epcont_linear_joined_search, only: joined_search
   use epcont_linear_joined_springs, only: new_springs
@@ -48,6 +48,8 @@ module epcont_linear_joined_rule
   real(wp), parameter :: exact = 1.0e-14_wp, rounding = 1.0e-11_wp
   !> A fall of the change to more than this fraction is slow.
   real(wp), parameter :: slowly = 1.0_wp/3
+  !> Number of sets after which only half of a change is taken: else limits may jump to and fro.
+  integer, parameter :: whole_changes = 5
   !> Friction force without limit, over the loads on rigid-body modes: it shows if friction can carry these.
   real(wp), parameter :: unlimited = 1.0e4_wp
 
@@ -158,30 +160,37 @@ contains
     class(factored_bodies), intent(inout) :: bodies
     type(solved_state), intent(inout) :: state
     class(stopwatch), intent(inout) :: watch
-    type(friction_limits) :: limits
-    real(wp), allocatable :: limit(:)
+    type(anderson_mixer) :: fresh, mixer
+    real(wp), allocatable :: given(:), limit(:)
     logical, allocatable :: closed(:)
     real(wp) :: before, change
-    integer :: i
+    integer :: i, sets
 
     call self%search%find_set(scene, bodies, self%rigid%redundant, allocated(self%line%last), state, watch)
     if (.not. allocated(self%problem%friction)) return
     change = huge(change)
+    sets = 0
+    closed = self%search%closed
     do i = 1, most_limits
       if (state%contact%state /= contact_solved) return
-      if (allocated(closed)) then
-        if (any(closed .neqv. self%search%closed)) call limits%forget()
-      end if
-      closed = self%search%closed
-      limit = self%search%upper(scene%model%contact%pairs + 1:)
-      before = change
-      call limits%update(self%problem, state%contact%force, closed, limit, change)
-      if (change <= exact .or. change <= rounding .and. change > slowly*before) then
-        ! differences that are rounding have spoilt the limits
-        call self%limit_friction(self%problem%friction*max(state%contact%force(self%problem%pair_of), 0.0_wp))
-        return
-      end if
-      call self%limit_friction(limit)
+      associate (n => scene%model%contact%pairs)
+        given = self%search%upper(n + 1:)
+        limit = self%problem%friction*max(state%contact%force(self%problem%pair_of), 0.0_wp)
+        before = change
+        change = maxval(abs(limit - given))/max(maxval(state%contact%force), tiny(change))
+        call self%limit_friction(limit)
+        if (change <= exact .or. change <= rounding .and. change > slowly*before) return
+        ! While the set stays, forces are linear in the limits, and differences of steps lead to the solution.
+        if (any(closed .neqv. self%search%closed)) then
+          sets = sets + 1
+          mixer = fresh
+        end if
+        closed = self%search%closed
+        ! Limits of rows that stick have no effect.
+        if (change > rounding) call mixer%mix(merge(0.0_wp, limit - given, closed(n + 1:)), limit)
+        if (sets > whole_changes .and. mixer%steps == 0) limit = 0.5_wp*(given + limit)
+        call self%limit_friction(max(limit, 0.0_wp))
+      end associate
       call self%search%find_set(scene, bodies, self%rigid%redundant, .true., state, watch)
     end do
     state%contact%state = contact_stalled

@@ -55,7 +55,7 @@ contains
     else if (one%of == of_paper_ratio) then
       name = 'controls%paper_ratio'
     else if (one%of == of_theory) then
-      name = 'controls%flow_theory'
+      name = 'controls%by_increments'
     else if (one%of /= of_section) then   ! sentences about sections name the array
       name = model%name_of(merge(of_node, one%of, one%of == of_reference), one%which)
     end if

@@ -37,7 +37,7 @@ module epcont_model_controls
     logical :: paper_ratio = .false.   !! PARAM MUP PAPER: Poisson's ratio (2-4) in the equivalent strain
     logical :: steps_by_accuracy = .false.   !! flow theory: PARAM ACCURACY chooses the number of increments
     !> Each increment continues from the one before: PARAM THEORY FLOW, and elastic models with friction
-    logical :: flow_theory = .false.
+    logical :: by_increments = .false.
     logical :: sequence = .false.      !! each load case starts from the end of the one before
     logical :: original = .false.      !! PARAM ORIGINAL YES: the methods of the program of about 1980
   end type controls_type

@@ -107,7 +107,7 @@ contains
     expected%apart_bytes = expected%bytes + &
       int(pair_matrices*real(model%contact%rows(), wp)**2, i8)*real_bytes
     ! The factors of the unloaded state are kept beside those of the last state.
-    if ((cases > 1 .or. model%controls%flow_theory) .and. plan%yields) &
+    if ((cases > 1 .or. model%controls%by_increments) .and. plan%yields) &
       expected%bytes = 2*expected%bytes - of_process
     expected%bytes = expected%bytes + of_case*(cases - 1)
   end function forecast

@@ -70,10 +70,10 @@ contains
     logical :: tight
 
     ! Errors of an increment are carried on to the next ones.
-    tight = self%method == method_newton .or. asked%flow_theory
+    tight = self%method == method_newton .or. asked%by_increments
     if (asked%tolerance /= 0.0_wp) then
       self%tolerance = asked%tolerance
-    else if (asked%accuracy > 0.0_wp .and. .not. asked%flow_theory) then
+    else if (asked%accuracy > 0.0_wp .and. .not. asked%by_increments) then
       self%tolerance = asked%accuracy*merge(newton_part, secant_part, tight)
     else
       self%tolerance = merge(newton_tolerance, secant_tolerance, tight)

@@ -182,7 +182,7 @@ contains
       call self%judge(scene, found, watch)
       travel = maxval(abs(found%displacement))
       if (iteration == 1) farthest = far_away*travel
-      if (self%linear%materials%yields .and. .not. (scene%model%controls%flow_theory .or. &
+      if (self%linear%materials%yields .and. .not. (scene%model%controls%by_increments .or. &
           allocated(self%first_stress))) self%first_stress = found%point_stress
       ! Do not report a diverged state: its numbers may be close to overflow.
       self%runs_away = .not. self%converged .and. scene%model%sections%has_flat_curve() .and. &
@@ -335,7 +335,7 @@ contains
                    now%iteration > many_solves .or. now%error > slow*now%change .or. &
                    any(scene%model%loads%prescribed /= 0.0_wp)
       wants_test = wants_test .and. now%residual > solved_to .and. method /= method_newton .and. &
-                   .not. (scene%model%controls%paper_ratio .or. scene%model%controls%flow_theory)
+                   .not. (scene%model%controls%paper_ratio .or. scene%model%controls%by_increments)
     end associate
   end function wants_test
 

@@ -97,7 +97,7 @@ contains
     class(observer), intent(inout) :: watch                      !! takes the time, called after each solve
 
     call move_alloc(linear, self%iteration%linear)
-    associate (iteration => self%iteration, flow => scene%model%controls%flow_theory)
+    associate (iteration => self%iteration, flow => scene%model%controls%by_increments)
       do
         if (self%place > 0 .or. self%stride < parts) &
           call iteration%take_loads(scene, self%part_of_loads(self%place + self%stride))
@@ -196,7 +196,7 @@ contains
     self%lacks_memory = any(iteration%linear%body%lacks_memory)
     if (self%failed_body > 0) return
     associate (contact => iteration%state%contact)
-      escapes = self%carried .and. scene%model%controls%flow_theory .and. &
+      escapes = self%carried .and. scene%model%controls%by_increments .and. &
                 contact%state == contact_no_equilibrium
       if (escapes) then
         self%lost_contact = sum(self%contact%force) <= little*self%largest_force
@@ -208,7 +208,7 @@ contains
         call iteration%return_to(scene, self%solved_state, self%load_factor, watch)
         if (iteration%failed_body > 0) self%condition = huge(1.0_wp)
         ! Its plastic strains are committed.
-        if (scene%model%controls%flow_theory) self%point = iteration%linear%materials%states(self%strain)
+        if (scene%model%controls%by_increments) self%point = iteration%linear%materials%states(self%strain)
         return
       end if
     end associate

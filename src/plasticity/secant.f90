@@ -4,10 +4,10 @@
 !> last strains. Other methods extend it.
 module epcont_plasticity_secant
   use epcont_base_kinds, only: wp
+  use epcont_linalg_anderson, only: anderson_mixer
   use epcont_linear_linear_problem, only: linear_problem
   use epcont_linear_solved_state, only: solved_state
   use epcont_model_model, only: model_type
-  use epcont_plasticity_anderson, only: anderson_mixer
   implicit none
   private
   public :: secant_method
@@ -51,7 +51,7 @@ contains
     type(solved_state), intent(inout) :: about        !! displacement, strain and points
 
     if (allocated(self%mixer)) then
-      call self%mixer%mix(model, linear%operator%volume, found, about)
+      call mix_states(self%mixer, model, linear%operator%volume, found, about)
       about%point = linear%materials%states(about%strain)
     else
       about%displacement = found%displacement
@@ -59,4 +59,25 @@ contains
       about%point = found%point
     end if
   end subroutine advance
+
+  !> Combine the last states. The norm of a change of strains is that of their elastic energy.
+  subroutine mix_states(mixer, model, volume, found, about)
+    type(anderson_mixer), intent(inout) :: mixer
+    type(model_type), intent(in) :: model            !! model
+    real(wp), intent(in) :: volume(:)                !! of each point [length**3]
+    type(solved_state), intent(in) :: found          !! displacement and strain
+    type(solved_state), intent(inout) :: about       !! the same
+    real(wp) :: rest(size(found%strain, 1), size(volume))
+    real(wp), allocatable :: value(:)
+    integer :: n
+
+    rest = (found%strain - about%strain)*spread( &
+           sqrt(volume*model%sections%young(model%mesh%section(model%mesh%point_element))), 1, size(rest, 1))
+    rest(4, :) = sqrt(0.5_wp)*rest(4, :)   ! shear, twice in the sum of squares
+    n = size(rest)
+    value = [found%strain, found%displacement]
+    call mixer%mix([rest], value)
+    about%strain = reshape(value(:n), shape(about%strain))
+    about%displacement = reshape(value(n + 1:), shape(about%displacement))
+  end subroutine mix_states
 end module epcont_plasticity_secant

@@ -173,9 +173,9 @@ contains
     if (scene%model%controls%steps_by_accuracy) &
       call plan%say('increments: as many as PARAM ACCURACY needs, each from the end of the one before')
     if (scene%iteration%load_steps > 1) &
-      call plan%say(plural(scene%iteration%load_steps, when(scene%model%controls%flow_theory, &
+      call plan%say(plural(scene%iteration%load_steps, when(scene%model%controls%by_increments, &
         'increment', 'load step'))//when(several, ' in the first of these load cases')// &
-        when(scene%model%controls%flow_theory, ', each from the end of the one before', &
+        when(scene%model%controls%by_increments, ', each from the end of the one before', &
              '; elastic unloading is not modelled'))
     if (scene%model%controls%paper_ratio) call plan%say('MUP PAPER: Poisson''s ratio in the equivalent '// &
       'strain by formula (2-4): stresses up to (1 - 2 nu)/3 below the curve')
@@ -187,7 +187,7 @@ contains
     character(len=:), allocatable :: text
 
     text = 'total theory of plasticity'
-    if (.not. model%controls%flow_theory) return
+    if (.not. model%controls%by_increments) return
     text = 'flow theory of plasticity ('
     if (model%controls%sequence) then
       text = text//'a sequence of load cases, each from the end of the one before)'

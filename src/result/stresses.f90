@@ -39,7 +39,7 @@ contains
     end associate
     shortfall = 0.0_wp
     if (allocated(answer%plastic_strain)) deallocate (answer%plastic_strain)
-    if (model%controls%flow_theory .and. linear%materials%yields) &
+    if (model%controls%by_increments .and. linear%materials%yields) &
       allocate (answer%plastic_strain(5, model%mesh%elements), source=0.0_wp)
     !$omp parallel do num_threads(threads_over(model%mesh%elements)) reduction(max:shortfall)
     do e = 1, model%mesh%elements
