@@ -10,7 +10,8 @@ contact problem alone, compared with packages for quadratic programs. Part 3: ra
 time and memory up to 170 000 unknowns, and the deck of 44 nodes compared with an empty program. Part 4: the solver from
 numbering to displacements, stage by stage, compared with the best libraries alone. Part 5: many pairs, bodies and unknowns, growth to
 2 000 000 unknowns; order, factor and solves compared with PARDISO and CHOLMOD, many pairs with CalculiX. Part 6: two cylinders loaded and
-unloaded by flow theory, compared with CalculiX. Everything uses one thread, except one model of part 5. The programs run in turns; times are medians, ratios are medians over the turns.
+unloaded by flow theory, compared with CalculiX. Part 7: the dense contact problem with friction, compared with an augmented Lagrangian,
+Siconos and Lemke's algorithm. Everything uses one thread, except one model of part 5. The programs run in turns; times are medians, ratios are medians over the turns.
 The results of each part are kept in build/benchmark/part*.json. If all parts exist, their tables go to
 tools/benchmark/results.md and a picture to results.png, each with its own command and load; they are always printed.
 """
@@ -43,7 +44,9 @@ NODES, UNKNOWNS = (330, 1000, 3000, 11000, 42000), (50, 100, 200, 500, 1000, 200
 #: For part 4 and growth: nodes of meshes, each with twice as many unknowns as the one before.
 SOLVED, GROWING = (330, 930, 3080, 11100, 42500), (3080, 7600, 20200, 42500, 85000)
 RELEASE = TOP / "build/release"
-PARTS = (1, 2, 3, 4, 5, 6)
+PARTS = (1, 2, 3, 4, 5, 6, 7)
+#: Pairs of part 7.
+RUBBING = (50, 200, 500, 1000)
 
 
 def say(text):
@@ -59,15 +62,16 @@ def part1(place, sizes, turns, largest_plastic):
     return [row for n, plastic in kinds for row in cylinders.one(TOP, place / f"{n}{plastic}", n, plastic, turns, say)]
 
 
-def part2(place, sizes, turns, limit):
+def dense(script, place, sizes, turns, limit):
+    """Parts 2 and 7."""
     rows = []
-    with subprocess.Popen([sys.executable, HERE / "contact.py", RELEASE / "bench_contact", place, str(turns), str(limit), *map(str, sizes)],
+    with subprocess.Popen([sys.executable, HERE / script, RELEASE / "bench_contact", place, str(turns), str(limit), *map(str, sizes)],
                           env=ONE_THREAD, stdout=subprocess.PIPE, text=True) as child:
         for line in child.stdout:
             rows.append(json.loads(line))
             say(line.strip())
     if child.returncode:
-        sys.exit(f"part 2: exit status {child.returncode}")
+        sys.exit(f"{script}: exit status {child.returncode}")
     return rows
 
 
@@ -144,12 +148,13 @@ def main():
         place = pathlib.Path(directory)
         solved, growing = (options.nodes or (all_sizes[:-1] if options.quick else all_sizes) for all_sizes in (SOLVED, GROWING))
         does = {1: lambda: part1(place, sizes, turns, NODES[-2] if options.quick else sizes[-1]),
-                2: lambda: part2(place, UNKNOWNS[:-1] if options.quick else UNKNOWNS, turns, 5 if options.quick else 20),
+                2: lambda: dense("contact.py", place, UNKNOWNS[:-1] if options.quick else UNKNOWNS, turns, 5 if options.quick else 20),
                 3: lambda: part3(place, sizes, growing, turns),
                 4: lambda: part4(place, solved, turns),
                 5: lambda: part5(place, turns, options),
-                6: lambda: history.history(place, RELEASE / "epcont", options.nodes or NODES[2:4], turns, say)}
-        for part in (options.part,) if options.part else (4, 3, 5, 1, 6, 2):
+                6: lambda: history.history(place, RELEASE / "epcont", options.nodes or NODES[2:4], turns, say),
+                7: lambda: dense("friction.py", place, RUBBING, turns, 3 if options.quick else 20)}
+        for part in (options.part,) if options.part else (4, 3, 5, 1, 6, 2, 7):
             load = f"load {os.getloadavg()[0]:.1f} at the start"
             about = {"command": command, "load": load, "version": output(RELEASE / "epcont", "--version").split()[-1]}
             kept(part).write_text(json.dumps({**about, "rows": does[part]()}), encoding="ascii")

@@ -1,9 +1,10 @@
 !> Measure the time of epcont's contact solver alone: bench_contact PROBLEM FORCES RULE REPEATS
 !>
-!> PROBLEM is a stream: n, m (4-byte integers), then doubles: F [n, n], A [n, m], g0 [n], P [m]. FORCES gets R [n], q [m].
+!> PROBLEM is a stream: n, m, s (4-byte integers), then doubles: F [n, n], A [n, m], g0 [n], P [m], mu [s]. The first s rows may be pairs with
+!> friction; then the last s rows are along their tangents. FORCES gets R [n], q [m].
 !> RULE: CONRY, WARM (CONRY from the correct active set), or DGEMM, only one product of matrices as large as F.
 !> Prints: processor seconds (median of the repeats, without the first), largest violation of the
-!> conditions, pairs exchanged, and state.
+!> conditions without friction, pairs exchanged, and state.
 program bench_contact
   use, intrinsic :: iso_fortran_env, only: int32
   use epcont_base_kinds, only: wp
@@ -56,18 +57,21 @@ contains
   subroutine read_problem(path, problem)
     character(*), intent(in) :: path
     type(contact_problem), intent(out) :: problem
-    real(wp), allocatable :: flexibility(:, :), motion(:, :)
-    integer(int32) :: m, n
-    integer :: unit
+    real(wp), allocatable :: flexibility(:, :), friction(:), motion(:, :)
+    integer(int32) :: m, n, s
+    integer :: k, unit
 
     open (newunit=unit, file=path, access='stream', form='unformatted', status='old', action='read')
-    read (unit) n, m
-    allocate (flexibility(n, n), motion(n, m), problem%initial_gap(n), problem%resultant(m))
+    read (unit) n, m, s
+    allocate (flexibility(n, n), motion(n, m), problem%initial_gap(n), problem%resultant(m), friction(s))
     allocate (problem%load_gap(n), source=0.0_wp)
-    read (unit) flexibility, motion, problem%initial_gap, problem%resultant
+    read (unit) flexibility, motion, problem%initial_gap, problem%resultant, friction
     close (unit)
     problem%flexibility = flexibility
     problem%motion = dense_motions(motion)
+    if (s == 0) return
+    problem%friction = friction
+    problem%pair_of = [(k, k=1, s)]
   end subroutine read_problem
 
   subroutine write_forces(path, solution)

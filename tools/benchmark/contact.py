@@ -11,7 +11,6 @@ skips the larger sizes of that problem. Data are in memory before the clock star
 import json
 import pathlib
 import statistics
-import subprocess
 import sys
 import time
 
@@ -23,20 +22,7 @@ import piqp
 import quadprog
 import scipy.sparse as sparse
 
-from process import ONE_THREAD
-
-MODULUS, TOLERANCE = 20400.0 / (2 * (1 - 0.29 ** 2)), 1e-9
-
-
-def half_plane(n, depth=0.0):
-    """n strips on (-1, 1): displacement of their centres, `depth` strips below the surface (this smooths), zero at a distance of four half-lengths."""
-    h = 2.0 / n
-    d = h * abs(np.subtract.outer(np.arange(n), np.arange(n)))
-    if depth:
-        mean = np.log(np.hypot(d, depth * h))
-    else:
-        mean = ((d + h / 2) * np.log(d + h / 2) - (d - h / 2) * np.log(abs(d - h / 2))) / h - 1
-    return np.ascontiguousarray(2 / (np.pi * MODULUS) * (np.log(4.0) - mean))
+from dense import MODULUS, TOLERANCE, Epcont, half_plane
 
 
 def problem(kind, n):
@@ -67,42 +53,6 @@ def violation(flexibility, gap, load, force):
     largest = abs(force).max()
     size = abs(flexibility).sum(axis=1).max() * largest
     return float(max(abs(np.minimum(force / largest, w / size)).max(), abs(force.sum() / load - 1)))
-
-
-class Stalled(RuntimeError):
-    """Result of a run that gave no answer after these seconds."""
-
-    def __init__(self, seconds, pivots):
-        super().__init__(f"stalled after {pivots} pivots")
-        self.seconds = seconds
-
-
-class Epcont:
-    """Run bench_contact with one rule; with DGEMM, one product of matrices."""
-
-    def __init__(self, program, place, rule):
-        self.program, self.place, self.rule = program, place, rule
-
-    def prepare(self, flexibility, gap, load):
-        n = len(gap)
-        with open(self.place / "problem", "wb") as file:
-            np.array([n, 1], np.int32).tofile(file)
-            for part in (flexibility.T, np.ones(n), gap, np.array([load])):
-                np.ascontiguousarray(part).tofile(file)
-        command = [self.program, "problem", "forces", self.rule, "3" if n > 200 else "50"]
-
-        def solve():
-            run = subprocess.run(command, cwd=self.place, env=ONE_THREAD, capture_output=True, text=True, check=False)
-            if run.returncode:
-                sys.exit(run.stdout + run.stderr)
-            seconds, *rest = run.stdout.split()
-            if not rest:
-                return None, float(seconds)
-            _, pivots, state = rest
-            if state != "0":
-                raise Stalled(float(seconds), pivots)
-            return np.fromfile(self.place / "forces")[:n], float(seconds)
-        return solve
 
 
 def scaled(package):

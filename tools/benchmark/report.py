@@ -72,6 +72,27 @@ def contact(rows):
                ["largest violation", "", "", *("" if largest[name] is None else f"{largest[name]:.0e}" for name in names)]])])
 
 
+def friction(rows):
+    """A row for each problem and size: milliseconds of epcont, and the times of the others over that; the numbers of right answers of random problems."""
+    half = [row for row in rows if row["problem"] != "random"]
+    names = [name for name in dict.fromkeys(row["program"] for row in half) if name != "epcont"]
+    lines = {}
+    for row in half:
+        shown = milliseconds(row["cpu"]) if row["program"] == "epcont" else row["note"] and "no answer" or short(row["ratio"])
+        lines.setdefault((row["problem"], row["n"]), {})[row["program"]] = shown
+    worst = {name: max((row["violation"] or 0.0 for row in half if row["program"] == name), default=0.0) for name in ("epcont", *names)}
+    return "\n\n".join([
+        "## Dense contact problem with friction",
+        "Strips on a half-plane with Poisson's ratio 0.3 and mu 0.3, pressed by P and pushed by mu P/2 in one step. epcont: CPU milliseconds of its simplex (CONRY), with two rigid-body "
+        "modes. Other columns: times over that. fixed: epcont with given rigid-body displacements, as the programs to the right have them. frictionless: epcont, the same pairs without "
+        "friction. Violation: of the conditions of Coulomb's law, over the largest force.",
+        table(["problem", "pairs", "epcont", *names], [[*key, *(of.get(name, "") for name in ("epcont", *names))] for key, of in lines.items()] +
+              [["largest violation", "", *(worst[name] and f"{worst[name]:.0e}" or "" for name in ("epcont", *names))]]),
+        "Random problems with 0, 1 and 3 rigid-body modes and mu 0.1 to 1: right answers (violation below 1e-7). Lemke's algorithm has weak springs on the modes.",
+        table(["pairs", "modes", "problems", "epcont", "Lemke", "both", "both the same"],
+              [[row[key] for key in ("n", "modes", "number", "epcont", "Lemke", "both", "same")] for row in rows if row["problem"] == "random"])])
+
+
 def factor(rows, runs):
     lines = [["dgemm, n = 1000" if row["nodes"] is None else row["nodes"], int(row["equations"]), int(row["width"]), short(row["seconds"]),
               f"{row['rate'] / 1e9:.1f}", f"{100 * row['part']:.0f}"] for row in rows["factor"]]
@@ -131,6 +152,7 @@ def page(parts, about):
     text += [solve_part(rows[4])] if 4 in rows else []
     text += [report_large.large(rows[5])] if 5 in rows else []
     text += [history(rows[6])] if 6 in rows else []
+    text += [friction(rows[7])] if 7 in rows else []
     return "\n\n".join(text)
 
 
