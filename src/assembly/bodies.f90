@@ -25,7 +25,6 @@ module epcont_assembly_bodies
   type :: half_solved_body
     logical :: loaded = .false.            !! there are any forces
     real(wp), allocatable :: inner(:, :)   !! [equations, 1]
-    real(wp), allocatable :: border(:, :)  !! [border, 1]
   end type half_solved_body
 
   !> Several fields of forces on some nodes; a node may occur twice.
@@ -37,7 +36,7 @@ module epcont_assembly_bodies
   type :: factored_bodies
     type(strain_operator) :: operator
     type(linear_law) :: law                    !! of the next or the last factors
-    type(spring_set) :: spring                 !! of joined bodies, of the next or the last factor
+    type(spring_set) :: spring                 !! of the next or the last factor
     type(body_stiffness), allocatable :: body(:)   !! bodies of the numbering
     integer :: factorizations = 0              !! number so far, of bodies with equations
     !> Forces of prescribed displacements on free DOFs [directions, nodes]
@@ -62,6 +61,7 @@ contains
 
     bodies%operator = new_strain_operator(scene%model)
     allocate (bodies%body(size(scene%numbering%body)))
+    if (.not. scene%numbering%joined) bodies%spring%stiffness = scene%model%constraints%spring%stiffness
     allocate (bodies%settlement(directions, scene%model%mesh%nodes), source=0.0_wp)
   end function new_bodies
 
@@ -156,7 +156,7 @@ contains
       call self%body(b)%estimate_condition()
       condition = max(condition, self%body(b)%condition)
     end do
-    if (allocated(self%spring%stiffness)) condition = condition*self%spring%norm/self%body(1)%matrix%norm
+    if (self%spring%norm > 0.0_wp) condition = condition*self%spring%norm/self%body(1)%matrix%norm
   end subroutine estimate_condition
 
   !> Find the weakest pivot of all bodies. Joined bodies are skipped: their springs make pivots small, and
@@ -165,7 +165,7 @@ contains
     class(factored_bodies), intent(in) :: self
     integer :: b
 
-    if (allocated(self%spring%stiffness)) return
+    if (self%spring%norm > 0.0_wp) return
     b = minloc(self%body%smallest_ratio, dim=1)
     if (self%body(b)%smallest_ratio < weakest%ratio) weakest = weak_pivot(self%body(b)%smallest_ratio, b)
   end function weakest
@@ -190,7 +190,7 @@ contains
     logical, intent(in) :: moved                 !! with the forces of the prescribed displacements
     !> Forces added before; not allocated if no forces were added [bodies]
     type(half_solved_body), allocatable, intent(inout) :: half(:)
-    real(wp), allocatable :: border(:, :), inner(:, :), whole(:, :)
+    real(wp), allocatable :: inner(:, :), whole(:, :)
     integer :: b, i
 
     whole = force
@@ -198,28 +198,21 @@ contains
     if (.not. allocated(half)) allocate (half(size(self%body)))
     do b = 1, size(half)
       associate (body => scene%numbering%body(b))
-        allocate (inner(body%equations, 1), border(body%border, 1), source=0.0_wp)
-        ! One thread if several DOFs may share an equation: in sums, and ties of joined bodies.
-        !$omp parallel do &
-        !$omp num_threads(merge(1, threads_over(size(body%node)), scene%numbering%joined .or. &
-        !$omp             size(body%tied%start) > 1))
+        allocate (inner(body%equations, 1), source=0.0_wp)
+        !$omp parallel do num_threads(merge(1, threads_over(size(body%node)), body%is_tied))
         do i = 1, size(body%node)
           associate (at => body%node(i))
-            call put_forces(scene%numbering, b, at, whole(:, at:at), inner, border)
+            call put_forces(scene%numbering, b, at, whole(:, at:at), inner)
           end associate
         end do
         !$omp end parallel do
       end associate
-      if (any(inner /= 0.0_wp) .or. any(border /= 0.0_wp)) then
-        call self%body(b)%solve_lower(inner, border)
+      if (any(inner /= 0.0_wp)) then
+        call self%body(b)%matrix%solve_lower(inner)
         half(b)%loaded = .true.
       end if
-      if (allocated(half(b)%inner)) then
-        inner = inner + half(b)%inner
-        border = border + half(b)%border
-      end if
+      if (allocated(half(b)%inner)) inner = inner + half(b)%inner
       call move_alloc(inner, half(b)%inner)
-      call move_alloc(border, half(b)%border)
     end do
   end subroutine add_forces
 
@@ -231,7 +224,7 @@ contains
     logical, intent(in) :: moved         !! by the prescribed displacements
     logical, intent(in) :: at_contact    !! only displacements that gaps depend on are needed
     real(wp), allocatable :: u(:, :)
-    real(wp), allocatable :: border(:, :), inner(:, :)
+    real(wp), allocatable :: inner(:, :)
     integer :: b, first, i
 
     allocate (u(directions, scene%model%mesh%nodes), source=0.0_wp)
@@ -239,13 +232,12 @@ contains
     do b = 1, size(half)
       associate (body => scene%numbering%body(b))
         inner = half(b)%inner
-        border = half(b)%border
         first = merge(body%first_contact, 1, at_contact)
-        if (half(b)%loaded) call self%body(b)%solve_upper(inner, border, first)
+        if (half(b)%loaded) call self%body(b)%matrix%solve_upper(inner, first)
         !$omp parallel do num_threads(threads_over(size(body%node)))
         do i = 1, size(body%node)
           associate (node => body%node(i))
-            call add_displacements(scene%numbering, b, node, first, inner, border, u(:, node:node))
+            call add_displacements(scene%numbering, b, node, first, inner, u(:, node:node))
           end associate
         end do
         !$omp end parallel do
@@ -263,77 +255,63 @@ contains
     integer, intent(in) :: node(:)                 !! nodes whose displacements are needed
     real(wp), intent(out) :: u(:, :, :)            !! [length] [directions, fields, nodes]
     logical, intent(in), optional :: at_contact    !! only displacements that gaps depend on are needed
-    real(wp), allocatable :: border(:, :), inner(:, :)
+    real(wp), allocatable :: inner(:, :)
     integer :: first, i
 
     first = 1
     associate (body => scene%numbering%body(b))
       if (present(at_contact)) first = merge(body%first_contact, 1, at_contact)
-      allocate (inner(body%equations, size(u, 2)), border(body%border, size(u, 2)), source=0.0_wp)
+      allocate (inner(body%equations, size(u, 2)), source=0.0_wp)
     end associate
     do i = 1, size(loads%node)
-      call put_forces(scene%numbering, b, loads%node(i), loads%force(:, :, i), inner, border)
+      call put_forces(scene%numbering, b, loads%node(i), loads%force(:, :, i), inner)
     end do
-    call self%body(b)%solve_lower(inner, border)
-    call self%body(b)%solve_upper(inner, border, first)
+    call self%body(b)%matrix%solve_lower(inner)
+    call self%body(b)%matrix%solve_upper(inner, first)
     inner(:first - 1, :) = 0.0_wp
     u = 0.0_wp
     do i = 1, size(node)
-      call add_displacements(scene%numbering, b, node(i), first, inner, border, u(:, :, i))
+      call add_displacements(scene%numbering, b, node(i), first, inner, u(:, :, i))
     end do
   end subroutine body_displacements
 
-  !> Add fields of forces at a node to the right-hand sides of its body. Sums are of border unknowns, or of
-  !! equations if bodies are joined, which have no border.
-  pure subroutine put_forces(numbering, b, node, force, inner, border)
+  !> Add fields of forces at a node to the right-hand sides of its body.
+  pure subroutine put_forces(numbering, b, node, force, inner)
     type(numbering_type), intent(in) :: numbering
     integer, intent(in) :: b, node
-    real(wp), intent(in) :: force(:, :)                    !! [directions, fields]
-    real(wp), intent(inout) :: inner(:, :), border(:, :)   !! [equations, fields], [border, fields]
-    real(wp) :: own(directions)
-    integer :: c, e, f
+    real(wp), intent(in) :: force(:, :)        !! [directions, fields]
+    real(wp), intent(inout) :: inner(:, :)     !! [equations, fields]
+    integer :: c, e
 
     associate (tied => numbering%body(b)%tied, number => numbering%equation(:, node))
-      do f = 1, size(force, 2)
-        own = force(:, f)
-        if (numbering%axes%turn(node) > 0) own = numbering%axes%along(node, own)
-        do c = 1, directions
-          if (number(c) > 0) inner(number(c), f) = inner(number(c), f) + own(c)
-          if (number(c) >= 0) cycle
-          do e = tied%start(-number(c)), tied%start(1 - number(c)) - 1
-            associate (at => tied%equation(e), part => tied%weight(e)*own(c))
-              if (size(border, 1) == 0) inner(at, f) = inner(at, f) + part
-              if (size(border, 1) > 0) border(at, f) = border(at, f) + part
-            end associate
-          end do
+      do c = 1, directions
+        if (number(c) > 0) inner(number(c), :) = inner(number(c), :) + force(c, :)
+        if (number(c) >= 0) cycle
+        do e = tied%start(-number(c)), tied%start(1 - number(c)) - 1
+          associate (at => tied%equation(e))
+            inner(at, :) = inner(at, :) + tied%weight(e)*force(c, :)
+          end associate
         end do
       end do
     end associate
   end subroutine put_forces
 
   !> Put the displacements of a node in their place, those of sums in addition to prescribed parts.
-  pure subroutine add_displacements(numbering, b, node, first, inner, border, u)
+  pure subroutine add_displacements(numbering, b, node, first, inner, u)
     type(numbering_type), intent(in) :: numbering
     integer, intent(in) :: b, node
-    integer, intent(in) :: first                        !! equations before this one are not needed
-    real(wp), intent(in) :: inner(:, :), border(:, :)   !! [equations, fields], [border, fields]
-    real(wp), intent(inout) :: u(:, :)                  !! [directions, fields]
-    real(wp) :: total
-    integer :: c, e, f
+    integer, intent(in) :: first             !! equations before this one are not needed
+    real(wp), intent(in) :: inner(:, :)      !! [equations, fields]
+    real(wp), intent(inout) :: u(:, :)       !! [directions, fields]
+    integer :: c, e
 
     associate (tied => numbering%body(b)%tied, number => numbering%equation(:, node))
-      do f = 1, size(u, 2)
-        do c = 1, directions
-          if (number(c) > 0) u(c, f) = merge(inner(number(c), f), 0.0_wp, number(c) >= first)
-          if (number(c) >= 0) cycle
-          total = 0.0_wp
-          do e = tied%start(-number(c)), tied%start(1 - number(c)) - 1
-            if (size(border, 1) == 0) total = total + tied%weight(e)*inner(tied%equation(e), f)
-            if (size(border, 1) > 0) total = total + tied%weight(e)*border(tied%equation(e), f)
-          end do
-          u(c, f) = u(c, f) + total
+      do c = 1, directions
+        if (number(c) > 0) u(c, :) = merge(inner(number(c), :), 0.0_wp, number(c) >= first)
+        if (number(c) >= 0) cycle
+        do e = tied%start(-number(c)), tied%start(1 - number(c)) - 1
+          u(c, :) = u(c, :) + tied%weight(e)*inner(tied%equation(e), :)
         end do
-        if (numbering%axes%turn(node) > 0) u(:, f) = numbering%axes%back(node, u(:, f))
       end do
     end associate
   end subroutine add_displacements

@@ -1,21 +1,14 @@
-!> Stiffness of one body, assembled and factored: a band or fronts, and a border of the free master DOFs of
-!> ties.
-!>
-!>     K = [ K_bb  K_br ]   b: band or fronts,  r: border (few)
-!>         [ K_rb  K_rr ]
-!>
-!> Only K_bb is factored; the border follows from its Schur complement S = K_rr - K_rb W, W = K_bb^-1 K_br.
+!> Stiffness of one body, assembled and factored, in a band or in fronts.
 module epcont_assembly_stiffness
   use epcont_assembly_strain_operator, only: strain_operator
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: directions
-  use epcont_linalg_assembled, only: assembled_matrix, probes, sparse_rows
-  use epcont_linalg_dense, only: cholesky_factor, cholesky_solve
+  use epcont_linalg_assembled, only: assembled_matrix, probes
   use epcont_linalg_fronts, only: front_matrix
   use epcont_linalg_panels, only: panel_matrix
   use epcont_material_linear_law, only: linear_law
   use epcont_model_controls, only: solver_frontal
-  use epcont_plan_joined_numbering, only: find_terms
+  use epcont_plan_sums, only: find_terms
   use epcont_plan_numbering, only: body_numbering, most_freedoms
   use epcont_plan_planned_model, only: planned_model
   !$ use omp_lib, only: omp_get_num_threads
@@ -23,28 +16,26 @@ module epcont_assembly_stiffness
   private
   public :: body_stiffness, spring_set
 
-  !> Springs of joined bodies.
+  !> Springs of the model; those of joined bodies include springs of pairs and SUPORT DOFs.
   type :: spring_set
     real(wp), allocatable :: stiffness(:)   !! [force/length] [springs]
-    logical, allocatable :: changed(:)      !! differs from that of the last factor [springs]
-    real(wp) :: norm = 0.0_wp               !! of the stiffness without springs, in the 1-norm [force/length]
+    !> Differs from that of the last factor; not allocated if no stiffness ever changes [springs]
+    logical, allocatable :: changed(:)
+    !> 1-norm of the stiffness of joined bodies without springs; 0 if bodies are not joined [force/length]
+    real(wp) :: norm = 0.0_wp
   end type spring_set
 
   type :: body_stiffness
-    class(assembled_matrix), allocatable :: matrix   !! K_bb, then its factor
-    real(wp), allocatable :: coupling(:, :)   !! K_br, then W [equations, border]
-    real(wp), allocatable :: schur(:, :)      !! K_rr, then the factor of S [border, border]
-    logical :: lacks_memory = .false.         !! the memory was too small for K_bb
+    class(assembled_matrix), allocatable :: matrix   !! the stiffness, then its factor
+    logical :: lacks_memory = .false.         !! the memory was too small for it
     real(wp) :: smallest_ratio = 1.0_wp       !! smallest pivot over its diagonal entry
-    !> Estimated condition of K_bb in the 1-norm; 0 if it has not been estimated for this factor
+    !> Estimated condition in the 1-norm; 0 if it has not been estimated for this factor
     real(wp) :: condition = 0.0_wp
   contains
     procedure :: assemble
     procedure, private :: begin
     procedure :: factor
     procedure :: is_sound
-    procedure :: solve_lower
-    procedure :: solve_upper
     procedure :: estimate_condition
   end type body_stiffness
 
@@ -65,7 +56,6 @@ module epcont_assembly_stiffness
     procedure :: add_element
     procedure :: add_sums
     procedure :: add_spring
-    procedure :: add_springs
   end type assembly
 
 contains
@@ -77,7 +67,7 @@ contains
     type(planned_model), intent(in), target :: scene        !! with equation numbers
     type(strain_operator), intent(in), target :: operator   !! strains of nodal displacements
     type(linear_law), intent(in), target :: law             !! with marks where it has changed
-    type(spring_set), intent(in), target :: spring          !! of joined bodies
+    type(spring_set), intent(in), target :: spring          !! springs of its parts
     integer, intent(in) :: b                                !! the body
     type(assembly) :: work
 
@@ -93,12 +83,9 @@ contains
       if (.not. allocated(self%matrix)) then
         call self%begin(body, .not. (body%can_yield .or. scene%numbering%joined))
       else
-        if (self%is_sound() .and. body%border == 0) call work%find_stale()
+        if (self%is_sound()) call work%find_stale()
         call self%matrix%clear(work%stale(1:))
-        deallocate (self%coupling, self%schur)
       end if
-      allocate (self%coupling(body%equations, body%border), source=0.0_wp)
-      allocate (self%schur(body%border, body%border), source=0.0_wp)
       self%lacks_memory = self%matrix%lacks_memory
       if (self%lacks_memory) return
       if (body%solver == solver_frontal) then
@@ -109,7 +96,6 @@ contains
       else
         call work%fill(1, 1, size(body%part))
       end if
-      if (.not. scene%numbering%joined) call work%add_springs(b)
     end associate
   end subroutine assemble
 
@@ -121,17 +107,15 @@ contains
     type(front_matrix), allocatable :: fronts
     type(panel_matrix), allocatable :: panels
 
-    associate (trailing => merge(body%contact_equations, 0, body%contact_last))
-      if (body%solver == solver_frontal) then
-        allocate (fronts)
-        call fronts%begin(body%fronts, once, trailing)
-        call move_alloc(fronts, self%matrix)
-      else
-        allocate (panels)
-        call panels%begin(body%panels, trailing)
-        call move_alloc(panels, self%matrix)
-      end if
-    end associate
+    if (body%solver == solver_frontal) then
+      allocate (fronts)
+      call fronts%begin(body%fronts, once, body%contact_equations)
+      call move_alloc(fronts, self%matrix)
+    else
+      allocate (panels)
+      call panels%begin(body%panels, body%contact_equations)
+      call move_alloc(panels, self%matrix)
+    end if
   end subroutine begin
 
   !> Find the equations of elements and springs that have changed.
@@ -149,7 +133,7 @@ contains
         do i = 1, size(number)
           self%stale(number(i)) = number(i) > 0
         end do
-        if (.not. self%scene%numbering%joined .or. all(number >= 0)) cycle
+        if (all(number >= 0)) cycle
         call find_terms(self%numbers%tied, number, term, freedom, weight)
         self%stale(term) = .true.
       end do
@@ -171,7 +155,7 @@ contains
     logical :: deferred   ! a single thread would begin with the last unit, far from memory in the cache
 
     deferred = .false.
-    !$ deferred = size(self%stiffness%schur) == 0 .and. omp_get_num_threads() > 1
+    !$ deferred = omp_get_num_threads() > 1
     associate (fronts => self%numbers%fronts)
       unit = [fronts%unit, 0]
       do p = 1, size(fronts%unit)
@@ -224,18 +208,16 @@ contains
     real(wp) :: k(most_freedoms**2)
     integer :: n, number(most_freedoms)
 
-    associate (model => self%scene%model, numbering => self%scene%numbering)
-      number = numbering%of_element(model, element)
+    associate (model => self%scene%model)
+      number = self%scene%numbering%of_element(model, element)
       n = directions*model%mesh%node_count(element)
-      if (numbering%joined .and. any(number(:n) < 0)) then
+      if (any(number(:n) < 0)) then
         call self%add_sums(element, n, number(:n))
         return
       end if
       if (.not. any(self%stale(number(:n)))) return
       call self%operator%element_stiffness(model, element, self%law, n, k)
-      call numbering%axes%turn_stiffness(model%mesh%connectivity(:, element), n, k)
       call self%stiffness%matrix%add(n, number, k)
-      if (size(self%stiffness%schur) > 0) call add_to_border(n, number, k, self%numbers%tied, self%stiffness)
     end associate
   end subroutine add_element
 
@@ -254,7 +236,6 @@ contains
                                    spread(weight, 2, size(weight))*spread(weight, 1, size(weight)))
   end subroutine add_sums
 
-  !> Add a spring of joined bodies.
   subroutine add_spring(self, k)
     class(assembly), intent(inout) :: self
     integer, intent(in) :: k
@@ -269,72 +250,14 @@ contains
     end associate
   end subroutine add_spring
 
-  !> Add the springs of the model, whose ends are in the border.
-  subroutine add_springs(self, b)
-    class(assembly), intent(inout) :: self
-    integer, intent(in) :: b
-    real(wp) :: row(size(self%stiffness%schur, 1))
-    integer :: e, i, k, number
-
-    do k = 1, size(self%scene%model%constraints%spring)
-      associate (own => self%scene%model%constraints%spring(k), schur => self%stiffness%schur, &
-                 tied => self%numbers%tied)
-        if (self%scene%model%mesh%body(maxval(own%node)) /= b) cycle
-        row = 0.0_wp
-        do i = 1, 2
-          number = 0
-          if (own%node(i) > 0) number = self%scene%numbering%equation(own%component(i), own%node(i))
-          if (number == 0) cycle
-          do e = tied%start(-number), tied%start(1 - number) - 1
-            row(tied%equation(e)) = row(tied%equation(e)) + (2*i - 3)*tied%weight(e)
-          end do
-        end do
-        schur = schur + own%stiffness*spread(row, 1, size(row))*spread(row, 2, size(row))
-      end associate
-    end do
-  end subroutine add_springs
-
-  !> Add an element matrix to the coupling and the border.
-  pure subroutine add_to_border(n, number, k, tied, stiffness)
-    integer, intent(in) :: n, number(n)
-    real(wp), intent(in) :: k(n, n)
-    type(sparse_rows), intent(in) :: tied
-    class(body_stiffness), intent(inout) :: stiffness
-    integer :: e, f, i, j
-
-    do j = 1, n
-      if (number(j) >= 0) cycle
-      do e = tied%start(-number(j)), tied%start(1 - number(j)) - 1
-        associate (coupling => stiffness%coupling(:, tied%equation(e)), &
-                   schur => stiffness%schur(:, tied%equation(e)), weight => tied%weight(e))
-          do i = 1, n
-            if (number(i) > 0) coupling(number(i)) = coupling(number(i)) + weight*k(i, j)
-            if (number(i) >= 0) cycle
-            do f = tied%start(-number(i)), tied%start(1 - number(i)) - 1
-              schur(tied%equation(f)) = schur(tied%equation(f)) + weight*tied%weight(f)*k(i, j)
-            end do
-          end do
-        end associate
-      end do
-    end do
-  end subroutine add_to_border
-
-  !> Factor the matrix, then the Schur complement of the border.
+  !> Factor the matrix.
   subroutine factor(self)
     class(body_stiffness), intent(inout) :: self
-    real(wp), allocatable :: coupled(:, :)
-    integer :: at, info
+    integer :: at
 
     self%smallest_ratio = 0.0_wp
     self%condition = 0.0_wp
-    if (self%lacks_memory) return
-    call self%matrix%factor(self%smallest_ratio, at)
-    if (self%smallest_ratio == 0.0_wp .or. size(self%schur) == 0) return
-    coupled = self%coupling
-    call self%matrix%solve(self%coupling)
-    self%schur = self%schur - matmul(transpose(coupled), self%coupling)
-    call cholesky_factor(self%schur, info)
-    if (info /= 0) self%smallest_ratio = 0.0_wp
+    if (.not. self%lacks_memory) call self%matrix%factor(self%smallest_ratio, at)
   end subroutine factor
 
   !> Is the factor usable?
@@ -344,51 +267,20 @@ contains
     is_sound = self%smallest_ratio > epsilon(1.0_wp)
   end function is_sound
 
-  !> Forward substitution, in place. Results of several forward substitutions may be added.
-  subroutine solve_lower(self, inner, border)
-    class(body_stiffness), intent(in) :: self
-    real(wp), contiguous, intent(inout) :: inner(:, :)    !! [order of the matrix, 1]
-    real(wp), contiguous, intent(inout) :: border(:, :)   !! [border, 1]
-
-    border = border - matmul(transpose(self%coupling), inner)
-    call self%matrix%solve_lower(inner)
-  end subroutine solve_lower
-
-  !> Backward substitution. Inner rows before `first` are not needed.
-  subroutine solve_upper(self, inner, border, first)
-    class(body_stiffness), intent(in) :: self
-    real(wp), contiguous, intent(inout) :: inner(:, :)   !! [order of the matrix, 1]
-    real(wp), contiguous, intent(inout) :: border(:, :)   !! [border, 1]
-    integer, intent(in) :: first   !! row that is needed
-
-    call self%matrix%solve_upper(inner, first)
-    if (size(border) == 0) return
-    call cholesky_solve(self%schur, border)
-    inner = inner - matmul(self%coupling, border)
-  end subroutine solve_upper
-
   !> Estimate the condition in the 1-norm with two solves for two columns each, once for a factor. The norm of
   !! the inverse is a lower bound, seldom below a third (Higham and Tisseur, SIAM J. Matrix Anal. Appl. 21
   !! (2000) 1185). `dlacn2` takes five solves for one column, which take 2.5 times as long because reading the
   !! factor dominates.
   subroutine estimate_condition(self)
     class(body_stiffness), intent(inout) :: self
-    real(wp) :: x(self%matrix%order, 2), border(size(self%schur, 1), 2), inverse_norm
+    real(wp) :: x(self%matrix%order, 2), inverse_norm
 
     if (self%condition > 0.0_wp) return
     x = probes(self%matrix%order)
-    call solve()
+    call self%matrix%solve(x)
     inverse_norm = maxval(sum(abs(x), dim=1))
     x = sign(1.0_wp, x)   ! the inverse is symmetric: sums of rows are sums of columns
-    call solve()
+    call self%matrix%solve(x)
     self%condition = max(1.0_wp, self%matrix%norm*maxval([inverse_norm, abs(x)]))
-
-  contains
-
-    subroutine solve()
-      border = 0.0_wp
-      call self%solve_lower(x, border)
-      call self%solve_upper(x, border, 1)
-    end subroutine solve
   end subroutine estimate_condition
 end module epcont_assembly_stiffness

@@ -12,7 +12,7 @@ module epcont_build_choices
 
   !> PARAMs that PARAM ORIGINAL YES replaces (`original_controls`).
   character(len=8), parameter :: chosen(*) = [character(len=8) :: &
-    'SOLVER', 'FLEXIB', 'RULE', 'METHOD', 'TOL', 'MUP', 'ACCURACY', 'NLOAD', 'THEORY']
+    'SOLVER', 'RULE', 'METHOD', 'TOL', 'MUP', 'ACCURACY', 'NLOAD', 'THEORY']
 
 contains
 
@@ -31,7 +31,6 @@ contains
     controls%accuracy = deck%parameter_value('ACCURACY', controls%accuracy)
     controls%tolerance = deck%parameter_value('TOL', controls%tolerance)
     controls%load_steps = nint(deck%parameter_value('NLOAD', real(controls%load_steps, wp)))
-    controls%by_inversion = deck%parameter_word('FLEXIB') == 'INVERT'
     controls%paper_ratio = deck%parameter_word('MUP') == 'PAPER'
     controls%by_increments = deck%parameter_word('THEORY') == 'FLOW'
     associate (mats1 => deck%card(card_mats1))

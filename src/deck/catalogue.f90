@@ -313,7 +313,7 @@ module epcont_deck_catalogue
     'HRFRAC; real positive to=1 for=MATS1; kinematic part of the hardening, for HR 3', &
     'MUP; for=MATS1 word EXACT PAPER; Poisson''s ratio in the equivalent strain: exact, or formula'// &
     ' (2-4); default EXACT', &
-    'ORIGINAL; word NO YES; methods of about 1980: SOLVER BAND, FLEXIB INVERT, RULE CONRY, METHOD'// &
+    'ORIGINAL; word NO YES; methods of about 1980: SOLVER BAND, RULE CONRY, METHOD'// &
     ' SECANT, TOL 0.01, NLOAD 1, THEORY TOTAL, MUP PAPER, no ACCURACY; default NO', &
     'NLOAD; whole from=1 to=10000 for=MATS1/PGAP/BFRIC; load steps; default 1', &
     'SAVE; word NO YES; YES saves the end of the last load case in DECK.restart, from which'// &
@@ -322,8 +322,6 @@ module epcont_deck_catalogue
     ' edge of the two lines [length]', &
     'SOLVER; word AUTO BAND FRONTAL; matrices of the bodies: panels of a band, or nested fronts;'// &
     ' default AUTO', &
-    'FLEXIB; for=CGAP/BCONP word AUTO INVERT; flexibility of the contact always by inversion, or by'// &
-    ' substitution if that is cheaper; default AUTO', &
     'ACCURACY; real positive below=1; wanted relative error of contact pressures: sets TOL and METHOD'// &
     ' if they are left out', &
     'CORNER; real positive to=180 for=BCONP; edges of a boundary line with a larger angle between them'// &

@@ -14,6 +14,7 @@ module epcont_deck_former
   end type former_entry
 
   type(former_entry), parameter :: former(*) = [ &
+    former_entry('FLEXIB', '', .false., 'the flexibility always follows by inversion', 'remove the card'), &
     former_entry('PRECIS', '', .false., 'epcont always calculates in double precision', 'remove the card'), &
     former_entry('RULE', 'BLOCK', .false., 'AUTO finds the same answer, by CONRY or JOINED', &
                  'remove the card'), &

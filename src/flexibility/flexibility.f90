@@ -6,10 +6,11 @@ module epcont_flexibility_flexibility
   use epcont_element_kinematics, only: directions
   use epcont_flexibility_motion_matrix, only: motion_matrix, new_motion_matrix
   use epcont_linalg_assembled, only: sparse_rows
-  use epcont_linalg_dense, only: cholesky_solve, null_space
+  use epcont_linalg_dense, only: null_space
   use epcont_model_model, only: model_type
   use epcont_plan_free_motion, only: free_motions
   use epcont_plan_numbering, only: numbering_type
+  use epcont_plan_sums, only: put_pair
   implicit none
   private
   public :: body_flexibility, find_flexibility, gap_opening, pair_forces, see_motions, terms_of_openings
@@ -31,76 +32,21 @@ contains
     integer, intent(in) :: pairs(:)                !! pairs with nodes in it
     type(body_stiffness), intent(in) :: stiffness  !! factored
     type(body_flexibility), intent(out) :: part   !! without pairs if the body has no free DOFs in gaps
-    type(sparse_rows) :: rows
+    type(sparse_rows) :: rows   ! of N
+    integer :: j, k
 
-    call find_rows(part%pair, rows)
-    if (size(part%pair) == 0) return
+    allocate (part%pair(size(pairs)), rows%start(size(pairs) + 1), source=1)
+    allocate (rows%equation(0), rows%weight(0))
+    k = 1
+    do j = 1, size(pairs)
+      call put_pair(model, pairs(j), b, numbering%equation, numbering%body(b)%tied, k, rows)
+      part%pair(k) = pairs(j)
+      if (rows%start(k + 1) > rows%start(k)) k = k + 1
+    end do
+    part%pair = part%pair(:k - 1)
+    if (k == 1) return
+    rows = sparse_rows(rows%start(:k), rows%equation(:rows%start(k) - 1), rows%weight(:rows%start(k) - 1))
     call stiffness%matrix%find_compliance(rows, part%matrix)
-    if (numbering%body(b)%border > 0) part%matrix = part%matrix + border_part()
-
-  contains
-
-    !> Find the rows of N in the body, for pairs with entries there; negative equations belong to the border.
-    !! Fixed DOFs, DOFs that gaps do not depend on, and DOFs of other bodies are left out.
-    pure subroutine find_rows(pair, rows)
-      integer, allocatable, intent(out) :: pair(:)      !! [its pairs]
-      type(sparse_rows), intent(out) :: rows
-      real(wp) :: normal(directions)   ! components along the DOFs of a node
-      integer :: c, entries, found, i, j, k, last, number
-
-      entries = directions*sum(model%contact%row_start(pairs + 1) - model%contact%row_start(pairs))
-      allocate (pair(size(pairs)), rows%start(size(pairs) + 1), source=1)
-      allocate (rows%equation(entries), rows%weight(entries))
-      last = 0
-      found = 0
-      do j = 1, size(pairs)
-        k = pairs(j)
-        do i = model%contact%row_start(k), model%contact%row_start(k + 1) - 1
-          if (model%mesh%body(model%contact%row_node(i)) /= b) cycle
-          normal = numbering%axes%along(model%contact%row_node(i), model%contact%normal(:, k))
-          do c = 1, directions
-            number = numbering%equation(c, model%contact%row_node(i))
-            if (number == 0 .or. normal(c) == 0.0_wp) cycle
-            if (.not. numbering%axes%wanted(c, model%contact%row_node(i))) cycle
-            last = last + 1
-            rows%equation(last) = number
-            rows%weight(last) = model%contact%row_weight(i)*normal(c)
-          end do
-        end do
-        if (last < rows%start(found + 1)) cycle
-        found = found + 1
-        pair(found) = k
-        rows%start(found + 1) = last + 1
-      end do
-      pair = pair(:found)
-      rows = sparse_rows(rows%start(:found + 1), rows%equation(:last), rows%weight(:last))
-    end subroutine find_rows
-
-    !> Contribution of the border: K^-1 = [K_bb^-1 0; 0 0] + [W; -1] S^-1 [W; -1]'.
-    pure function border_part() result(flexibility)
-      real(wp), allocatable :: flexibility(:, :), solved(:, :)
-      real(wp) :: response(size(part%pair), size(stiffness%schur, 1))
-      integer :: e, equation, i, k
-
-      response = 0.0_wp
-      associate (tied => numbering%body(b)%tied)
-        do k = 1, size(part%pair)
-          do i = rows%start(k), rows%start(k + 1) - 1
-            equation = rows%equation(i)
-            if (equation > 0) then
-              response(k, :) = response(k, :) + rows%weight(i)*stiffness%coupling(equation, :)
-            else
-              do e = tied%start(-equation), tied%start(1 - equation) - 1
-                response(k, tied%equation(e)) = response(k, tied%equation(e)) - rows%weight(i)*tied%weight(e)
-              end do
-            end if
-          end do
-        end do
-      end associate
-      solved = transpose(response)
-      call cholesky_solve(stiffness%schur, solved)
-      flexibility = matmul(response, solved)
-    end function border_part
   end subroutine find_flexibility
 
   !> Gap changes due to displacements: N u [length] [pairs].

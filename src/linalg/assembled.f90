@@ -13,7 +13,7 @@ module epcont_linalg_assembled
   implicit none
   private
   public :: assembled_matrix, sparse_rows
-  public :: backward, begin_blocks, diagonal, find_compliance, forward, order_rows, probes
+  public :: backward, begin_blocks, diagonal, forward, probes
 
   !> Rows of a sparse matrix N: entries start(k) to start(k+1)-1 of row k are equations and weights. Equations
   !! that are not positive are ignored.
@@ -27,7 +27,7 @@ module epcont_linalg_assembled
   !! of these equations, and below them the rows of the equations coupled with them.
   type, abstract :: assembled_matrix
     integer :: order = 0
-    integer :: trailing = 0   !! number of last equations that `find_compliance` may use; 0 if all
+    integer :: trailing = 0   !! number of last equations that `find_compliance` may use
     real(wp) :: norm = 0.0_wp           !! 1-norm of the matrix before factorization, or a bound of it
     logical :: lacks_memory = .false.   !! the memory was too small
     real(wp), allocatable :: pivot_ratio(:)   !! pivot**2 over the diagonal entry [order]
@@ -151,14 +151,14 @@ contains
   !! in place. Otherwise it is X'X with X = L22^-1 N'.
   pure subroutine find_compliance(self, rows, compliance)
     class(assembled_matrix), intent(in) :: self
-    type(sparse_rows), intent(in) :: rows       !! N; equations before the trailing ones are ignored
+    type(sparse_rows), intent(in) :: rows       !! N, of trailing equations
     real(wp), allocatable, intent(out) :: compliance(:, :)   !! lower triangle [rows, rows]
     real(wp), allocatable :: factor(:, :), x(:, :)
     integer :: at(size(rows%equation)), begins(size(rows%start) - 1), column(size(rows%equation)), &
         order(size(rows%start) - 1)
     integer :: i, k
 
-    at = max(0, rows%equation - (self%order - self%trailing))
+    at = rows%equation - (self%order - self%trailing)
     if (size(at) == self%trailing .and. size(order) == self%trailing) then
       if (all(at == [(k, k=1, size(at))]) .and. all(rows%start == [(k, k=1, size(rows%start))])) then
         call get_trailing_factor(self, compliance)
@@ -169,10 +169,10 @@ contains
         return
       end if
     end if
-    call order_rows(sparse_rows(rows%start, at, rows%weight), self%trailing, order, column, begins)
+    call order_rows(sparse_rows(rows%start, at, rows%weight), order, column, begins)
     allocate (x(self%trailing, size(order)), source=0.0_wp)
     do i = 1, size(at)
-      if (at(i) > 0) x(at(i), column(i)) = x(at(i), column(i)) + rows%weight(i)
+      x(at(i), column(i)) = x(at(i), column(i)) + rows%weight(i)
     end do
     call get_trailing_factor(self, factor)
     call solve_staircase(self%trailing, factor, begins, x)
@@ -182,21 +182,14 @@ contains
   end subroutine find_compliance
 
   !> Order rows by their first equations, and find the position of each entry's row in that order.
-  pure subroutine order_rows(rows, equations, order, column, begins)
-    type(sparse_rows), intent(in) :: rows   !! equations that are not positive are ignored
-    integer, intent(in) :: equations        !! number of equations
+  pure subroutine order_rows(rows, order, column, begins)
+    type(sparse_rows), intent(in) :: rows
     integer, intent(out) :: order(:)        !! [rows]
     integer, intent(out) :: column(:)       !! [entries]
-    !> First equation of each row in that order; equations + 1 if the row has no equation
-    integer, intent(out) :: begins(:)
-    integer :: i, k
+    integer, intent(out) :: begins(:)       !! first equation of each row in that order
+    integer :: k
 
-    begins = equations + 1
-    do k = 1, size(order)
-      do i = rows%start(k), rows%start(k + 1) - 1
-        if (rows%equation(i) > 0) begins(k) = min(begins(k), rows%equation(i))
-      end do
-    end do
+    begins = [(minval(rows%equation(rows%start(k):rows%start(k + 1) - 1)), k=1, size(order))]
     order = sorted_order(begins)
     begins = begins(order)
     do k = 1, size(order)

@@ -15,7 +15,6 @@ module epcont_linalg_panel_layout
   contains
     procedure :: entries
     procedure :: operations
-    procedure :: compliance_operations
   end type panel_layout
 
 contains
@@ -58,19 +57,6 @@ contains
 
     operations = sum(real(columns(self), wp)*real(self%height, wp)**2)
   end function operations
-
-  !> Operations of `find_compliance`.
-  pure real(wp) function compliance_operations(self, begins) result(operations)
-    class(panel_layout), intent(in) :: self
-    integer, intent(in) :: begins(:)     !! first equation of each row of N
-    integer :: active, p
-
-    operations = 0.0_wp
-    do p = 1, size(self%height)
-      active = count(begins < self%first(p + 1))
-      operations = operations + real(self%width, wp)*active*(2.0_wp*self%height(p) + active)
-    end do
-  end function compliance_operations
 
   !> Columns of each panel.
   pure function columns(self)

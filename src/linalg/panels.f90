@@ -12,9 +12,7 @@
 !>         x x
 module epcont_linalg_panels
   use epcont_base_kinds, only: i8, wp
-  use epcont_base_sorting, only: sorted_order
-  use epcont_linalg_assembled, only: assembled_matrix, backward, begin_blocks, diagonal, find_compliance, &
-      forward, order_rows, sparse_rows
+  use epcont_linalg_assembled, only: assembled_matrix, backward, begin_blocks, diagonal, forward
   use epcont_linalg_lapack, only: dgemm, dpotrf, dsyrk, dtrsm
   use epcont_linalg_panel_layout, only: panel_layout
   implicit none
@@ -32,7 +30,6 @@ module epcont_linalg_panels
     procedure :: eliminate => eliminate_panels
     procedure :: solve_lower
     procedure :: solve_upper
-    procedure :: find_compliance => find_panel_compliance
   end type panel_matrix
 
 contains
@@ -41,7 +38,7 @@ contains
   subroutine begin_panels(self, layout, trailing)
     class(panel_matrix), intent(inout) :: self
     type(panel_layout), intent(in) :: layout   !! its panels
-    !> Number of last equations that `find_compliance` may use; 0 if all
+    !> Number of last equations that `find_compliance` may use
     integer, intent(in) :: trailing
 
     self%width = layout%width
@@ -186,67 +183,4 @@ contains
       end if
     end associate
   end subroutine take_panel
-
-  !> Invert the trailing block if only the last equations are needed. For any equations, use forward
-  !! substitution: with X = L^-1 N', N K^-1 N' is X'X. X passes panel by panel through a window as high as the
-  !! highest panel. Work on a right-hand side begins at its first equation, and none is stored whole.
-  pure subroutine find_panel_compliance(self, rows, compliance)
-    class(panel_matrix), intent(in) :: self
-    type(sparse_rows), intent(in) :: rows   !! N
-    real(wp), allocatable, intent(out) :: compliance(:, :)   !! lower triangle [rows, rows]
-    real(wp), allocatable :: product(:, :), window(:, :)
-    integer, dimension(size(rows%start) - 1) :: begins, order
-    integer :: column(size(rows%equation)), active, e, k, l, n, p
-    integer, allocatable :: entry(:)
-
-    if (self%trailing > 0) then
-      call find_compliance(self, rows, compliance)
-      return
-    end if
-    n = size(order)
-    call order_rows(rows, self%order, order, column, begins)
-    entry = sorted_order(rows%equation)
-    allocate (window(maxval(self%height), n), product(n, n), source=0.0_wp)
-    active = 0
-    e = 1
-    do p = 1, size(self%height)
-      do while (e <= size(entry))
-        associate (i => rows%equation(entry(e)) - self%first(p) + 1)
-          if (i > self%columns(p)) exit
-          if (i > 0) then
-            k = column(entry(e))
-            active = max(active, k)
-            window(i, k) = window(i, k) + rows%weight(entry(e))
-          end if
-        end associate
-        e = e + 1
-      end do
-      if (active > 0) call pass_window(self, p, active, size(window, 1), n, window, product)
-    end do
-    allocate (compliance(n, n), source=0.0_wp)
-    do k = 1, n
-      do l = k, n
-        compliance(max(order(k), order(l)), min(order(k), order(l))) = product(l, k)
-      end do
-    end do
-  end subroutine find_panel_compliance
-
-  !> Substitute with a panel for the active right-hand sides, add their part to X'X, and move the window.
-  pure subroutine pass_window(self, p, active, high, n, window, product)
-    class(panel_matrix), intent(in) :: self
-    integer, intent(in) :: p, active, high, n
-    real(wp), intent(inout) :: window(high, n), product(n, n)
-    integer :: k
-
-    associate (h => self%height(p), w => self%columns(p), s => self%start(p))
-      call dtrsm('L', 'L', 'N', 'N', w, active, 1.0_wp, self%entries(s), h, window, high)
-      call dsyrk('L', 'T', active, w, 1.0_wp, window, high, 1.0_wp, product, n)
-      if (h > w) call dgemm('N', 'N', h - w, active, w, -1.0_wp, self%entries(s + w), h, window, high, &
-                           1.0_wp, window(w + 1, 1), high)
-      do k = 1, active
-        window(:h - w, k) = window(w + 1:h, k)
-        window(h - w + 1:h, k) = 0.0_wp
-      end do
-    end associate
-  end subroutine pass_window
 end module epcont_linalg_panels

@@ -58,7 +58,6 @@ contains
     half = self%half
     do b = 1, size(half)
       half(b)%inner = times*half(b)%inner
-      half(b)%border = times*half(b)%border
     end do
     opening = times*self%opening
   end subroutine give

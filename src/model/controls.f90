@@ -33,7 +33,6 @@ module epcont_model_controls
     real(wp) :: search = 0.0_wp
     !> PARAM CORNER, smallest angle of a sharp corner [degree]; 0: derived from the boundaries
     real(wp) :: corner = 0.0_wp
-    logical :: by_inversion = .false.  !! PARAM FLEXIB INVERT: flexibility by inversion, at any cost
     logical :: paper_ratio = .false.   !! PARAM MUP PAPER: Poisson's ratio (2-4) in the equivalent strain
     logical :: steps_by_accuracy = .false.   !! flow theory: PARAM ACCURACY chooses the number of increments
     !> Each increment continues from the one before: PARAM THEORY FLOW, and elastic models with friction
@@ -45,7 +44,7 @@ module epcont_model_controls
   !> Choices of PARAM ORIGINAL YES. In addition, pivots solve each contact problem from the start.
   type(controls_type), parameter, public :: original_controls = controls_type( &
     rule=rule_conry, method=method_secant, solver=solver_band, tolerance=0.01_wp, &
-    by_inversion=.true., paper_ratio=.true., original=.true.)
+    paper_ratio=.true., original=.true.)
 
   !> Uniaxial stress-strain curve of a material that yields: total strain and stress, from (0, 0) through the
   !! yield point; extrapolated with the last slope. Not allocated if the material does not yield.

@@ -154,18 +154,14 @@ contains
           updates = 0
         end if
         passing = max(passing, updates)
-        entries = entries + factor - updates + int(body%equations, i8)*body%border
+        entries = entries + factor - updates
         ! Right-hand sides on the trailing block, then the part of F; or the part alone, if each pair has one
-        ! equation; or the window of the right-hand sides and the part.
+        ! equation.
         last = body%contact_equations
-        if (.not. body%contact_last) then
-          flexibility = max(flexibility, own*(body%half_bandwidth + 2*own))
-        else
-          flexibility = max(flexibility, merge(own**2, last*own + max(last, own)**2, last == own))
-        end if
+        flexibility = max(flexibility, merge(own**2, last*own + max(last, own)**2, last == own))
         unit_loads = max(unit_loads, min(int(min(motions%count, loads_at_once), i8), own)* &
                          (load_of_node*size(body%node) + load_of_element*size(body%element)))
-        expected%operations = expected%operations + 4.0_wp*body%border*factor + body%operations
+        expected%operations = expected%operations + body%operations
       end associate
     end do
     entries = entries + max(int(pair_matrices*pairs**2, i8), flexibility + pairs**2, passing) + &

@@ -15,7 +15,7 @@ module epcont_plan_joining
   real(wp), parameter :: many_of_pairs = 5.2e4_wp
   !> The same for bodies that yield: F is made in each iteration, and the active set hardly changes (dovetails
   !! 1.2 at 1.8e4, 1.4 at 3.6e4, 1.8 at 6e4; crowned blocks .73 at 1.1e4, .95 at 4.3e4, 1.2 at 7.5e4).
-  real(wp), parameter :: many_where_yielding = 1.5e4_wp
+  real(wp), parameter :: many_where_yielding = 1.4e4_wp
   !> Operations for each pair cubed: two inverses, and pivots over the tableau.
   real(wp), parameter :: of_pairs = 4.0_wp
 

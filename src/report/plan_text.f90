@@ -8,9 +8,9 @@ module epcont_report_plan_text
   use epcont_model_contact_rows, only: line_contact
   use epcont_model_model, only: model_type
   use epcont_plan_joining, only: many_of
-  use epcont_plan_numbering, only: many_of_flexibility, many_operations
+  use epcont_plan_numbering, only: many_operations
   use epcont_plan_planned_model, only: planned_model
-  use epcont_report_columns, only: column, state, table_type, whole, word
+  use epcont_report_columns, only: column, table_type, whole, word
   use epcont_messages_names, only: joined, motion_name, when
   implicit none
   private
@@ -22,8 +22,7 @@ module epcont_report_plan_text
   type(column), parameter :: body_columns(*) = [ &
     column(whole, head='body', width=7), column(whole, head='nodes', width=7), &
     column(whole, head='equations', width=11), column(word, head='half-bandwidth', width=16), &
-    column(whole, head='contact equations', width=19), column(whole, head='border', width=8), &
-    column(word, head='factorizations', width=16), column(state, head='flexibility by', width=16)]
+    column(whole, head='contact equations', width=19), column(word, head='factorizations', width=16)]
 
   !> Descriptions of the methods, beginning with SECANT.
   character(len=*), parameter :: method_text(*) = [character(len=90) :: &
@@ -94,8 +93,7 @@ contains
         call plan%say('bodies factored with nested fronts (FRONTAL): '//text_of(fronts))
         if (scene%model%controls%solver == solver_auto) &
           call plan%say('  chosen by AUTO: faster if a band (BAND) needs more than '// &
-                   short_real(many_operations)//' operations, or its flexibility matrix '// &
-                   short_real(many_of_flexibility))
+                   short_real(many_operations)//' operations, or a long contact makes it wide')
       end if
     end subroutine say_factors
 
@@ -111,10 +109,9 @@ contains
       call plan%say('ACCURACY '//short_real(scene%model%controls%accuracy)//' chooses '//chosen(3:))
     end subroutine say_choices
 
-    !> A row for each body with equations: its matrix, the number of factorizations, and how its flexibility
-    !! matrix follows from the factor: inversion of the trailing block, or forward substitution of the pairs.
+    !> A row for each body with equations: its matrix, and the number of factorizations.
     subroutine say_bodies()
-      character(len=14) :: width, times, way
+      character(len=14) :: width, times
       integer :: b, listed
 
       call plan%line('')
@@ -129,10 +126,8 @@ contains
           if (body%solver /= solver_band) width = solver_name(body%solver)
           times = '1'
           if (body%can_yield .and. scene%iteration%method /= method_inistr) times = 'each iteration'
-          way = '-'
-          if (body%contact_equations > 0) way = merge('inversion   ', 'substitution', body%contact_last)
-          call plan%row([b, size(body%node), body%equations, body%contact_equations, body%border], &
-                        [real(wp) ::], [width, times, way])
+          call plan%row([b, size(body%node), body%equations, body%contact_equations], [real(wp) ::], &
+                        [width, times])
         end associate
       end do
       call say_further(listed, 'further one', '')

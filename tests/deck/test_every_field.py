@@ -154,10 +154,10 @@ PARAMETERS = {
     "PLANE": ("ctria3", "STRAIN", CHANGES), "RULE": ("plane", "JOINED", LISTED), "GAPGEOM": ("plane", "YES", CHANGES), "UNITS": ("plane", "MM", LISTED),
     "METHOD": ("yield", "SECANT", LISTED), "TOL": ("yield", ".1", LISTED), "MAXIT": ("yield", "7", LISTED), "MUP": ("yield", "PAPER", LISTED),
     "ORIGINAL": ("plane", "YES", LISTED), "NLOAD": ("yield", "2", LISTED), "SAVE": ("yield", "YES", LISTED), "SEARCH": ("feet", ".1", CHANGES), "SOLVER": ("plane", "FRONTAL", LISTED),
-    "FLEXIB": ("strip", "INVERT", LISTED), "ACCURACY": ("plane", ".1", LISTED), "THEORY": ("flow", "TOTAL", CHANGES), "HRFRAC": ("mixed", ".9", CHANGES), "CORNER": ("lines", "170.", LISTED),
+    "ACCURACY": ("plane", ".1", LISTED), "THEORY": ("flow", "TOTAL", CHANGES), "HRFRAC": ("mixed", ".9", CHANGES), "CORNER": ("lines", "170.", LISTED),
     "WTMASS": ("plane", "2.", CHANGES), "FRICTION": ("friction", "NO", CHANGES), "LGDISP": ("plane", "-1", NOTED), "INREL": ("plane", "0", NOTED)}
 WITHOUT = {"PLANE": "ctrax3", "RULE": "yield", "GAPGEOM": "lines", "METHOD": "plane", "TOL": "plane", "MAXIT": "plane", "MUP": "plane", "NLOAD": "ctrax3", "HRFRAC": "yield", "THEORY": "plane",
-           "SEARCH": "plane", "FLEXIB": "yield", "CORNER": "plane", "WTMASS": "yield", "FRICTION": "yield"}
+           "SEARCH": "plane", "CORNER": "plane", "WTMASS": "yield", "FRICTION": "yield"}
 #: The same for each statement of case control, put before the others of `plane` or in place of the one with its name.
 STATEMENTS = {
     "SOL": ("SOL 103", note("SOL: epcont solves for static loads")), "CEND": ("CEND 1", error("CEND takes no value")), "TITLE": ("TITLE = X", LISTED), "ECHO": ("ECHO = SORT", LISTED),

@@ -130,7 +130,7 @@ SCENE = [
     ('"face" }', '"face", friction = -0.1 }', ["[[contact]] friction: is -0.1", "give the coefficient of friction, 0 or above, such as friction = 0.3"]),
     ('slave = "under", ', "", ["[[contact]] slave: is missing", 'give the name of the line with the coarser mesh, such as slave = "pin"']),
     ("[load]", "[PARAM]\nSERCH = 0.5\n[load]", ["[PARAM] SERCH: is not a key of this table", "use one of: RULE, METHOD, MUP, SOLVER, TOL, SEARCH, CORNER, ACCURACY, "
-                                              "MAXIT, NLOAD, THEORY, HRFRAC, SAVE, FLEXIB, ORIGINAL, WTMASS, FRICTION; did you mean 'SEARCH'?"]),
+                                              "MAXIT, NLOAD, THEORY, HRFRAC, SAVE, ORIGINAL, WTMASS, FRICTION; did you mean 'SEARCH'?"]),
     ("[load]", "[PARAM]\nMAXIT = 0.5\n[load]", ["[PARAM] MAXIT: is 0.5", "give a whole number above zero; epcont --cards PARAM describes it"]),
     ("[load]", '[PARAM]\nPLANE = "STRESS"\n[load]', ["[PARAM] PLANE: is a key of the model", "write kind = ... before the first table"]),
     ("[body.below]", "[body.belov]", ["[body.belov]: two.geo has no Physical Surface of that name", "its surfaces: below, above; did you mean 'below'?",

@@ -32,7 +32,7 @@ contains
     end do
   end function error_of_halves
 
-  !> The condition estimate, for a body without a border.
+  !> The condition estimate.
   real(wp) function condition_of(matrix) result(condition)
     class(assembled_matrix), intent(in) :: matrix   !! factored
     real(wp) :: inverse_norm, x(matrix%order, 2)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """check_same.py PROGRAM DECK OUTPUT [PARAM ONE OTHER]...: a deck must have the same answer with two values of each PARAM: SOLVER BAND and
-FRONTAL, FLEXIB AUTO and INVERT, RULE CONRY and JOINED; or with two kernels of OpenBLAS, named as in OPENBLAS_CORETYPE.
+FRONTAL, RULE CONRY and JOINED; or with two kernels of OpenBLAS, named as in OPENBLAS_CORETYPE.
 
 Exit status, words and integers must be equal; reals agree to 1e-9 of the largest value of the quantity in their table, because two
 factors of one matrix have different rounding. Rounding measures, and states without an answer, are not compared.

@@ -66,7 +66,7 @@ program bench_ours
     spent = spent + sum(seconds(all_stages:, runs))
   end do
   first = merge(2, 1, runs > 1)
-  print '(i9, 10es12.4)', sum(numbering%body%equations + numbering%body%border), (median(seconds(k, first:runs)), k=1, times)
+  print '(i9, 10es12.4)', sum(numbering%body%equations), (median(seconds(k, first:runs)), k=1, times)
   if (command_argument_count() > 1) call write_system(argument(2))
 
 contains
@@ -205,7 +205,7 @@ contains
     close (unit)
   end subroutine write_system
 
-  !> A number for each equation of a body, band or border, in the order of the nodes; 0 if fixed.
+  !> A number for each equation of a body, in the order of the nodes; 0 if fixed.
   subroutine number_along_nodes(equation, n)
     integer, allocatable, intent(out) :: equation(:, :)
     integer, intent(out) :: n

@@ -14,7 +14,7 @@ TABLES = ["material", "body", "support", "load", "platen", "free", "contact", "c
 DIRECTIONS = {"x": "1", "y": "2", "xy": "12"}
 #: The list of `epcont --cards PARAM`, without parameters that the model gives otherwise (PLANE, UNITS) or does not need (GAPGEOM).
 PARAMETERS = {"RULE": str, "METHOD": str, "MUP": str, "SOLVER": str, "TOL": float, "SEARCH": float, "CORNER": float, "ACCURACY": float,
-              "MAXIT": int, "NLOAD": int, "THEORY": str, "HRFRAC": float, "SAVE": str, "FLEXIB": str, "ORIGINAL": str, "WTMASS": float, "FRICTION": str}
+              "MAXIT": int, "NLOAD": int, "THEORY": str, "HRFRAC": float, "SAVE": str, "ORIGINAL": str, "WTMASS": float, "FRICTION": str}
 #: N/mm2 of one unit of stress, for units whose moduli can be checked.
 STRESS_UNITS = {"N-MM": 1.0, "MPA": 1.0, "N-M": 1e-6, "SI": 1e-6, "KN-M": 1e-3, "KN-MM": 1e3, "KGF-MM": 9.80665}
 MOST_INCREMENTS = 10000   # of an NLPARM

@@ -103,7 +103,7 @@ def small_scene(pick):
     for name, values in (("METHOD", ["AUTO", "SECANT", "MODSEC", "INISTR", "NEWTON"]), ("RULE", ["AUTO", "CONRY", "JOINED"]),
                          ("TOL", ["1.-3", "1.-6", "0.5"]), ("MAXIT", ["1", "5", "60"]), ("NLOAD", ["1", "2", "5"]),
                          ("MUP", ["EXACT", "PAPER"]), ("SOLVER", ["AUTO", "BAND", "FRONTAL"]), ("UNITS", ["N-MM"]),
-                         ("FLEXIB", ["AUTO", "INVERT"]), ("ORIGINAL", ["NO", "YES"])):
+                         ("ORIGINAL", ["NO", "YES"])):
         if pick.random() < (0.02 if scene.sequence and name in ("NLOAD", "MUP", "ORIGINAL", "METHOD") else 0.12):
             scene.add("PARAM", name, pick.choice(values))
     columns = pick.randint(1, 4)
