@@ -3,6 +3,7 @@
     tools/tradeoff                  tools/tradeoff.md and tools/tradeoff.png
     tools/tradeoff --quick          coarse meshes and few choices: the same tables in a minute
     tools/tradeoff -o build/mine    build/mine.md, build/mine.png
+    tools/tradeoff --friction       the tables of friction only, on standard output
 
 Time: processor time, user and system, of a whole process on one thread, including reading and writing; the shortest of three runs (one, if
 it takes a second). Memory: its peak. True error: from the closed form, or from the limit of much finer meshes
@@ -26,6 +27,7 @@ from process import peak, timed  # noqa: E402
 from report import short, table  # noqa: E402
 from scenes import lines, plastic, quads  # noqa: E402
 from score import figures_of  # noqa: E402
+import tradeoffs_friction  # noqa: E402
 from wording import parser_of, run  # noqa: E402
 
 METHODS, TOLERANCES = ("NEWTON", "SECANT", "MODSEC", "INISTR"), ("1.E-2", "1.E-4", "1.E-8")
@@ -237,7 +239,12 @@ def main():
     parser = parser_of(__doc__, "tools/tradeoff")
     parser.add_argument("--quick", action="store_true", help="two meshes of each element, one choice at a time: one minute")
     parser.add_argument("-o", "--output", type=pathlib.Path, help="name of page and picture, without .md and .png; default tools/tradeoff")
+    parser.add_argument("--friction", action="store_true", help="only the tables of friction, on standard output: some minutes")
     options = parser.parse_args()
+    if options.friction:
+        with tempfile.TemporaryDirectory() as place:
+            print(tradeoffs_friction.page(EPCONT, pathlib.Path(place)))
+        return 0
     name = options.output or TOP / ("build/tradeoff_quick" if options.quick else "tools/tradeoff")
     check_folder(parser, name)
     start, found = time.perf_counter(), []

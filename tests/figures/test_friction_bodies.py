@@ -5,47 +5,24 @@ import re
 import unittest
 
 from test_friction import RULES, run, values
+from scenes import friction
 from scenes.deck import Deck
 from scenes.elastic import flat_punch
 from scenes.mesh import Mesh, graded, squared
 
 
 class HalfPlane(unittest.TestCase):
-    """A rigid punch or cylinder is pressed on an elastic half-plane, whose shear acts on the pressures. Half of the model. The outer edges of the block, 400
-    half-widths wide, carry the stresses of a half-plane under this load (Flamant). With free edges the stick half-width is 2 % larger (mu .2)."""
+    """A rigid punch or cylinder is pressed on an elastic half-plane, whose shear acts on the pressures."""
 
     #: Stick half-widths over a for Poisson's ratio .3, by boundary elements graded to 1e-4 of the stick zone.
-    KNOWN = {0.1: 0.0365, 0.2: 0.3604, 0.3: 0.6891}
-    LOAD, SIZE, GROUND = math.pi / 4.0 / 0.91 / 2.0, 200.0, 80001
-
-    def text(self, mu, places, radius=None, steps=1):
-        xs = places + [places[-1] + x for x in graded(1.12 * (places[-1] - places[-2]), 1.12, self.SIZE - places[-1])[1:]]
-        mesh = squared(xs, [-y for y in reversed(graded(0.4 * places[1], 1.12, self.SIZE))])
-        deck, last = Deck("PRESSED ON A HALF-PLANE", [], load_steps=steps), self.GROUND + len(places) - 1
-        deck.body(mesh, 1)
-        deck.material(1, 1000.0, 0.3)
-        deck.hold(1, mesh.on(0, 0.0))
-        deck.hold(2, [0])
-        for k, x in enumerate(places):
-            deck.grid(self.GROUND + k, x, x * x / (2.0 * radius) if radius else 0.0)
-        deck.card("SPC1", 1, 1, self.GROUND, "THRU", last)
-        deck.platen(90000, 2, range(len(places)), self.GROUND)
-        deck.push(self.GROUND, self.LOAD)
-        outer = sorted((math.atan2(x, -y), node) for node, (x, y) in enumerate(mesh.point) if max(x, -y) > 0.999 * self.SIZE)
-        for (a, one), (b, other) in zip(outer, outer[1:]):
-            across, up = (math.sin(a) ** 2 - math.sin(b) ** 2) / 2, (b - a) / 2 + (math.sin(2 * b) - math.sin(2 * a)) / 4
-            for node in (one, other):
-                deck.wide("FORCE", 1, node + 1, 0, 2.0 * self.LOAD / math.pi, across, up, 0.0)
-        deck.upward()
-        deck.pairs(90001, [(mesh.line["top"][k] + 1, self.GROUND + k) for k in range(len(places))], 21, friction=mu)
-        return deck.text()
+    KNOWN = {0.1: 0.0365, 0.2: friction.STICK, 0.3: 0.6891}
 
     def punch(self, mu, steps=1):
         stick = self.KNOWN[mu]
         inside = [stick / 24 * k for k in range(30)]
         half = (1.0 - inside[-1]) / 2
         beside = [inside[-1] + x for x in graded(1.15 * stick / 24, 1.15, half)[1:]] + [1.0 - x for x in reversed(graded(1e-3, 1.15, half)[:-1])]
-        return self.text(mu, inside + beside, steps=steps)
+        return friction.half_plane(inside + beside, mu, steps=steps).text()
 
     def stick(self, rows):
         """In the stick zone the square of the distance from the limit falls linearly to zero at its end."""
@@ -73,7 +50,7 @@ class HalfPlane(unittest.TestCase):
         """A node that sticks keeps the slip that it had when it closed, so that increments are needed; then the stick ratio is that of the punch."""
         errors = []
         for steps in (1, 10, 40):
-            rows, _ = run(self.text(0.2, [k / 80 for k in range(93)], 1000.0, steps), "CONRY")
+            rows, _ = run(friction.half_plane(friction.EVEN, 0.2, friction.RADIUS, steps).text(), "CONRY")
             closed = [row for row in rows if float(row["force"]) > 0.0]
             (one, a), (other, b) = ((float(row["x"]), float(row["force"]) ** 2) for row in closed[-3:-1])   # the last node has a part of its edges
             errors.append(abs(self.stick(rows) / (other + (other - one) * b / (a - b)) / self.KNOWN[0.2] - 1.0))

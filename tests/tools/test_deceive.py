@@ -65,6 +65,14 @@ class Case(common.Case):
 
 
 class Scenes(Case):
+    def test_friction_of_all_contacts(self):
+        scene = block()
+        self.assertNotIn("BFRIC", deck(scene, Twin("base"))[0])
+        scene.friction = 0.3
+        lines = deck(scene, Twin("base"))[0].splitlines()
+        self.assertIn("BCONP,1,1,2,,,1", lines)
+        self.assertIn("BFRIC,1,,,0.3", lines)
+
     def test_the_finer_model_is_the_same_model(self):
         """The same bodies, moduli, element types, loads, and lines between the same points; nine times the elements."""
         for name in FAMILIES:

@@ -11,7 +11,8 @@ time and memory up to 170 000 unknowns, and the deck of 44 nodes compared with a
 numbering to displacements, stage by stage, compared with the best libraries alone. Part 5: many pairs, bodies and unknowns, growth to
 2 000 000 unknowns; order, factor and solves compared with PARDISO and CHOLMOD, many pairs with CalculiX. Part 6: two cylinders loaded and
 unloaded by flow theory, compared with CalculiX. Part 7: the dense contact problem with friction, compared with an augmented Lagrangian,
-Siconos and Lemke's algorithm. Everything uses one thread, except one model of part 5. The programs run in turns; times are medians, ratios are medians over the turns.
+Siconos and Lemke's algorithm. Part 8: two cylinders pressed and pushed with friction, compared with CalculiX.
+Everything uses one thread, except one model of part 5. The programs run in turns; times are medians, ratios are medians over the turns.
 The results of each part are kept in build/benchmark/part*.json. If all parts exist, their tables go to
 tools/benchmark/results.md and a picture to results.png, each with its own command and load; they are always printed.
 """
@@ -35,6 +36,7 @@ import growth  # noqa: E402
 import history  # noqa: E402
 import large  # noqa: E402
 import peers  # noqa: E402
+import pushed  # noqa: E402
 import report  # noqa: E402
 import solve_part  # noqa: E402
 from process import ONE_THREAD  # noqa: E402
@@ -44,7 +46,7 @@ NODES, UNKNOWNS = (330, 1000, 3000, 11000, 42000), (50, 100, 200, 500, 1000, 200
 #: For part 4 and growth: nodes of meshes, each with twice as many unknowns as the one before.
 SOLVED, GROWING = (330, 930, 3080, 11100, 42500), (3080, 7600, 20200, 42500, 85000)
 RELEASE = TOP / "build/release"
-PARTS = (1, 2, 3, 4, 5, 6, 7)
+PARTS = (1, 2, 3, 4, 5, 6, 7, 8)
 #: Pairs of part 7.
 RUBBING = (50, 200, 500, 1000)
 
@@ -135,7 +137,7 @@ def main():
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--part", type=int, choices=PARTS)
     parser.add_argument("--turns", type=int)
-    parser.add_argument("--nodes", type=int, nargs="+", help="mesh sizes of parts 1, 3, 4 and 6")
+    parser.add_argument("--nodes", type=int, nargs="+", help="mesh sizes of parts 1, 3, 4 and 6; part 8: 3000 or 11000")
     parser.add_argument("--beside", type=pathlib.Path, metavar="PROGRAM", help="for part 5: another epcont to compare with")
     parser.add_argument("--only", nargs="+", choices=("scenes", "growth", "peers", "calculix"), help="for part 5: only these tables; the others stay unchanged")
     options = parser.parse_args()
@@ -153,8 +155,9 @@ def main():
                 4: lambda: part4(place, solved, turns),
                 5: lambda: part5(place, turns, options),
                 6: lambda: history.history(place, RELEASE / "epcont", options.nodes or NODES[2:4], turns, say),
-                7: lambda: dense("friction.py", place, RUBBING, turns, 3 if options.quick else 20)}
-        for part in (options.part,) if options.part else (4, 3, 5, 1, 6, 2, 7):
+                7: lambda: dense("friction.py", place, RUBBING, turns, 3 if options.quick else 20),
+                8: lambda: pushed.pushed(place, RELEASE / "epcont", options.nodes or list(pushed.ACROSS), turns, say)}
+        for part in (options.part,) if options.part else (4, 3, 5, 1, 6, 8, 2, 7):
             load = f"load {os.getloadavg()[0]:.1f} at the start"
             about = {"command": command, "load": load, "version": output(RELEASE / "epcont", "--version").split()[-1]}
             kept(part).write_text(json.dumps({**about, "rows": does[part]()}), encoding="ascii")

@@ -141,6 +141,23 @@ def history(rows):
         table(["nodes", "", "CPU, s", "MB", "CPU ratio", "elastic runs", "p_max", "approach", "approach left"], lines)])
 
 
+def pushed(rows):
+    lines = []
+    for row in rows:
+        what = "elastoplastic" if row["yields"] else "elastic"
+        worst = [f"{figure:.1e}" for figure in row["worst"][:4]] + [row["worst"][4]] if row["worst"] else [f"exit status {row['status']}", "", "", "", ""]
+        lines.append([row["nodes"], what, f"{row['tangential']:.0f}", short(row["ours"]), short(row["memory"]), short(row["ccx"]), short(row["ccx_memory"]),
+                      f"{row['ratio']:.0f}" if row["worst"] else "", *worst])
+    return "\n\n".join([
+        "## Friction",
+        "Two cylinders are pressed, then pushed along the contact by .6 mu P, .95 mu P and back to 0, each in 10 increments, elastic or yielding (flow theory). CalculiX has the "
+        "same mesh and increments: SURFACE TO SURFACE, SMALL SLIDING, SPOOLES, and a normal stiffness of 1e3 E/a. The tangential stiffness while it sticks is given over E/a. "
+        "Differences are the largest of the four load cases, over the largest value of their kind; friction forces over the largest limit. Sticks: pairs that stick in one of the "
+        "programs only. epcont follows each history twice, for the error of the increments. CPU seconds of the whole process.",
+        table(["nodes", "", "tangential stiffness", "epcont, s", "MB", "CalculiX, s", "MB", "CPU ratio", "approach", "tangential displacement", "contact force", "friction force",
+               "sticks"], lines)])
+
+
 def page(parts, about):
     """`parts`: for each number the rows, the command that measured them, and the load of the machine."""
     rows = {part: found["rows"] for part, found in parts.items()}
@@ -153,6 +170,7 @@ def page(parts, about):
     text += [report_large.large(rows[5])] if 5 in rows else []
     text += [history(rows[6])] if 6 in rows else []
     text += [friction(rows[7])] if 7 in rows else []
+    text += [pushed(rows[8])] if 8 in rows else []
     return "\n\n".join(text)
 
 

@@ -316,8 +316,8 @@ class Verdict:
 
 
 class Judge:
-    def __init__(self, program, seed, seconds):
-        self.program, self.seed, self.seconds = program, seed, seconds
+    def __init__(self, program, seed, seconds, friction=None):
+        self.program, self.seed, self.seconds, self.friction = program, seed, seconds, friction
 
     def scenes(self, name, number):
         """The original model, and three times finer."""
@@ -332,6 +332,7 @@ class Judge:
     def __call__(self, name, number, folder):
         """Judge one model; its decks stay in the folder."""
         scene, finer = self.scenes(name, number)
+        scene.friction = finer.friction = self.friction
         equal, other = twins_of(scene, random.Random(f"{self.seed} {name} {number} twins"))
         jobs = [("base", scene, Twin("base")), ("finer", finer, Twin("finer"))] + [(twin.name, scene, twin) for twin in equal + other]
         answers = solve(self.program, folder, jobs, self.seconds)

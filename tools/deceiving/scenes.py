@@ -103,6 +103,7 @@ class Scene:
         self.equations = []           # terms (node, direction, coefficient) of one direction; the first is dependent
         self.gravity, self.spins = [], []   # accelerations; (node of the axis, rotations per unit of time)
         self.lines, self.contacts, self.parameters = {}, [], {}
+        self.friction = None          # coefficient of all contacts
         self.needed = None            # contacts; later ones repeat these
         self.note = ""
 
@@ -232,7 +233,9 @@ def deck(scene, twin):
     order = list(range(1, len(contacts) + 1))
     if twin.mix:
         twin.mix.shuffle(order)
-    cards += [card("BCONP", k, ids[slave], ids[master]) for k, (slave, master) in zip(order, contacts)]
+    rubs = ["", "", 1] if scene.friction else []
+    cards += [card("BCONP", k, ids[slave], ids[master], *rubs) for k, (slave, master) in zip(order, contacts)]
+    cards += [card("BFRIC", 1, "", "", scene.friction)] if rubs else []
     if twin.mix:
         twin.mix.shuffle(cards)
     head = [f"TITLE = {scene.note}"[:70].replace(",", " "), "SPC = 1"] + ["LOAD = 1"] * bool(scene.forces + scene.gravity + scene.spins)

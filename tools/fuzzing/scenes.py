@@ -27,6 +27,7 @@ class Scene:
         self.four = not self.rings and not self.six and pick.random() < 0.4
         self.plane = pick.choice(["STRAIN", "STRESS"])
         self.sequence = pick.random() < 0.3
+        self.friction = pick.choice([0.0, 0.0, 0.0, 0.0, 0.1, 0.3, 0.3, 1.0, 2.5])
         self.nodes = self.elements = 0
         self.step = pick.choice([1, 1, 1, 7, 1000])
         self.first = pick.choice([0, 0, 0, 100, 90000000])
@@ -119,12 +120,15 @@ def small_scene(pick):
         at = scene.block(xs, places(pick, y, y + size, rows, 0.3), body)
         held = pick.choice(["12", "12", "12", "12", "123456", "2", "1"]) if body == 1 else "1"
         line = [at[i, 0] for i in range(own + 1)]
-        if body == 1 or pick.random() < 0.93:
+        loose = body > 1 and scene.friction and not scene.rings and pick.random() < 0.6   # sideways only friction holds it
+        if body == 1 or not loose and pick.random() < 0.93:
             scene.add("SPC1", 1, held, *(line if body == 1 else [at[0, j] for j in range(rows + 1)]))
         if below:
             join(scene, below, line, body, by_lines)
             if pick.random() < 0.95:
-                scene.add("SUPORT", at[0, rows], pick.choice(["2"] * 12 + ["12", "1"]))
+                scene.add("SUPORT", at[0, rows], pick.choice(["12"] if loose else ["2"] * 12 + ["12", "1"]))
+                if loose:
+                    scene.add("SUPORT", at[own, 0], "2")
         below = [at[i, rows] for i in range(own + 1)]
         y += size * (1.0 + pick.choice([0.0, 0.0, 1e-4, -1e-4, 0.1]))
     load(scene, below, young * size * 10.0 ** pick.uniform(-5, -1))
@@ -137,10 +141,12 @@ def join(scene, below, line, body, by_lines):
     if by_lines:
         scene.add("BLSEG", 2 * body, *(below if pick.random() < 0.5 else below[::-1]))
         scene.add("BLSEG", 2 * body + 1, *(line if pick.random() < 0.5 else line[::-1]))
-        scene.add("BCONP", body, *pick.choice([(2 * body, 2 * body + 1), (2 * body + 1, 2 * body)]))
+        scene.add("BCONP", body, *pick.choice([(2 * body, 2 * body + 1), (2 * body + 1, 2 * body)]), *(["", "", 7] if scene.friction else []))
+        if scene.friction and not scene.deck.of("BFRIC"):
+            scene.add("BFRIC", 7, "", "", scene.friction)
         return
     scene.add("CORD2R", body, "", *[0.0] * 5, 1.0, 0.0, 1.0, 0.0)
-    scene.add("PGAP", 900 + body, pick.choice([0.0, 0.0, 1e-4, -1e-4]))
+    scene.add("PGAP", 900 + body, pick.choice([0.0, 0.0, 1e-4, -1e-4]), *(["", "", "", "", scene.friction] if scene.friction else []))
     for k, (a, b) in enumerate(zip(below, line)):
         if pick.random() < 0.95:
             scene.add("CGAP", 800000 + 100 * body + k, 900 + body, a, b, "", "", "", body)
