@@ -19,9 +19,9 @@ class HalfPlane(unittest.TestCase):
 
     def punch(self, mu, steps=1):
         stick = self.KNOWN[mu]
-        inside = [stick / 24 * k for k in range(30)]
+        inside = [stick / 18.5 * k for k in range(23)]
         half = (1.0 - inside[-1]) / 2
-        beside = [inside[-1] + x for x in graded(1.15 * stick / 24, 1.15, half)[1:]] + [1.0 - x for x in reversed(graded(1e-3, 1.15, half)[:-1])]
+        beside = [inside[-1] + x for x in graded(1.15 * stick / 18.5, 1.15, half)[1:]] + [1.0 - x for x in reversed(graded(2e-3, 1.15, half)[:-1])]
         return friction.half_plane(inside + beside, mu, steps=steps).text()
 
     def stick(self, rows):
