@@ -149,7 +149,7 @@ def pushed(rows):
         lines.append([row["nodes"], what, f"{row['tangential']:.0f}", short(row["ours"]), short(row["memory"]), short(row["ccx"]), short(row["ccx_memory"]),
                       f"{row['ratio']:.0f}" if row["worst"] else "", *worst])
     return "\n\n".join([
-        "## Friction",
+        "## Cylinders with friction",
         "Two cylinders are pressed, then pushed along the contact by .6 mu P, .95 mu P and back to 0, each in 10 increments, elastic or yielding (flow theory). CalculiX has the "
         "same mesh and increments: SURFACE TO SURFACE, SMALL SLIDING, SPOOLES, and a normal stiffness of 1e3 E/a. The tangential stiffness while it sticks is given over E/a. "
         "Differences are the largest of the four load cases, over the largest value of their kind; friction forces over the largest limit. Sticks: pairs that stick in one of the "
