@@ -201,7 +201,7 @@ contains
 
     self%other = self%end_figures()
     self%other_end = self%end_of()
-    deallocate (self%kept%linear)   ! it has the tangent of the end
+    if (self%iteration%yields) deallocate (self%kept%linear)   ! it has the tangent of the end
   end subroutine take_as_other
 
   !> Errors by the size of the increments, from both runs.
