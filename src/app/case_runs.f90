@@ -63,6 +63,7 @@ contains
       else
         run%outcome = not_solved()
         call run%attempts%begin()
+        call run%kept%forget()   ! the next load case may have other contacts
       end if
       of_deck%solved = .true.
       call results%add_case(run, error)
