@@ -63,6 +63,7 @@ module epcont_load_history
     procedure :: is_flow
     procedure, private :: end_of
     procedure, private :: add_increment
+    procedure :: renew_increment
     procedure, private :: make_room
   end type loaded_model
 
@@ -253,6 +254,15 @@ contains
       if (self%keeps_states) now%state = state_to_draw(self%answer)
     end associate
   end subroutine add_increment
+
+  !> Replace the last increment by the answer, which has been refined.
+  pure subroutine renew_increment(self)
+    class(loaded_model), intent(inout) :: self
+
+    if (self%increments == 0) return
+    self%increments = self%increments - 1
+    call self%add_increment(self%increment(self%increments + 1)%iterations)
+  end subroutine renew_increment
 
   !> Change the length of the list. gfortran 12 leaks an array constructor of such a type.
   pure subroutine make_room(self, length)
