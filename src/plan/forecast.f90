@@ -109,6 +109,9 @@ contains
     ! The factors of the unloaded state are kept beside those of the last state.
     if ((cases > 1 .or. model%controls%by_increments) .and. plan%yields) &
       expected%bytes = 2*expected%bytes - of_process
+    ! Elastic bodies with friction have the states at the ends of increments.
+    if (model%controls%by_increments .and. .not. plan%yields) &
+      expected%bytes = expected%bytes + of_node*model%mesh%nodes + of_point*model%mesh%points
     expected%bytes = expected%bytes + of_case*(cases - 1)
   end function forecast
 
