@@ -22,9 +22,8 @@ module epcont_accuracy_peak
     !> Error of the largest pressure; negative: singular, or mesh too coarse [stress]
     real(wp) :: pressure = -1.0_wp
     real(wp) :: half_width = -1.0_wp     !! error of the half-width; negative: unknown [length]
-    !> With friction: error of the largest shear traction; negative: unknown [stress]
-    real(wp) :: shear = -1.0_wp
-    real(wp) :: largest_shear = 0.0_wp   !! this traction [stress]
+    real(wp) :: largest_shear = 0.0_wp   !! largest shear traction; 0 without friction [stress]
+    real(wp) :: shear = -1.0_wp          !! error of this traction; negative: unknown [stress]
     real(wp) :: resolution = 1.0_wp      !! spacing of the pairs divided by half the length of the zone
     real(wp) :: end_resolution = 1.0_wp  !! the same with the larger spacing at its ends
     real(wp) :: half_length = 0.0_wp     !! half length of the zone, to the points of zero pressure [length]

@@ -13,8 +13,8 @@ module epcont_accuracy_shear_error
   private
   public :: add_shear_error
 
-  !> Part of the change of the limit between a pair that sticks and its neighbour, by which the limit at the
-  !! end of sticking is unknown (tests/accuracy/score_shear.py).
+  !> Sticking ends somewhere between two pairs, and the limit there is unknown by this part of the difference
+  !! of their limits (tests/accuracy/score_shear.py).
   real(wp), parameter :: unknown_part = 0.3_wp
 
   !> Friction of all pairs.

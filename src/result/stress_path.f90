@@ -2,8 +2,7 @@
 !> component falls while the loads grow, and if stress deviators hardly turn (paper, introduction).
 module epcont_result_stress_path
   use epcont_base_kinds, only: wp
-  use epcont_base_tolerances, only: no_effect
-  use epcont_base_tolerances, only: rounded_off
+  use epcont_base_tolerances, only: no_effect, rounded_off
   use epcont_element_kinematics, only: components
   use epcont_material_elasticity, only: equivalent_stress
   use epcont_result_answer, only: answer_type
