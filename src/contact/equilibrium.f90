@@ -1,9 +1,8 @@
 !> Start of the contact solution: the pairs in contact first if the bodies are rigid.
 !>
-!> Two-phase simplex with bounded variables, with Dantzig's rule and, if it cycles,
-!> Bland's, on
+!> Two-phase simplex, with Dantzig's rule and, if it cycles, Bland's, on
 !>
-!>     minimise g^'R   subject to   A'R = P,   0 <= R <= u
+!>     minimise g^'R   subject to   A'R = P,   R >= 0
 !>
 !> The first phase finds forces that carry the load, or an unconstrained rigid-body mode;
 !> the second, bounded since g^ >= 0, finds the statically determinate set of pairs that closes first.
@@ -21,9 +20,8 @@ module epcont_contact_equilibrium
 
   !> Result for rigid bodies under the load.
   type :: rigid_start
-    logical :: balanced = .false.          !! some forces within their bounds carry P
+    logical :: balanced = .false.          !! some R >= 0 carry P
     logical, allocatable :: touching(:)    !! pairs in contact first, one for each kept mode [n]
-    logical, allocatable :: at_upper(:)    !! others whose force is at its upper bound [n]
     logical, allocatable :: redundant(:)   !! modes neither restrained nor loaded [m]
     !> If not balanced: y with P'y > 0 that no contact force resists [m]
     real(wp), allocatable :: escape(:)
@@ -42,8 +40,6 @@ module epcont_contact_equilibrium
     !! phase 1 the artificial forces carry all of the load, with unit cost [m]
     integer, allocatable :: basic(:)
     real(wp), allocatable :: value(:)       !! basic variables [m]
-    real(wp), allocatable :: upper(:)       !! bounds of forces, then of artificial forces [n + m]
-    logical, allocatable :: at_upper(:)     !! nonbasic at the upper bound; else at zero [n + m]
     real(wp), allocatable :: inverse(:, :)  !! of the basis [m, m]
     !> Rows of the inverse that have entries in each group of columns [m, m/at_once]
     logical, allocatable :: filled(:, :)
@@ -54,7 +50,7 @@ module epcont_contact_equilibrium
     procedure :: minimise
     procedure :: row_of
     procedure :: column_of
-    procedure :: find_event
+    procedure :: blocking_row
     procedure :: exchange
     procedure :: expel_artificials
   end type rigid_simplex
@@ -72,17 +68,16 @@ contains
   end function can_carry
 
   !> Find the pairs in contact first if the bodies are rigid, or an unconstrained mode.
-  subroutine find_rigid_start(motion, resultant, gap, start, upper)
+  subroutine find_rigid_start(motion, resultant, gap, start)
     type(motion_matrix), intent(in) :: motion   !! A, largest entry about one [n, m]
     real(wp), intent(in) :: resultant(:)    !! P [m]
     real(wp), intent(in) :: gap(:)          !! g^, >= 0 [n]
     type(rigid_start), intent(out) :: start   !! the result
-    real(wp), intent(in), optional :: upper(:)   !! bounds of the forces; absent: infinite [n]
     type(rigid_simplex) :: simplex
     logical :: is_basic(size(gap) + size(resultant))   ! forces, then artificial forces
     integer :: i
 
-    call simplex%begin(motion, resultant, upper)
+    call simplex%begin(motion, resultant)
     call simplex%minimise()
     associate (n => simplex%n, basic => simplex%basic)
       start%balanced = sum(simplex%value, mask=basic > n) <= dependent
@@ -100,17 +95,15 @@ contains
       is_basic = .false.
       is_basic(basic) = .true.
       start%touching = is_basic(:n)
-      start%at_upper = simplex%at_upper(:n)
       start%redundant = is_basic(n + 1:)
     end associate
   end subroutine find_rigid_start
 
   !> Begin with artificial forces that carry all of the load.
-  subroutine begin(self, motion, resultant, upper)
+  subroutine begin(self, motion, resultant)
     class(rigid_simplex), intent(inout) :: self
     type(motion_matrix), intent(in) :: motion
     real(wp), intent(in) :: resultant(:)
-    real(wp), intent(in), optional :: upper(:)
     real(wp) :: largest
     integer :: i, m
 
@@ -123,11 +116,6 @@ contains
     largest = maxval([self%value, 0.0_wp])
     if (largest <= 0.0_wp) largest = 1.0_wp
     self%value = self%value/largest
-    self%upper = spread(huge(1.0_wp), 1, self%n + m)
-    if (present(upper)) then
-      where (upper < huge(1.0_wp)) self%upper(:self%n) = upper/largest
-    end if
-    self%at_upper = spread(.false., 1, self%n + m)
     allocate (self%inverse(m, m), source=0.0_wp)
     allocate (self%filled(m, (m + at_once - 1)/at_once), source=.false.)
     do i = 1, m
@@ -146,14 +134,13 @@ contains
   !! contact simplex lifts its start.
   subroutine minimise(self)
     class(rigid_simplex), intent(inout) :: self
-    real(wp) :: gain(self%n)   ! of a unit of each force, towards its other bound
+    real(wp) :: gain(self%n)   ! of a unit of each force
     real(wp), dimension(size(self%basic)) :: pivot, resolved
     integer :: column, count, row
     logical :: by_index
 
     do count = 1, 100*(self%n + size(self%basic))
       gain = self%row_of(self%price) - self%cost
-      where (self%at_upper(:self%n)) gain = -gain
       gain(pack(self%basic, self%basic <= self%n)) = 0.0_wp
       by_index = count > 10*(self%n + size(self%basic))
       if (by_index) then
@@ -163,18 +150,10 @@ contains
       end if
       if (column == 0) exit
       pivot = self%column_of(column)
-      row = self%find_event(column, pivot, by_index)
-      if (row < 0) exit
-      if (row == 0) then   ! up to the other bound
-        associate (growth => merge(-1.0_wp, 1.0_wp, self%at_upper(column))*self%upper(column))
-          self%value = within(self%value - growth*pivot, self%upper(self%basic))
-        end associate
-        self%at_upper(column) = .not. self%at_upper(column)
-      else
-        if (self%at_upper(column)) gain(column) = -gain(column)
-        call self%exchange(row, column, pivot, resolved)
-        self%price = self%price - gain(column)*resolved
-      end if
+      row = self%blocking_row(pivot, by_index)
+      if (row == 0) exit
+      call self%exchange(row, column, pivot, resolved)
+      self%price = self%price - gain(column)*resolved
     end do
   end subroutine minimise
 
@@ -205,64 +184,45 @@ contains
     end do
   end function column_of
 
-  !> Row of the basic variable that reaches a bound first; if equal, the first of the largest pivots, or
-  !! the variable of least index (Bland). 0: the entering force reaches its other bound before; negative:
-  !! no variable reaches a bound.
-  pure integer function find_event(self, column, pivot, by_index) result(row)
+  !> Row of the basic variable that becomes zero first; if equal, the first of the largest pivots, or the
+  !! variable of least index (Bland). 0: no variable falls.
+  pure integer function blocking_row(self, pivot, by_index) result(row)
     class(rigid_simplex), intent(in) :: self
-    integer, intent(in) :: column      !! the entering force
-    real(wp), intent(in) :: pivot(:)   !! its column
+    real(wp), intent(in) :: pivot(:)   !! column of the entering force
     logical, intent(in) :: by_index
-    real(wp) :: falls, least, ratio, room, zero
+    real(wp) :: least, ratio, zero
     integer :: i
 
-    row = -1
+    row = 0
     least = huge(least)
     zero = null_component*maxval([abs(pivot), 1.0_wp])
     do i = 1, size(pivot)
-      falls = merge(-pivot(i), pivot(i), self%at_upper(column))
-      if (abs(falls) <= zero) cycle
-      room = self%value(i)
-      if (falls < 0.0_wp) then
-        if (self%upper(self%basic(i)) >= huge(1.0_wp)) cycle
-        room = max(self%upper(self%basic(i)) - self%value(i), 0.0_wp)
-      end if
-      ratio = room/abs(falls)
+      if (pivot(i) <= zero) cycle
+      ratio = self%value(i)/pivot(i)
       if (row > 0) then
         if (ratio > least + negligible) cycle
         if (ratio >= least - negligible) then
           if (by_index .and. self%basic(i) > self%basic(row)) cycle
-          if (.not. by_index .and. abs(falls) <= abs(pivot(row))*(1.0_wp + negligible)) cycle
+          if (.not. by_index .and. pivot(i) <= pivot(row)*(1.0_wp + negligible)) cycle
         end if
       end if
       row = i
       least = ratio
     end do
-    if (self%upper(column) < least) row = 0
-  end function find_event
+  end function blocking_row
 
-  !> Make a force basic in a row of the inverse. The variable that leaves is at its nearer bound.
+  !> Make a force basic in a row of the inverse.
   subroutine exchange(self, row, column, pivot, resolved)
     class(rigid_simplex), intent(inout) :: self
     integer, intent(in) :: row, column   !! column: the force
     real(wp), intent(in) :: pivot(:)     !! its column
     real(wp), intent(out) :: resolved(:)   !! the new row
     integer, allocatable :: falling(:)   ! other rows that change
-    real(wp) :: growth                   ! of the entering force
     integer :: equation, i, many
 
     falling = pack([(i, i=1, size(pivot))], pivot /= 0.0_wp .and. [(i /= row, i=1, size(pivot))])
-    associate (leaving => self%basic(row))
-      self%at_upper(leaving) = pivot(row) > 0.0_wp .eqv. self%at_upper(column)
-      if (self%upper(leaving) >= huge(1.0_wp)) self%at_upper(leaving) = .false.
-      growth = self%value(row)
-      if (self%at_upper(leaving)) growth = growth - self%upper(leaving)
-      growth = growth/pivot(row)
-    end associate
-    self%value(falling) = within(self%value(falling) - pivot(falling)*growth, self%upper(self%basic(falling)))
-    self%value(row) = growth
-    if (self%at_upper(column)) self%value(row) = self%upper(column) + growth
-    self%at_upper(column) = .false.
+    self%value(row) = self%value(row)/pivot(row)
+    self%value(falling) = max(self%value(falling) - pivot(falling)*self%value(row), 0.0_wp)
     self%basic(row) = column
     resolved = 0.0_wp
     do many = 1, size(self%filled, 2)
@@ -296,13 +256,6 @@ contains
       end if
     end do
   end subroutine expel_artificials
-
-  !> Clip a value to its bounds.
-  elemental real(wp) function within(value, upper)
-    real(wp), intent(in) :: value, upper
-
-    within = min(max(value, 0.0_wp), upper)
-  end function within
 
   !> First of the values that are largest up to rounding, so that it is the same on every processor; 0
   !! if no value is above `least`.

@@ -15,11 +15,11 @@ module epcont_contact_friction
   use epcont_contact_problem, only: contact_no_equilibrium, contact_overlap, contact_problem, &
     contact_solution, contact_solved, contact_stalled, new_solution
   use epcont_contact_uniqueness, only: find_undetermined_motions
-  use epcont_flexibility_motion_matrix, only: dense_motions
+  use epcont_flexibility_motion_matrix, only: dense_motions, motion_matrix
   use epcont_linalg_dense, only: lu_substitute
   implicit none
   private
-  public :: solve_friction
+  public :: forces_in_cones, solve_friction
 
   !> Displacement, in scaled units, of a body that only the springs restrain.
   real(wp), parameter :: escaped = 1.0e4_wp
@@ -48,7 +48,7 @@ contains
     own = new_friction_problem(problem)
     solution = new_solution(size(own%scaled%gap), size(own%scaled%resultant))
     solution%gap = own%scaled%gap*own%scaled%gap_unit
-    rigid = forces_in_cones(own)
+    rigid = forces_in_cones(own%scaled%motion, own%scaled%resultant, problem%pair_of, problem%friction)
     if (rigid%balanced) then
       call find_states(own, first_states(problem, own, start), state, solution%sets, found)
       if (found) then
@@ -66,22 +66,25 @@ contains
   end subroutine solve_friction
 
   !> Find forces in the friction cones that carry the load, or a mode that they cannot resist.
-  type(rigid_start) function forces_in_cones(problem) result(rigid)
-    type(friction_problem), intent(in) :: problem
+  type(rigid_start) function forces_in_cones(motion, resultant, pair_of, friction) result(rigid)
+    type(motion_matrix), intent(in) :: motion   !! A, largest entry about one; the last rows are tangential
+    real(wp), intent(in) :: resultant(:)        !! P [m]
+    integer, intent(in) :: pair_of(:)           !! pair of each tangential row
+    real(wp), intent(in) :: friction(:)         !! its coefficient of friction
     real(wp), allocatable :: closing(:, :), edge(:, :)   ! A, and closing of the edges of the cones
     integer :: k
 
-    closing = problem%scaled%motion%dense()
-    edge = closing([(k, k, k=1, problem%pairs)], :)
-    do k = 1, problem%pairs
-      if (problem%tangent(k) == 0) cycle
-      associate (by_friction => problem%mu(k)*closing(problem%tangent(k), :))
-        edge(2*k - 1, :) = edge(2*k - 1, :) + by_friction
-        edge(2*k, :) = edge(2*k, :) - by_friction
-      end associate
-    end do
-    call find_rigid_start(dense_motions(edge), problem%scaled%resultant, &
-                          spread(0.0_wp, 1, size(edge, 1)), rigid)
+    closing = motion%dense()
+    associate (n => motion%pairs - size(pair_of))
+      edge = closing([(k, k, k=1, n)], :)
+      do k = 1, size(pair_of)
+        associate (first => 2*pair_of(k) - 1, by_friction => friction(k)*closing(n + k, :))
+          edge(first, :) = edge(first, :) + by_friction
+          edge(first + 1, :) = edge(first + 1, :) - by_friction
+        end associate
+      end do
+    end associate
+    call find_rigid_start(dense_motions(edge), resultant, spread(0.0_wp, 1, size(edge, 1)), rigid)
   end function forces_in_cones
 
   !> Find the states to begin with: those of the known forces or of a guess, or all pairs stick.

@@ -13,9 +13,6 @@
 !>     R, w |     entry     |  x - c |  row k: the basic one of R_k, w_k, at first
 !>          +---------------+--------+
 !>
-!> A force at its upper bound u is nonbasic, too: R_k then means u - R_k, and w_k means -w_k, so that a
-!> variable that leaves is always zero (upper bounding). Row and column of the pair change sign.
-!>
 !> A pivot adds a column times a row to the entries. These are kept separate until there are `panel` of them,
 !> and then added by one dgemm; a column or a row of the tableau is computed when needed: entry =
 !> settled + pivot_columns pivot_rows.
@@ -24,7 +21,7 @@ module epcont_contact_loading
   use epcont_base_tolerances, only: negligible, solved_to
   use epcont_contact_basis, only: respond
   use epcont_contact_problem, only: contact_solution, history_limit, pivot_record
-  use epcont_contact_scaling, only: active_set, scaled_problem
+  use epcont_contact_scaling, only: scaled_problem
   use epcont_contact_state, only: basic_values, contact_state
   use epcont_linalg_dense, only: add_product
   implicit none
@@ -49,20 +46,14 @@ module epcont_contact_loading
     integer, allocatable :: basic(:), first_basic(:)
     !> Position of each variable: its row, or minus its column [-n:n]
     integer, allocatable :: place(:)
-    real(wp), allocatable :: upper(:)                   !! bounds of the forces [n]
-    logical :: bounded = .false.                        !! some are finite
-    !> Pairs whose force is measured from its upper bound, now and at the start [n]
-    logical, allocatable :: turned(:), first_turned(:)
     integer :: entering = load_factor                   !! variable
     integer :: column = 0                               !! its column
     real(wp), allocatable :: slope(:)                   !! change of the basic variables with it [n]
     real(wp) :: load_rate = 1.0_wp                      !! and of the load factor
     real(wp) :: ratio = 0.0_wp                          !! its increase up to the next event
-    !> Row of the variable that leaves then, 0 if absent or if the entering one reaches its own bound
-    integer :: row = 0
+    integer :: row = 0                                  !! row of the variable that leaves then; 0 if absent
   contains
     procedure :: begin
-    procedure :: turn
     procedure :: test_ratios
     procedure :: least_row
     procedure :: entries_of_rows
@@ -75,14 +66,14 @@ contains
 
   !> Pivot until the load is complete. Each pivot is an event of growing load: a pair closes or opens. The
   !! partner of the variable that left enters next (Conry and Seireg 1971).
-  subroutine follow_load(scaled, state, start, solution, complete, set, ray)
+  subroutine follow_load(scaled, state, start, solution, complete, closed, ray)
     type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
     type(contact_state), intent(in) :: state     !! sound set at t = 1: its forces are basic first
     real(wp), intent(in) :: start(:)             !! basic variable of each pair at t = 0, all >= 0 [n]
     type(contact_solution), intent(inout) :: solution   !! pivots are counted and recorded here
     !> All of the load is carried; else there is a ray, or rounding has broken the order of ties
     logical, intent(out) :: complete
-    type(active_set), intent(out) :: set                !! pairs in contact: with a basic force at the end
+    logical, allocatable, intent(out) :: closed(:)      !! pairs in contact: with a basic force at the end [n]
     !> Growth of the forces if the load cannot grow and nothing deforms; else not allocated [n]
     real(wp), allocatable, intent(out) :: ray(:)
     type(load_tableau) :: tableau
@@ -103,11 +94,10 @@ contains
         ray(pack(basic, basic > 0)) = pack(tableau%slope, basic > 0)
         if (entering > 0) ray(entering) = 1.0_wp
       end if
-      set%closed = tableau%place(1:) > 0
+      closed = tableau%place(1:) > 0
       ! The force that enters at full load is positive, unless it carried no load.
-      if (entering > 0 .and. tableau%load_rate > 0.0_wp) set%closed(entering) = .true.
+      if (entering > 0 .and. tableau%load_rate > 0.0_wp) closed(entering) = .true.
     end associate
-    set%at_upper = tableau%turned .and. .not. set%closed
   end subroutine follow_load
 
   !> Make the tableau of the set, with the responses of the basic variables to unit nonbasic ones: gaps of
@@ -125,8 +115,6 @@ contains
     allocate (self%pivot_columns(n, panel), self%pivot_rows(panel, n + 1), self%settled(n, n + 1))
     allocate (self%place(-n:n))
     self%value = start
-    self%upper = scaled%upper
-    self%bounded = any(self%upper < huge(1.0_wp))
     associate (pairs => state%pairs)
       self%basic = [(-i, i=1, n)]
       self%basic(pairs) = pairs
@@ -149,41 +137,11 @@ contains
       call add_product(-1.0_wp, motion, approach, self%settled(:, :n))
       self%settled(pairs, :n) = force
     end associate
-    self%turned = state%at_upper
-    self%first_turned = self%turned
-    do i = 1, n
-      if (.not. self%turned(i)) cycle
-      self%settled(i, :n) = -self%settled(i, :n)
-      self%settled(:, i) = -self%settled(:, i)
-    end do
     self%settled(:, n + 1) = basic_values(state) - start
   end subroutine begin
 
-  !> Measure the force of a pair from its other bound, and its gap in the opposite sense.
-  subroutine turn(self, pair)
-    class(load_tableau), intent(inout) :: self
-    integer, intent(in) :: pair
-    integer :: k
-
-    self%turned(pair) = .not. self%turned(pair)
-    do k = -pair, pair, 2*pair
-      associate (at => self%place(k))
-        if (at < 0) then
-          self%settled(:, -at) = -self%settled(:, -at)
-          self%pivot_rows(:self%pending, -at) = -self%pivot_rows(:self%pending, -at)
-        else
-          self%settled(at, :) = -self%settled(at, :)
-          self%pivot_columns(at, :self%pending) = -self%pivot_columns(at, :self%pending)
-          self%value(at) = -self%value(at)
-          if (k > 0) self%value(at) = self%upper(pair) + self%value(at)
-          self%slope(at) = -self%slope(at)
-        end if
-      end associate
-    end do
-  end subroutine turn
-
-  !> Find the largest growth of the entering variable, and the row of the basic one that reaches a bound
-  !! first; 0 if it reaches its own bound before, or none is reached (then the ratio is huge).
+  !> Find the largest growth of the entering variable, and the row of the basic one that becomes zero first; 0
+  !! if none does (then the ratio is huge).
   subroutine test_ratios(self)
     class(load_tableau), intent(inout) :: self
     logical :: blocking(self%n)
@@ -196,59 +154,39 @@ contains
     end associate
     self%row = 0
     self%ratio = huge(1.0_wp)
-    if (self%entering > 0) self%ratio = self%upper(self%entering)
     blocking = self%slope < -negligible .and. self%basic /= load_factor
+    if (.not. any(blocking)) return
     ratios = huge(1.0_wp)
     where (blocking) ratios = max(self%value, 0.0_wp)/(-self%slope)
-    if (self%bounded) call test_bounds()
-    if (.not. any(blocking)) return
-    if (self%ratio <= minval(ratios)) return
     self%ratio = minval(ratios)
     self%row = self%least_row(ratios <= self%ratio + negligible*max(self%ratio, 1.0_wp))
     self%ratio = ratios(self%row)
-
-  contains
-
-    !> Check the upper bounds of growing forces.
-    subroutine test_bounds()
-      integer :: i
-
-      do i = 1, self%n
-        if (self%basic(i) <= 0 .or. self%slope(i) <= negligible) cycle
-        associate (room => self%upper(self%basic(i)) - self%value(i))
-          if (self%upper(self%basic(i)) < huge(1.0_wp)) ratios(i) = max(room, 0.0_wp)/self%slope(i)
-        end associate
-        blocking(i) = ratios(i) < huge(1.0_wp)
-      end do
-    end subroutine test_bounds
   end subroutine test_ratios
 
   !> Find the tied row that would block first if the basic variables of the start were larger by e,
   !! e^2, ... (lexicographic order). Otherwise, ties could make the simplex cycle. Row i
   !! changes with such a variable by 1 if it is basic in it, by 0 if it is basic elsewhere, and else
-  !! by minus the entry of its column; with opposite sign if the variable has been turned since.
+  !! by minus the entry of its column.
   pure integer function least_row(self, tied) result(row)
     class(load_tableau), intent(in) :: self
     logical, intent(in) :: tied(:)     !! [n]
     logical :: left(size(tied))
     integer, allocatable :: rows(:)
     real(wp), allocatable :: ratio(:)
-    real(wp) :: least, way
+    real(wp) :: least
     integer :: i, j
 
     left = tied
     rows = pack([(i, i=1, self%n)], left)
     do j = 1, self%n
       if (size(rows) == 1) exit
-      way = merge(1.0_wp, -1.0_wp, self%turned(j) .eqv. self%first_turned(j))
       row = self%place(self%first_basic(j))
       if (row > 0) then
         if (.not. left(row)) cycle
         if (negligible*abs(self%slope(row)) >= 1.0_wp) cycle
-        if (way*self%slope(row) > 0.0_wp) return   ! before all others
         left(row) = .false.
       else
-        ratio = way*self%entries_of_rows(rows, -row)/self%slope(rows)
+        ratio = self%entries_of_rows(rows, -row)/self%slope(rows)
         least = minval(ratio)
         left(rows) = ratio <= least + negligible*max(abs(least), 1.0_wp)
       end if
@@ -282,23 +220,15 @@ contains
       max(1.0_wp - carried, 0.0_wp)/self%load_rate*(1.0_wp - solved_to) <= self%ratio
   end function is_complete
 
-  !> Go to the next event: a basic variable leaves, or the entering one reaches its other bound. The partner
-  !! of the variable that left enters next. Record the first pivots.
+  !> Exchange the variable that leaves. Its partner enters next. Record the first pivots.
   subroutine pivot(self, solution)
     class(load_tableau), intent(inout) :: self
     type(contact_solution), intent(inout) :: solution
     integer :: entered, leaving
 
     entered = self%entering
-    leaving = entered
-    if (self%row > 0) leaving = self%basic(self%row)
-    if (self%row == 0) then
-      self%value = self%value + self%ratio*self%slope
-      call self%turn(leaving)
-    else
-      if (self%slope(self%row) > 0.0_wp) call self%turn(leaving)   ! at its upper bound
-      call self%exchange()
-    end if
+    leaving = self%basic(self%row)
+    call self%exchange()
     solution%pivots = solution%pivots + 1
     if (solution%pivots <= history_limit) solution%history = &
       [solution%history, pivot_record(entered, leaving, self%value(self%place(load_factor)), self%ratio)]

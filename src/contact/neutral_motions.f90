@@ -24,7 +24,7 @@ contains
     real(wp), allocatable :: moved(:, :), square(:, :)  ! displacements of these modes, and their products
     real(wp), allocatable :: change(:, :), given(:, :)  ! of the modes, in all and by a force at each gap
     integer, allocatable :: pair(:)                     ! pairs whose gaps they open
-    real(wp), allocatable :: side(:)                    ! -1 if the gap must not be positive [these pairs]
+    real(wp), allocatable :: side(:)                    ! -1 if a slip must not be positive [these pairs]
     integer :: info
 
     call find_neutral(problem, problem%between(solution%force), loose, pair, opening)

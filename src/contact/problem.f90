@@ -3,10 +3,9 @@
 !> For n candidate pairs and m rigid-body modes of the bodies, find contact forces R, gaps w and
 !> rigid-body displacements q with (3-2)..(3-5), generalised:
 !>
-!>     w = g0 + gl + F R - A q,   A'R = P,   lower <= R <= upper
-!>     w >= 0 if R = lower,   w = 0 if R is between,   w <= 0 if R = upper
+!>     w = g0 + gl + F R - A q,   A'R = P,   w >= 0,   R >= 0,   w R = 0
 !>
-!> Normal forces are between zero and infinity. F is symmetric and semidefinite; it may be singular.
+!> F is symmetric and semidefinite; it may be singular.
 !>
 !> With friction, tangential rows follow those of the pairs. Their force T is between -mu R and mu R of their
 !> pair, and their gap is the slip of this load step.
@@ -42,8 +41,6 @@ module epcont_contact_problem
     !! Not allocated: the largest gap that each mode closes [length] [any, m]
     real(wp), allocatable :: travel(:, :)
     integer, allocatable :: body(:)             !! of each mode [m]
-    !> Bounds of the forces; not allocated: zero and infinity, which is huge(1.0_wp) [force] [n]
-    real(wp), allocatable :: lower(:), upper(:)
     !> Coefficient of friction and pair of each tangential row; the last rows are tangential. Not allocated:
     !! no friction [tangential rows]
     real(wp), allocatable :: friction(:)
@@ -71,7 +68,7 @@ module epcont_contact_problem
     real(wp), allocatable :: approach(:)     !! q [m]
     !> Closed pairs, with or without force; tangential rows that stick [n]
     logical, allocatable :: touching(:)
-    logical, allocatable :: at_upper(:)      !! the force is at its upper bound [n]
+    logical, allocatable :: at_upper(:)      !! tangential rows whose force is at its upper bound [n]
     !> y with P'y > 0 and A y <= 0, if there is no equilibrium; if no set passed, with A y only slightly
     !! positive, if that is the cause [m]
     real(wp), allocatable :: escape(:)
@@ -107,7 +104,6 @@ contains
     logical :: between(size(force))
 
     between = force > 0.0_wp
-    if (allocated(self%lower)) between = force > self%lower .and. force < self%upper
     if (.not. allocated(self%friction)) return
     associate (n => size(force) - size(self%friction))
       between(n + 1:) = abs(force(n + 1:)) < self%friction*force(self%pair_of)

@@ -16,13 +16,7 @@ module epcont_contact_scaling
   use epcont_flexibility_motion_matrix, only: motion_matrix
   implicit none
   private
-  public :: active_set, scaled_problem, scale_problem, diagonal_of, drop_motions, gaps_by_forces
-
-  !> State of each pair: closed, or its force at one of its bounds.
-  type :: active_set
-    logical, allocatable :: closed(:)     !! the gap is zero [n]
-    logical, allocatable :: at_upper(:)   !! the force is at its upper bound; else at the lower one [n]
-  end type active_set
+  public :: scaled_problem, scale_problem, diagonal_of, drop_motions, gaps_by_forces
 
   !> Scaled problem with the kept modes.
   type :: scaled_problem
@@ -31,8 +25,6 @@ module epcont_contact_scaling
     type(motion_matrix) :: motion               !! A [n, m]
     real(wp), allocatable :: gap(:)             !! g, gaps under load and known forces [n]
     real(wp), allocatable :: known_force(:)     !! known forces, 0 if the problem has none [n]
-    !> All forces, also the known ones, are measured from their lower bounds: these, and the upper bounds [n]
-    real(wp), allocatable :: lower(:), upper(:)
     real(wp), allocatable :: gap_terms(:)       !! sum of magnitudes of the terms of g [n]
     real(wp), allocatable :: unloaded_gap(:)    !! g^, gaps of the start, >= 0 [n]
     real(wp), allocatable :: resultant(:)       !! P [m]
@@ -48,7 +40,7 @@ module epcont_contact_scaling
     real(wp), allocatable :: softness(:)
     !> Pivots of F_g below this fraction are rounding: a hundredth of a negligible one, or that of n sums
     real(wp) :: rank_tolerance = 0.0_wp
-    type(active_set) :: first                   !! set of rigid bodies: its closed pairs restrain all modes
+    logical, allocatable :: first(:)   !! pairs in contact first of rigid bodies: they restrain all modes [n]
     logical, allocatable :: guess(:)   !! of the pairs in contact; not allocated: no guess [n]
   end type scaled_problem
 
@@ -94,22 +86,9 @@ contains
     end associate
     scaled%flexibility => problem%flexibility
     scaled%motion = problem%motion%over(scaled%motion_size)
-    call take_bounds()
     call measure(scaled)
 
   contains
-
-    !> Measure forces from their lower bounds, which carry a part of the load.
-    pure subroutine take_bounds()
-      scaled%lower = 0*scaled%gap
-      scaled%upper = spread(huge(1.0_wp), 1, size(scaled%gap))
-      if (.not. allocated(problem%lower)) return
-      scaled%lower = problem%lower/scaled%force_unit
-      where (problem%upper < huge(1.0_wp)) scaled%upper = problem%upper/scaled%force_unit - scaled%lower
-      if (all(scaled%lower == 0.0_wp)) return
-      scaled%known_force = scaled%known_force - scaled%lower
-      scaled%resultant = scaled%motion%not_carried(scaled%resultant, scaled%lower)
-    end subroutine take_bounds
 
     !> Force that opens a gap; 0 if nothing deforms.
     pure real(wp) function force_over(gap) result(force)

@@ -13,7 +13,7 @@ module epcont_contact_simplex
   use epcont_contact_block_pivoting, only: exchange_blocks
   use epcont_contact_loading, only: follow_load
   use epcont_contact_problem, only: contact_overlap, contact_solution, contact_solved, contact_stalled
-  use epcont_contact_scaling, only: active_set, gaps_by_forces, scaled_problem
+  use epcont_contact_scaling, only: gaps_by_forces, scaled_problem
   use epcont_contact_state, only: basic_values, contact_state, guess_tolerance, has_right_signs, &
     renew_state, solve_set
   implicit none
@@ -32,20 +32,20 @@ contains
     type(contact_state), intent(inout) :: state   !! with any basis; then the set found, solved again
     real(wp), allocatable, intent(out) :: ray(:)        !! if the state is overlap [n]
     real(wp), allocatable :: lifted(:)   ! basic variable of each pair at t = 0 [n]
-    type(active_set) :: set
+    logical, allocatable :: closed(:)    ! the set [n]
     integer :: attempt, k
     logical :: complete, found
 
-    set = scaled%first
-    if (allocated(scaled%guess)) set%closed = set%closed .or. scaled%guess
-    call take_set(set)
+    closed = scaled%first
+    if (allocated(scaled%guess)) closed = closed .or. scaled%guess
+    call take_set(closed)
     if (state%sound .and. .not. allocated(scaled%guess)) lifted = unloaded_values()
     do attempt = 0, restart_limit
       if (.not. state%sound) exit   ! the modes are too badly restrained
       solution%state = contact_solved
       if (has_right_signs(scaled, state, merge(guess_tolerance, solved_to, attempt == 0))) return
       solution%restarts = attempt
-      call follow_load(scaled, state, lifted, solution, complete, set, ray)
+      call follow_load(scaled, state, lifted, solution, complete, closed, ray)
       if (allocated(ray)) then
         if (is_overlap(ray)) then
           solution%state = contact_overlap
@@ -53,13 +53,12 @@ contains
         end if
       end if
       if (complete .and. mod(attempt, 2) == 0) then
-        call take_set(set)
+        call take_set(closed)
         if (has_right_signs(scaled, state, solved_to)) return
       else
         call take_set(scaled%first)
         ! Use distinct values, against ties that rounding decides wrongly.
         lifted = lifted + [(1.0_wp + real(k, wp)/size(lifted), k=1, size(lifted))]/2.0_wp**attempt
-        lifted(state%pairs) = min(lifted(state%pairs), scaled%upper(state%pairs))
       end if
       if (attempt > 0) cycle
       call exchange_afresh(found)
@@ -69,22 +68,13 @@ contains
 
   contains
 
-    !> Continue from a set, without pairs that are beyond bounds in its solution.
+    !> Continue from a set, with the negative variables of its solution lifted to zero.
     subroutine take_set(set)
-      type(active_set), intent(in) :: set
+      logical, intent(in) :: set(:)
 
       call renew_state(state, scaled, set)
-      lifted = bounded_values(state)
+      lifted = max(basic_values(state), 0.0_wp)
     end subroutine take_set
-
-    !> Basic variables of a state, clipped to their bounds.
-    pure function bounded_values(state) result(values)
-      type(contact_state), intent(in) :: state
-      real(wp) :: values(size(scaled%gap))
-
-      values = max(basic_values(state), 0.0_wp)
-      values(state%pairs) = min(values(state%pairs), scaled%upper(state%pairs))
-    end function bounded_values
 
     !> Basic variables before the load: rigid bodies in contact without force, with gaps g^.
     pure function unloaded_values() result(values)
@@ -92,10 +82,9 @@ contains
       type(contact_state) :: rest
 
       rest%contact_basis = state%contact_basis
-      rest%at_upper = state%at_upper
       call solve_set(rest, scaled, scaled%unloaded_gap + gaps_by_forces(scaled, scaled%known_force), &
                      0.0_wp*scaled%resultant, refinements=1)
-      values = bounded_values(rest)
+      values = max(basic_values(rest), 0.0_wp)
     end function unloaded_values
 
     !> Run block pivoting from the first set.
@@ -105,10 +94,9 @@ contains
       integer :: exchanged
 
       exchanged = solution%pivots
-      set = scaled%first
-      call exchange_blocks(scaled, set, exchanged)
-      set%closed = set%closed .or. scaled%first%closed
-      call renew_state(better, scaled, set)
+      closed = scaled%first
+      call exchange_blocks(scaled, closed, exchanged)
+      call renew_state(better, scaled, closed .or. scaled%first)
       found = has_right_signs(scaled, better, solved_to)
       if (.not. found) return
       solution%pivots = exchanged

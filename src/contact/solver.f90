@@ -10,8 +10,7 @@ module epcont_contact_solver
     contact_solution, contact_stalled, new_solution
   use epcont_contact_scaling, only: drop_motions, scale_problem, scaled_problem
   use epcont_contact_simplex, only: find_contacts
-  use epcont_contact_state, only: contact_state, gaps_under, inner_forces, signed_gaps, solve_set, &
-    terms_of_gaps
+  use epcont_contact_state, only: contact_state, gaps_under, solve_set, terms_of_gaps
   use epcont_contact_uniqueness, only: find_undetermined_motions, find_indeterminate_forces, share_equally
   use epcont_flexibility_motion_matrix, only: motion_matrix
   use epcont_linalg_dense, only: null_space
@@ -45,14 +44,13 @@ contains
     if (present(start)) scaled%guess = start
     solution = new_solution(size(scaled%gap), size(scaled%resultant))
     solution%gap = scaled%gap*scaled%gap_unit
-    call find_rigid_start(motion, scaled%resultant, scaled%unloaded_gap, rigid, scaled%upper)
+    call find_rigid_start(motion, scaled%resultant, scaled%unloaded_gap, rigid)
     if (.not. rigid%balanced) then
       solution%state = contact_no_equilibrium
       solution%escape = rigid%escape/scaled%motion_size
       return
     end if
-    scaled%first%closed = rigid%touching
-    scaled%first%at_upper = rigid%at_upper
+    scaled%first = rigid%touching
     call drop_motions(scaled, rigid%redundant)
     if (present(basis)) call move_basis(basis, state%contact_basis)
     call find_contacts(scaled, solution, state, ray)
@@ -67,10 +65,6 @@ contains
       solution%overlapping = ray > 0.5_wp*maxval(ray)
     case default
       call settle(scaled, motion, state, solution, .not. present(any_forces))
-      if (allocated(problem%lower)) then   ! without rounding
-        where (state%force <= 0.0_wp) solution%force = problem%lower
-        where (state%force >= scaled%upper) solution%force = problem%upper
-      end if
       if (present(basis)) call move_basis(state%contact_basis, basis)
     end select
   end subroutine solve_contact
@@ -89,40 +83,37 @@ contains
     zero = negligible*maxval([state%force, 1.0_wp])
     call cut_rounding(scaled, state, terms)
     solution%approach(scaled%kept) = state%approach
-    call find_touching(scaled, state, terms, solution%touching)
+    call find_touching(state, terms, solution%touching)
     solution%motion_free = find_undetermined_motions(motion, solution%touching, &
-      inner_forces(scaled, state%force, lost_digits*maxval([state%force, 1.0_wp])), state%at_upper)
+      state%force > lost_digits*maxval([state%force, 1.0_wp]))
     if (any(solution%motion_free)) then
-      call take_bounds(scaled, state, .not. inner_forces(scaled, state%force, zero))
+      call remove_forces(scaled, state, state%force <= zero)
       call close_by_motions(scaled, state)
       solution%approach(scaled%kept) = state%approach
     end if
     if (asks_for_others) then
-      solution%indeterminate = find_indeterminate_forces(scaled, solution%touching, &
-        inner_forces(scaled, state%force, zero), state%at_upper)
+      solution%indeterminate = find_indeterminate_forces(scaled, solution%touching, state%force > zero)
       call share_equally(scaled, solution%indeterminate, state%force)
       where (solution%indeterminate) state%change = state%force - scaled%known_force
     end if
     ! In the deck's units.
-    solution%at_upper = state%at_upper
-    solution%force = (state%force + scaled%lower)*scaled%force_unit
+    solution%force = state%force*scaled%force_unit
     solution%change = state%change*scaled%force_unit
     solution%gap = state%gap*scaled%gap_unit
     solution%approach = solution%approach*scaled%gap_unit/scaled%motion_size
   end subroutine settle
 
-  !> Set the force of some pairs to the nearer bound.
-  pure subroutine take_bounds(scaled, state, chosen)
+  !> Set the force of some pairs to zero.
+  pure subroutine remove_forces(scaled, state, chosen)
     type(scaled_problem), intent(in) :: scaled
     type(contact_state), intent(inout) :: state
     logical, intent(in) :: chosen(:)        !! [n]
 
     where (chosen)
-      state%at_upper = state%force > 0.5_wp*scaled%upper .or. state%at_upper .and. scaled%upper <= 0.0_wp
-      state%force = merge(scaled%upper, 0.0_wp, state%at_upper)
-      state%change = state%force - scaled%known_force
+      state%force = 0.0_wp
+      state%change = -scaled%known_force
     end where
-  end subroutine take_bounds
+  end subroutine remove_forces
 
   !> Close the gaps that appear if forces are removed from other pairs: in a slender body they are
   !! large. Pairs of the basis restrain the modes, also those without force.
@@ -136,7 +127,7 @@ contains
     call respond(state%contact_basis, reshape(before(state%pairs), [size(state%pairs), 1]), &
                  reshape(0*state%approach, [size(state%approach), 1]), change, approach)
     gap = gaps_under(scaled, scaled%gap, state%change, state%approach + approach(:, 1))
-    associate (pressed => inner_forces(scaled, state%force, 0.0_wp))
+    associate (pressed => state%force > 0.0_wp)
       if (maxval([abs(gap), 0.0_wp], mask=[pressed, .true.]) >= &
           maxval([abs(before), 0.0_wp], mask=[pressed, .true.])) return
     end associate
@@ -145,14 +136,13 @@ contains
   end subroutine close_by_motions
 
   !> Find the pairs in contact, that is, with zero gap.
-  pure subroutine find_touching(scaled, state, terms, touching)
-    type(scaled_problem), intent(in) :: scaled
+  pure subroutine find_touching(state, terms, touching)
     type(contact_state), intent(inout) :: state
     real(wp), intent(in) :: terms(:)        !! sum of magnitudes of the terms of gaps [n]
     logical, intent(out) :: touching(:)     !! [n]
 
-    where (inner_forces(scaled, state%force, 0.0_wp)) state%gap = 0.0_wp
-    touching = signed_gaps(state) <= negligible*max(terms, maxval([terms(state%pairs), 0.0_wp]))
+    where (state%force > 0.0_wp) state%gap = 0.0_wp
+    touching = state%gap <= negligible*max(terms, maxval([terms(state%pairs), 0.0_wp]))
     where (touching) state%gap = 0.0_wp
   end subroutine find_touching
 
@@ -167,8 +157,8 @@ contains
     logical, allocatable :: moving(:), pressed(:)
 
     do
-      pressed = inner_forces(scaled, state%force, cancelled)
-      call take_bounds(scaled, state, .not. pressed)
+      pressed = state%force > cancelled
+      call remove_forces(scaled, state, .not. pressed)
       terms = terms_of_gaps(scaled, state)
       moving = abs(state%approach) > cancelled*maxval([terms(state%pairs), cancelled])
       if (all(moving) .and. all(pressed(state%pairs))) return
@@ -179,7 +169,6 @@ contains
           all(pressed(state%pairs))) return
       fewer%contact_basis = new_basis(scaled, pressed)
       if (.not. fewer%sound) return   ! a mode is restrained by rounding
-      fewer%at_upper = state%at_upper
       call solve_set(fewer, scaled, scaled%gap, scaled%resultant, refinements=1)
       call move_basis(fewer%contact_basis, state%contact_basis)
       state%force = fewer%force

@@ -1,14 +1,12 @@
-!> Solution of the contact equations for a set of pairs in contact, with the forces of the others at one
-!> of their bounds, and the test of its signs.
+!> Solution of the contact equations for a set of pairs in contact, and the test of its signs.
 module epcont_contact_state
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: cancelled
   use epcont_contact_basis, only: contact_basis, new_basis, renew_basis, respond
-  use epcont_contact_scaling, only: active_set, gaps_by_forces, scaled_problem
+  use epcont_contact_scaling, only: gaps_by_forces, scaled_problem
   implicit none
   private
-  public :: contact_state, renew_state, solve_set, basic_values, gaps_under, has_right_signs, inner_forces, &
-    signed_gaps, terms_of_gaps
+  public :: contact_state, renew_state, solve_set, basic_values, gaps_under, has_right_signs, terms_of_gaps
 
   !> Fraction of the largest force by which forces and gaps may have the wrong sign, in scaled units: the best
   !! that is possible for badly conditioned flexibilities (1e10: tests/contact/hard_problem), and required
@@ -17,8 +15,7 @@ module epcont_contact_state
 
   !> A set with its solution at full load; without forces if the basis is not sound.
   type, extends(contact_basis) :: contact_state
-    logical, allocatable :: at_upper(:)         !! forces outside the basis at their upper bounds [n]
-    real(wp), allocatable :: force(:)           !! outside the basis at one of its bounds [n]
+    real(wp), allocatable :: force(:)           !! outside the basis zero [n]
     !> Forces minus the known forces: if these are large, the sum loses all digits of it [n]
     real(wp), allocatable :: change(:)
     real(wp), allocatable :: gap(:)             !! in the basis zero up to rounding [n]
@@ -29,19 +26,17 @@ contains
 
   !> Find forces, gaps and modes of an active set; if it does not restrain all modes, add the pairs in contact
   !! first.
-  subroutine renew_state(state, scaled, set)
+  subroutine renew_state(state, scaled, closed)
     type(contact_state), intent(inout) :: state   !! its basis is kept if it is of this set
     type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
-    type(active_set), intent(in) :: set
+    logical, intent(in) :: closed(:)             !! [n]
 
-    call renew_basis(state%contact_basis, scaled, set%closed)
-    if (.not. state%sound) state%contact_basis = new_basis(scaled, set%closed .or. scaled%first%closed)
-    state%at_upper = set%at_upper
-    state%at_upper(state%pairs) = .false.
+    call renew_basis(state%contact_basis, scaled, closed)
+    if (.not. state%sound) state%contact_basis = new_basis(scaled, closed .or. scaled%first)
     call solve_set(state, scaled, scaled%gap, scaled%resultant, refinements=1)
   end subroutine renew_state
 
-  !> Solve with the pairs of the basis closed and the forces of the others at their bounds.
+  !> Solve with the pairs of the basis closed and the others without force.
   pure subroutine solve_set(state, scaled, opening, load, refinements)
     type(contact_state), intent(inout) :: state   !! has the basis
     type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
@@ -52,7 +47,7 @@ contains
     real(wp) :: unbalanced(size(load), 1)         ! load not carried yet
     integer :: step
 
-    state%change = merge(scaled%upper, 0.0_wp, state%at_upper) - scaled%known_force
+    state%change = -scaled%known_force
     state%approach = spread(0.0_wp, 1, size(load))
     if (state%sound) state%change(state%pairs) = 0.0_wp
     state%force = scaled%known_force + state%change
@@ -89,49 +84,30 @@ contains
     type(contact_state), intent(in) :: state   !! set and solution
     real(wp), allocatable :: values(:)
 
-    values = signed_gaps(state)
+    values = state%gap
     values(state%pairs) = state%force(state%pairs)
   end function basic_values
 
-  !> Gaps, with opposite sign if the force is at its upper bound: they must not be negative [n].
-  pure function signed_gaps(state) result(gap)
-    type(contact_state), intent(in) :: state
-    real(wp) :: gap(size(state%gap))
-
-    gap = merge(-state%gap, state%gap, state%at_upper)
-  end function signed_gaps
-
-  !> Find forces between their bounds, farther from them than a fraction of the force unit [n].
-  pure function inner_forces(scaled, force, away) result(inner)
-    type(scaled_problem), intent(in) :: scaled
-    real(wp), intent(in) :: force(:), away
-    logical :: inner(size(force))
-
-    inner = force > away .and. scaled%upper - force > away
-  end function inner_forces
-
-  !> Test the fresh solution: its pairs restrain all modes; 0 <= R <= u and w has the right sign, up to the
-  !! rounding of the largest force and gap.
+  !> Test the fresh solution: its pairs restrain all modes; R >= 0 and w >= 0, up to the rounding of the
+  !! largest force and gap.
   pure logical function has_right_signs(scaled, state, tolerance) result(right)
     type(scaled_problem), intent(in) :: scaled   !! the problem in its own units
     type(contact_state), intent(in) :: state   !! set and solution
     real(wp), intent(in) :: tolerance   !! one of the above
-    real(wp), allocatable :: gap(:), terms(:)
+    real(wp), allocatable :: terms(:)
     real(wp) :: force_tolerance, gap_noise, widest
 
     force_tolerance = tolerance*maxval([abs(state%force), 1.0_wp])
     gap_noise = cancelled*maxval([abs(scaled%gap), 0.0_wp])
-    right = state%sound .and. all(state%force >= -force_tolerance) .and. &
-            all(state%force - scaled%upper <= force_tolerance)
+    right = state%sound .and. all(state%force >= -force_tolerance)
     if (.not. right) return
     ! At pairs that hardly deform, a gap far below the others is a sign of a wrong force.
     terms = terms_of_gaps(scaled, state)
     widest = force_tolerance + gap_noise
-    gap = signed_gaps(state)
-    right = all(gap >= -max(scaled%softness*widest, min(widest, cancelled*terms)))
+    right = all(state%gap >= -max(scaled%softness*widest, min(widest, cancelled*terms)))
     if (.not. right .or. maxval([state%force, 0.0_wp]) <= 1.0_wp) return
     ! The largest force, at a rigid stop, does not count for gaps that it does not affect.
-    right = all(gap >= -(tolerance*max(terms, 1.0_wp) + gap_noise))
+    right = all(state%gap >= -(tolerance*max(terms, 1.0_wp) + gap_noise))
   end function has_right_signs
 
   !> Sum of magnitudes of the terms of each gap.

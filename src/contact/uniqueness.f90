@@ -19,15 +19,14 @@ module epcont_contact_uniqueness
 contains
 
   !> Find pairs whose force can change without changing any gap or resultant: z with F z = 0, A'z = 0, and
-  !> z >= 0 if there is no force yet, z <= 0 if it is at its upper bound.
+  !> z >= 0 if there is no force yet.
   !>
   !> With the gaps of the pressed pairs kept closed, the Schur complement M of F_g relates idle pairs in
   !> contact to the forces z on them, and z must satisfy M z = 0.
-  function find_indeterminate_forces(problem, touching, pressed, at_upper) result(indeterminate)
+  function find_indeterminate_forces(problem, touching, pressed) result(indeterminate)
     type(scaled_problem), intent(in) :: problem   !! in its own units
     logical, intent(in) :: touching(:)      !! gap zero [n]
     logical, intent(in) :: pressed(:)       !! force above rounding; pairs of a basis, so it is unique [n]
-    logical, intent(in) :: at_upper(:)      !! force at its upper bound [n]
     logical, allocatable :: indeterminate(:)
     type(contact_basis) :: basis
     !> M [idle, idle], and the change of the pressed pairs' forces by z
@@ -47,7 +46,6 @@ contains
     call respond(basis, loose, spread([real(wp) ::], 2, size(idle)), answer, motion)
     call add_product(1.0_wp, transpose(loose), answer, coupling)
     unit = sqrt(problem%softness(idle))
-    where (at_upper(idle)) unit = -unit
     coupling = coupling/(spread(unit, 1, size(idle))*spread(unit, 2, size(idle)))
     answer = answer/spread(unit, 1, size(answer, 1))
 
@@ -92,7 +90,7 @@ contains
     call add_product(1.0_wp, closing, transpose(other), block)
   end function regular_flexibility
 
-  !> Distribute the force of pairs with equal rows in F and A, and equal bounds, equally.
+  !> Distribute the force of pairs with equal rows in F and A equally.
   pure subroutine share_equally(problem, indeterminate, force)
     type(scaled_problem), intent(in) :: problem   !! in its own units
     logical, intent(in) :: indeterminate(:)    !! [n]
@@ -113,7 +111,6 @@ contains
     pure logical function are_alike(i, k) result(alike)
       integer, intent(in) :: i, k
       alike = all(abs(problem%motion%rows([i]) - problem%motion%rows([k])) <= negligible)
-      alike = alike .and. .not. abs(problem%upper(i) - problem%upper(k)) > 0.0_wp
       if (.not. alike) return
       associate (f => problem%flexibility)
         alike = all(abs(f(:, i) - f(:, k)) <= negligible*max(f(i, i), f(k, k)))
@@ -123,26 +120,20 @@ contains
 
   !> Find modes that the pressed pairs do not restrain, and that idle pairs in contact do not block in both
   !! directions: they do if their forces, all compressive, can carry a load along the mode in both directions.
-  function find_undetermined_motions(motion, touching, pressed, at_upper) result(free)
+  function find_undetermined_motions(motion, touching, pressed) result(free)
     type(motion_matrix), intent(in) :: motion   !! A, largest entry of each column one [n, m]
     logical, intent(in) :: touching(:), pressed(:)   !! [n]
-    logical, intent(in), optional :: at_upper(:)     !! forces that can only fall; absent: no pairs [n]
     logical, allocatable :: free(:)                  !! [m]
     type(motion_matrix) :: closing
     real(wp), allocatable :: loose(:, :)
     integer :: j, pair(size(pressed))
     integer, allocatable :: idle(:)
-    real(wp), allocatable :: rows(:, :)
 
     allocate (free(motion%motions()), source=.false.)
     pair = [(j, j=1, size(pair))]
     loose = loose_motions(motion, pack(pair, pressed), null_component)
     idle = pack(pair, touching .and. .not. pressed)
-    rows = motion%of_each(loose, idle)
-    if (present(at_upper)) then
-      where (spread(at_upper(idle), 2, size(rows, 2))) rows = -rows
-    end if
-    closing = dense_motions(rows)
+    closing = dense_motions(motion%of_each(loose, idle))
     do j = 1, size(free)
       if (all(abs(loose(j, :)) <= null_component)) cycle
       if (.not. free(j)) call give_way(loose(j, :))

@@ -3,7 +3,6 @@
 module epcont_flexibility_motion_matrix
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
-  use epcont_base_tolerances, only: cancelled
   implicit none
   private
   public :: motion_matrix, dense_motions, new_motion_matrix
@@ -28,7 +27,6 @@ module epcont_flexibility_motion_matrix
     procedure :: times
     procedure :: of_each
     procedure :: carried
-    procedure :: not_carried
     procedure :: rows
     procedure :: dense
     procedure :: only
@@ -165,27 +163,6 @@ contains
       end do
     end do
   end function carried
-
-  !> P - A'R, the loads that contact forces leave; zero if they are only rounding [modes].
-  pure function not_carried(self, resultant, force) result(load)
-    class(motion_matrix), intent(in) :: self
-    real(wp), intent(in) :: resultant(:)   !! P [modes]
-    real(wp), intent(in) :: force(:)       !! R [pairs]
-    real(wp) :: load(size(self%start) - 1)
-    real(wp) :: part, terms
-    integer :: i, j
-
-    load = resultant
-    do j = 1, size(load)
-      terms = abs(load(j))
-      do i = self%start(j), self%start(j + 1) - 1
-        part = self%closing(i)*force(self%pair(i))
-        load(j) = load(j) - part
-        terms = terms + abs(part)
-      end do
-      if (abs(load(j)) <= cancelled*terms) load(j) = 0.0_wp
-    end do
-  end function not_carried
 
   !> Closures of some gaps by all modes or some, with zeros [pairs, modes].
   pure function rows(self, pairs, motions) result(closing)

@@ -1,6 +1,5 @@
 !> The contact solver that the plan has chosen.
 module epcont_linear_choose_rule
-  use epcont_base_kinds, only: wp
   use epcont_linear_contact_rule, only: contact_rule
   use epcont_linear_joined_rule, only: joined_rule
   use epcont_linear_simplex_rule, only: simplex_rule
@@ -23,12 +22,6 @@ contains
     rule%explains = .not. plan%joined
     rule%threads = plan%threads
     associate (contact => scene%model%contact)
-      rule%problem%lower = spread(0.0_wp, 1, contact%rows())
-      rule%problem%upper = spread(huge(1.0_wp), 1, contact%rows())
-      if (allocated(contact%force_bound)) then
-        rule%problem%lower = contact%force_bound(1, :)
-        rule%problem%upper = contact%force_bound(2, :)
-      end if
       if (contact%has_friction()) then
         rule%problem%friction = contact%friction(contact%sliding)
         rule%problem%pair_of = contact%sliding

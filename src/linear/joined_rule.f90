@@ -5,6 +5,7 @@ module epcont_linear_joined_rule
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: lost_digits, negligible
   use epcont_contact_equilibrium, only: find_rigid_start, rigid_start
+  use epcont_contact_friction, only: forces_in_cones
   use epcont_contact_problem, only: contact_no_equilibrium, contact_solved, contact_stalled, &
     new_solution
   use epcont_contact_uniqueness, only: find_undetermined_motions
@@ -38,7 +39,6 @@ module epcont_linear_joined_rule
     procedure :: compliance
     procedure, private :: find_set
     procedure, private :: limit_friction
-    procedure, private :: start_rigid
     procedure, private :: settle
   end type joined_rule
 
@@ -50,7 +50,7 @@ module epcont_linear_joined_rule
   real(wp), parameter :: slowly = 1.0_wp/3
   !> Number of sets after which only half of a change is taken: else limits may jump to and fro.
   integer, parameter :: whole_changes = 5
-  !> Friction force without limit, over the loads on rigid-body modes: it shows if friction can carry these.
+  !> First limit of friction forces, over the loads on rigid-body modes, if only friction can carry these.
   real(wp), parameter :: unlimited = 1.0e4_wp
 
 contains
@@ -66,18 +66,23 @@ contains
     self%failed = .false.
     call self%line%take_load(scene%model%loads%load)
     if (allocated(self%rigid%redundant)) redundant = self%rigid%redundant   ! not if it was not balanced
-    self%search%lower = self%problem%lower
-    self%search%upper = self%problem%upper
-    if (allocated(self%problem%friction)) then
-      call self%limit_friction(0*self%problem%friction)
-      call self%start_rigid(smooth)
-      call self%limit_friction(0*self%problem%friction + &
-                               unlimited*maxval([0.0_wp, abs(self%resultant)/self%problem%motion%units()]))
-    end if
-    call self%start_rigid(self%rigid)
-    if (smooth%balanced) call self%limit_friction(0*self%problem%friction)
-    if (allocated(self%line%last) .and. allocated(self%problem%friction)) call self%limit_friction( &
-      self%problem%friction*max(self%line%last%contact%force(self%problem%pair_of), 0.0_wp))
+    associate (motion => self%problem%motion, unit => self%problem%motion%units())
+      self%search%lower = spread(0.0_wp, 1, motion%pairs)
+      self%search%upper = spread(huge(1.0_wp), 1, motion%pairs)
+      if (allocated(self%problem%friction)) then
+        associate (mu => self%problem%friction, pair => self%problem%pair_of)
+          self%rigid = forces_in_cones(motion%over(unit), self%resultant/unit, pair, mu)
+          smooth = forces_in_cones(motion%over(unit), self%resultant/unit, pair, 0*mu)
+          call self%limit_friction(0*mu)
+          if (.not. smooth%balanced) &
+            call self%limit_friction(0*mu + unlimited*maxval([0.0_wp, abs(self%resultant)/unit]))
+          if (allocated(self%line%last)) &
+            call self%limit_friction(mu*max(self%line%last%contact%force(pair), 0.0_wp))
+        end associate
+      else
+        call find_rigid_start(motion%over(unit), self%resultant/unit, 0*self%search%lower, self%rigid)
+      end if
+    end associate
     if (.not. self%rigid%balanced) return
     if (allocated(redundant)) then
       if (all(redundant .eqv. self%rigid%redundant)) return
@@ -87,17 +92,6 @@ contains
     self%search%motion = self%problem%motion
     call new_springs(scene, bodies, self%rigid%redundant, self%search%joined_springs)
   end subroutine take_case
-
-  !> Find if rigid bodies can carry the loads with forces between their bounds.
-  subroutine start_rigid(self, rigid)
-    class(joined_rule), intent(in) :: self
-    type(rigid_start), intent(inout) :: rigid
-
-    associate (motion => self%problem%motion, unit => self%problem%motion%units(), search => self%search)
-      call find_rigid_start(motion%over(unit), motion%not_carried(self%resultant, search%lower)/unit, &
-                            spread(0.0_wp, 1, motion%pairs), rigid, search%upper - search%lower)
-    end associate
-  end subroutine start_rigid
 
   !> Factor the bodies with the springs of the active set, if law or springs have changed. The
   !! contact may factor them for another set.
@@ -227,8 +221,10 @@ contains
                          self%search%lower < self%search%upper .and. &
                          merge(-contact%gap, contact%gap, contact%at_upper) <= negligible*terms
       where (contact%touching) contact%gap = 0.0_wp
-      contact%motion_free = find_undetermined_motions(motion%over(motion%units()), contact%touching, &
-          self%search%between(contact%force, lost_digits), contact%at_upper)
+      associate (pressed => self%search%between(contact%force, lost_digits))   ! at its limit, friction slips
+        contact%motion_free = find_undetermined_motions(motion%over(motion%units()), &
+          contact%touching .and. (pressed .or. self%search%lower >= 0.0_wp), pressed)
+      end associate
     end associate
   end subroutine settle
 

@@ -46,9 +46,6 @@ module epcont_model_contact_rows
     !! displacement along the normal. The weights of a row sum to 0. [rows + 1], [entries], [entries]
     integer, allocatable :: row_start(:), row_node(:)
     real(wp), allocatable :: row_weight(:)
-    !> Lower and upper bound of the force of each row; not allocated if all are contact forces: zero and
-    !! infinity, which is huge(1.0_wp) [force] [2, rows]
-    real(wp), allocatable :: force_bound(:, :)
     type(named_line), allocatable :: line(:)    !! lines of nodes [any]
     type(line_couple), allocatable :: couple(:) !! lines that may come into contact [any]
     !> Edges of the outlines of bodies, numbered as there, with normals; only if there are lines

@@ -5,7 +5,7 @@ module random_problem
   use epcont_flexibility_motion_matrix, only: dense_motions
   implicit none
   private
-  public :: bound, generator, new_problem, residual_of, is_escape, rescaled
+  public :: generator, new_problem, residual_of, is_escape, rescaled
 
   !> A small linear congruential generator; its state is its only memory.
   type :: generator
@@ -149,34 +149,13 @@ contains
     end if
   end subroutine spoil
 
-  !> Give the forces of some pairs two finite bounds, some of them equal. Often a load remains that forces within them can balance.
-  subroutine bound(random, problem)
-    type(generator), intent(inout) :: random
-    type(contact_problem), intent(inout) :: problem
-    real(wp), allocatable :: force(:)
-    integer :: k, n
-
-    n = size(problem%initial_gap)
-    problem%lower = spread(0.0_wp, 1, n)
-    problem%upper = spread(huge(1.0_wp), 1, n)
-    do k = 1, n
-      if (random%chance(0.4_wp)) cycle
-      if (random%chance(0.7_wp)) problem%lower(k) = -real(nint(8*random%uniform()), wp)/4
-      problem%upper(k) = problem%lower(k) + real(nint(12*random%uniform()), wp)/4
-      if (random%chance(0.3_wp)) problem%upper(k) = -problem%lower(k)
-    end do
-    if (random%chance(0.2_wp)) return
-    force = [(problem%lower(k) + random%uniform()*min(problem%upper(k) - problem%lower(k), 2.0_wp), k=1, n)]
-    problem%resultant = problem%motion%carried(force)
-  end subroutine bound
-
   !> Largest violation of the conditions (3-2)..(3-5), relative to the largest quantity of its type. For a
   !> semidefinite F they are sufficient: a solution that satisfies them is correct.
   function residual_of(problem, solution) result(residual)
     type(contact_problem), intent(in) :: problem
     type(contact_solution), intent(in) :: solution
     real(wp) :: residual
-    real(wp), allocatable :: below(:), gap_error(:), inside(:), load_error(:), lower(:), upper(:)
+    real(wp), allocatable :: gap_error(:), inside(:), load_error(:)
     real(wp) :: gap_size, force_size, load_size
 
     gap_error = problem%initial_gap + problem%load_gap + matmul(problem%flexibility, solution%force) &
@@ -194,14 +173,9 @@ contains
     end if
     force_size = max(force_size, tiny(1.0_wp))
     load_size = max(largest(problem%resultant), force_size*largest(problem%motion%closing), tiny(1.0_wp))
-    lower = 0.0_wp*solution%force
-    upper = lower + huge(1.0_wp)
-    if (allocated(problem%lower)) lower = problem%lower
-    if (allocated(problem%upper)) upper = problem%upper
-    inside = min(solution%force - lower, force_size)/force_size
-    below = min(upper - solution%force, force_size)/force_size
-    residual = maxval([abs(gap_error)/gap_size, -inside, -below, max(solution%gap, 0.0_wp)/gap_size*inside, &
-                       max(-solution%gap, 0.0_wp)/gap_size*below, abs(load_error)/load_size, 0.0_wp])
+    inside = min(solution%force, force_size)/force_size
+    residual = maxval([abs(gap_error)/gap_size, -inside, max(solution%gap, 0.0_wp)/gap_size*inside, &
+                       max(-solution%gap, 0.0_wp)/gap_size, abs(load_error)/load_size, 0.0_wp])
   end function residual_of
 
   !> Largest absolute value; 0 if empty.
@@ -213,24 +187,15 @@ contains
     if (size(values) > 0) largest = maxval(abs(values))
   end function largest
 
-  !> Does the load drive mode y, and can no forces within their bounds resist it: P'y > 0 and A y <= 0, or more work than bounded
-  !> forces can do along it?
+  !> Does the load drive mode y, and can no forces resist it: P'y > 0 and A y <= 0?
   function is_escape(problem, motion) result(escape)
     type(contact_problem), intent(in) :: problem
     real(wp), intent(in) :: motion(:)
     logical :: escape
     real(wp), allocatable :: closing(:)
-    real(wp) :: size_of_motion, work
 
-    size_of_motion = maxval(abs(motion))
     closing = problem%motion%times(motion)
-    work = dot_product(problem%resultant, motion)
-    if (allocated(problem%lower)) then
-      work = work - sum(problem%upper*max(closing, 0.0_wp), mask=problem%upper < huge(1.0_wp)) &
-             - sum(problem%lower*min(closing, 0.0_wp))
-      where (problem%upper < huge(1.0_wp)) closing = 0.0_wp
-    end if
-    escape = work > 0.0_wp .and. all(closing <= 1.0e-9_wp*size_of_motion)
+    escape = dot_product(problem%resultant, motion) > 0.0_wp .and. all(closing <= 1.0e-9_wp*maxval(abs(motion)))
   end function is_escape
 
   !> The same problem with forces and lengths in other units.
