@@ -30,7 +30,7 @@ module epcont_build_build
   public :: build_model, tell
 
   !> Cards with ids of their own.
-  integer, parameter :: own_ids(12) = [card_grid, card_mat1, card_mats1, card_tables1, card_pgap, &
+  integer, parameter :: own_ids(*) = [card_grid, card_mat1, card_mats1, card_tables1, card_pgap, &
       card_cord2r, card_blseg, card_bconp, card_load, card_mpcadd, card_nlparm, card_bfric]
 
   !> Fields of parts of a body load: item_acceleration, item_centre, item_spin_up.
@@ -72,11 +72,12 @@ contains
     integer :: k
 
     do k = 1, size(own_ids)
-      call check_unique(deck, own_ids(k:k), faults)
+      call check_unique(deck, own_ids(k:k), [1], faults)
     end do
-    call check_unique(deck, [card_pshell, card_psolid], faults)
+    call check_unique(deck, [card_pshell, card_psolid], [1], faults)
+    call check_unique(deck, [card_pelas], [1, 5], faults)
     call check_unique(deck, [element_cards(deck, kinds), card_rbe2, card_cgap, card_celas1, card_celas2], &
-                      faults)
+                      [1], faults)
   end subroutine check_ids
 
   !> Read the model data from the cards.
@@ -116,19 +117,17 @@ contains
 
     associate (elements => element_cards(deck, kinds), cid => deck%card(card_cgap)%column('CID'))
       sections = [(ids(elements(c), 2), c=1, size(elements))]
-      call note_unnamed(deck, card_pshell, 1, sections, 'element', faults)
-      call note_unnamed(deck, card_psolid, 1, sections, 'element', faults)
-      call note_unnamed(deck, card_mat1, 1, [ids(card_pshell, 2), ids(card_psolid, 2)], &
+      call note_unnamed(deck, [card_pshell, card_psolid], [1], sections, 'element', faults)
+      call note_unnamed(deck, [card_mat1], [1], [ids(card_pshell, 2), ids(card_psolid, 2)], &
                         'PSHELL or PSOLID', faults)
-      call note_unnamed(deck, card_tables1, 1, ids(card_mats1, 2), 'MATS1', faults)
-      call note_unnamed(deck, card_pgap, 1, ids(card_cgap, 2), 'CGAP', faults)
-      call note_unnamed(deck, card_bfric, 1, ids(card_bconp, 6), 'BCONP', faults)
-      call note_unnamed(deck, card_cord2r, 1, ids(card_cgap, cid), 'CGAP', faults)
-      call note_unnamed(deck, card_pelas, 1, ids(card_celas1, 2), 'CELAS1', faults)
-      call note_unnamed(deck, card_pelas, 5, ids(card_celas1, 2), 'CELAS1', faults)
+      call note_unnamed(deck, [card_tables1], [1], ids(card_mats1, 2), 'MATS1', faults)
+      call note_unnamed(deck, [card_pgap], [1], ids(card_cgap, 2), 'CGAP', faults)
+      call note_unnamed(deck, [card_bfric], [1], ids(card_bconp, 6), 'BCONP', faults)
+      call note_unnamed(deck, [card_cord2r], [1], ids(card_cgap, cid), 'CGAP', faults)
+      call note_unnamed(deck, [card_pelas], [1, 5], ids(card_celas1, 2), 'CELAS1', faults)
     end associate
     if (all(cases%case%contact /= contact_all)) &
-      call note_unnamed(deck, card_bconp, 1, cases%case%contact, 'BCONTACT', faults)
+      call note_unnamed(deck, [card_bconp], [1], cases%case%contact, 'BCONTACT', faults)
     if (all(cases%case%contact == contact_none) .and. deck%card(card_cgap)%count > 0) &
       call faults%add_note(card_cgap, 1, 1, &
         ': BCONTACT = NONE in all load cases'//and_more(deck%card(card_cgap)%count, ' (', ' more CGAPs)'))
@@ -143,6 +142,7 @@ contains
       ids = nint(deck%card(card)%value(column, :))
     end function ids
   end subroutine note_without_effect
+
   !> Begin each finding of the model with the name of its card, and add the place of the card.
   subroutine tell(deck, faults, case)
     type(deck_type), intent(in) :: deck          !! its cards

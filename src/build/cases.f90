@@ -8,7 +8,7 @@ module epcont_build_cases
   use epcont_build_mass_loads, only: read_mass_loads
   use epcont_build_mesh_cards, only: element_cards
   use epcont_build_reference, only: card_index, check_choices, check_combinations, chosen_sets, &
-      named_node, nodes_of_fields, note_unnamed, note_unused, resolve
+      named_node, nodes_of_fields, note_unnamed, resolve
   use epcont_deck_card_kinds, only: card_bconp, card_bfric, card_force, card_grav, card_load, card_mats1, &
       card_moment, card_nlparm, card_param, card_pgap, card_ploadx1, card_rforce, card_spc, card_spc1, &
       card_spcd
@@ -44,7 +44,7 @@ contains
     logical :: rings
 
     call chosen_sets(deck, support_cards, deck%subcase%spc, 'SPC', found, supports)
-    call note_unused(deck, support_cards, supports, found)
+    call note_unnamed(deck, support_cards, [1], supports, 'load case', found)
     call chosen_sets(deck, [load_cards, card_load], deck%subcase%load, 'LOAD', found, loads)
     allocate (cases%case(size(loads)))
     cases%sequence = deck%is_sequence()
@@ -64,8 +64,8 @@ contains
     call check_history(deck, data%controls%by_increments, found)
     if (deck%linear%line > 0 .and. deck%card(card_mats1)%count > 0) &
       call found%add_note(deck%linear, 'SOL: materials with MATS1 yield, as with SOL 106')
-    call note_unused(deck, load_cards, used, found)
-    call note_unused(deck, [card_load], loads, found)
+    call note_unnamed(deck, load_cards, [1], used, 'load case', found)
+    call note_unnamed(deck, [card_load], [1], loads, 'load case', found)
     call find_platens(deck, nodes, supports, used, data, found)
     call find_moments(deck, nodes, used, data, cases%moment, found)
     call add_forces(deck, nodes, used, cases, found)
@@ -119,7 +119,7 @@ contains
         end do
         call check_choices(deck, choice, nint(nlparm%value(1, :)), 'NLPARM', 'there is no such NLPARM', &
                            'give the id of an NLPARM card', found)
-        if (.not. deck%is_part()) call note_unnamed(deck, card_nlparm, 1, choice%id, 'load case', found)
+        call note_unnamed(deck, [card_nlparm], [1], choice%id, 'load case', found)
         row = deck%parameter_row('NLOAD')
         if (row > 0 .and. any(choice%id > 0)) call found%add_error(card_param, row, 1, &
           ': NLPARM gives the number of load steps, too', 'remove one of the two')
@@ -172,12 +172,12 @@ contains
     type(findings), intent(inout) :: found
     integer :: i, node(deck%card(card_force)%count)
     real(wp) :: direction(2), factor, largest
-    logical :: idle(size(node))
+    logical :: idle(size(node))   ! N1 and N2 are zero
 
     idle = .false.
     call resolve(deck, card_force, 2, nodes, found, node)
     associate (force => deck%card(card_force))
-      node = merge(node, 0, [(any(used == nint(force%value(1, i))), i=1, size(node))])
+      node = merge(node, 0, force%sound .and. [(any(used == nint(force%value(1, i))), i=1, size(node))])
       allocate (cases%force(count(node > 0)))
       cases%force%set = pack(nint(force%value(1, :)), node > 0)
       cases%force%node = pack(node, node > 0)
@@ -187,9 +187,6 @@ contains
         direction = [force%number('N1', i), force%number('N2', i)]
         largest = maxval(abs(direction))
         idle(i) = all(direction == 0.0_wp)
-        if (force%number('N3', i) /= 0.0_wp) &
-          call found%add_error(card_force, i, force%column('N3'), ': field 8 (N3) points off the plane', &
-                               'write 0.0: models are in the x-y plane')
         ! Not zero, but of a magnitude outside the allowed range.
         if (factor /= 0.0_wp .and. largest > 0.0_wp .and. &
             (abs(factor)*largest < least_cause .or. abs(factor)*largest > farthest)) &
@@ -202,27 +199,10 @@ contains
         cases%force(count(node(:i) > 0))%force = factor*direction
       end do
     end associate
-    call report_idle(idle)
-
-  contains
-
-    !> Report a FORCE without a direction as an error. Vectors of zeros give one note.
-    subroutine report_idle(idle)
-      logical, intent(in) :: idle(:)   !! N1 and N2 are zero [cards]
-      logical :: blank(size(idle))
-      integer :: i, n1
-
-      n1 = deck%card(card_force)%column('N1')
-      blank = .not. any(deck%card(card_force)%given(n1:n1 + 2, :), dim=1)
-      do i = 1, size(idle)
-        if (idle(i) .and. blank(i)) &
-          call found%add_error(card_force, i, n1, ': N1 and N2 are blank: no direction', &
-                               'give the direction of the force, such as 0.0 and -1.0')
-      end do
-      i = findloc(idle .and. .not. blank, .true., dim=1)
-      if (i > 0) call found%add_note(card_force, i, n1, &
-        ': N1 and N2 are 0.0: no force'//and_more(count(idle .and. .not. blank), '; so with ', ' more'))
-    end subroutine report_idle
+    i = findloc(idle, .true., dim=1)
+    if (i > 0) call found%add_warning(card_force, i, deck%card(card_force)%column('N1'), &
+      ': N1 and N2 are 0.0: no force'//and_more(count(idle), '; so with ', ' more'), &
+      'give the direction of the force, such as 0.0 and -1.0')
   end subroutine add_forces
 
   !> Read PLOADX1.

@@ -134,25 +134,13 @@ contains
 
   !> Read the friction of BCONP. Pairs stick and slip with the same coefficient; PGAP is checked for it.
   subroutine read_friction(deck, couple, found)
-    integer, parameter :: rubbing(2) = [card_pgap, card_bfric]
-    real(wp), parameter :: usual = 2.0_wp   ! largest coefficient of friction without a note
     type(deck_type), intent(in) :: deck
     type(line_couple), intent(inout) :: couple(:)
     type(findings), intent(inout) :: found
-    integer :: bfric(size(couple)), c, i
+    integer :: bfric(size(couple)), i
 
-    do c = 1, size(rubbing)
-      associate (card => deck%card(rubbing(c)))
-        do i = 1, card%count
-          if (card%number('MU1', i) > usual) call found%add_note(rubbing(c), i, card%column('MU1'), &
-            ': '//card%entry%field_text(card%column('MU1'))//': a coefficient of friction above 2 is unusual')
-        end do
-      end associate
-    end do
     associate (pgap => deck%card(card_pgap))
       do i = 1, pgap%count
-        if (pgap%has('KT', i) .and. .not. pgap%has('MU1', i)) call found%add_note(card_pgap, i, &
-          pgap%column('KT'), ': field 7 (KT) without MU1: contact is frictionless')
         if (.not. pgap%has('MU2', i)) cycle
         if (abs(pgap%number('MU2', i) - pgap%number('MU1', i)) <= 0.0_wp) cycle
         call found%add_error(card_pgap, i, pgap%column('MU2'), &

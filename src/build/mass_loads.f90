@@ -46,7 +46,6 @@ contains
         do i = 1, size(load)
           if (load(i)%factor == 0.0_wp .or. .not. card%sound(i)) cycle
           direction = [card%number('N1', i), card%number('N2', i)]
-          call want_zero(card_grav, i, 'N3', 'off the plane', 'write 0.0: models are in the x-y plane')
           if (all(direction == 0.0_wp)) &
             call found%add_error(card_grav, i, card%column('N1'), ': N1 and N2 are 0.0: no direction', &
                                  'give the direction in which it acts, such as 0.0 and -1.0')
@@ -61,9 +60,10 @@ contains
     subroutine read_spins(load)
       type(body_load), intent(inout) :: load(:)
       integer :: centre(size(load)), i
-      character(len=2) :: axis
+      character(len=2) :: axis, other
 
       axis = merge('R2', 'R3', rings)
+      other = merge('R3', 'R2', rings)
       call resolve(deck, card_rforce, 2, nodes, found, centre)
       associate (card => deck%card(card_rforce))
         do i = 1, size(load)
@@ -71,36 +71,14 @@ contains
           if (.not. (card%has('A', i) .or. card%has('RACC', i))) call found%add_error( &
             card_rforce, i, card%column('A'), ': fields 5 (A) and 13 (RACC) are blank: no rotation', &
             'give A, or RACC on the next line')
-          call want_zero(card_rforce, i, 'R1', 'along x', 'write 0.0: '//axis_is())
-          call want_zero(card_rforce, i, merge('R3', 'R2', rings), merge('along z', 'along y', rings), &
-                         'write 0.0: '//axis_is())
-          if (card%number(axis, i) == 0.0_wp) call found%add_error( &
-            card_rforce, i, card%column(axis), ': '//axis//' is 0.0: no axis', 'write 1.0: '//axis_is())
+          if (card%number(axis, i) == 0.0_wp .or. card%number(other, i) /= 0.0_wp) call found%add_error( &
+            card_rforce, i, card%column(axis), ': the axis is not '//merge('y', 'z', rings), &
+            'write '//axis//' 1.0, '//other//' 0.0: plane models rotate about z, axisymmetric models about y')
           load(i)%spin = card%number('A', i)*card%number(axis, i)
           load(i)%spin_up = card%number('RACC', i)*card%number(axis, i)
           if (centre(i) > 0) load(i)%centre = x(:, centre(i))
         end do
       end associate
     end subroutine read_spins
-
-    !> The rotation axis, in words.
-    pure function axis_is() result(text)
-      character(len=:), allocatable :: text
-
-      text = 'plane models rotate about z'
-      if (rings) text = 'axisymmetric models rotate about their axis, y'
-    end function axis_is
-
-    !> Report a field that is not zero, but has a direction that the model does not have.
-    subroutine want_zero(card, i, name, where_to, remedy)
-      integer, intent(in) :: card, i
-      character(len=*), intent(in) :: name, where_to, remedy
-
-      associate (table => deck%card(card))
-        if (table%number(name, i) /= 0.0_wp) &
-          call found%add_error(card, i, table%column(name), ': '// &
-                               table%entry%field_text(table%column(name))//' points '//where_to, remedy)
-      end associate
-    end subroutine want_zero
   end subroutine read_mass_loads
 end module epcont_build_mass_loads

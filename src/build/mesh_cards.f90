@@ -48,13 +48,6 @@ contains
 
     associate (grid => deck%card(card_grid))
       data = new_scene(grid%value([grid%column('X1'), grid%column('X2')], :))
-      associate (z => grid%value(grid%column('X3'), :))
-        do i = 1, grid%count
-          if (z(i) /= 0.0_wp) &
-            call refuse(deck, card_grid, i, 'X3', ': field 6 (X3) is '//short_real(z(i))//', off the plane', &
-                        'write 0.0: models are in the x-y plane', found)
-        end do
-      end associate
     end associate
     call read_materials(deck, found, material)
     call read_sections(deck, material, data, found)
@@ -161,9 +154,6 @@ contains
       material(i)%expansion = mat1%number('A', i)
       material(i)%reference_temperature = mat1%number('TREF', i)
       material(i)%density = mat1%number('RHO', i)
-      if (mat1%has('TREF', i) .and. mat1%entry%field(mat1%column('TREF'))%used .and. &
-          material(i)%expansion == 0.0_wp) call found%add_note(card_mat1, i, mat1%column('TREF'), &
-                                                               ': field 8 (TREF) has no effect without A')
       if (count([mat1%has('E', i), mat1%has('G', i), mat1%has('NU', i)]) < 2) then
         call refuse(deck, card_mat1, i, 'E', ': two of E, G and NU are needed', &
                     'give E and NU, for example', found)

@@ -12,13 +12,19 @@ module epcont_build_reference
   implicit none
   private
   public :: card_index, index_of, check_combinations, check_unique, resolve, chosen_sets
-  public :: check_choices, named_node, nodes_of_fields, nodes_of_lists, note_unnamed, note_unused
+  public :: check_choices, named_node, nodes_of_fields, nodes_of_lists, note_unnamed
 
   !> The ids that fields may name, and their type.
   type, extends(id_index) :: card_index
     character(len=8) :: noun = ''    !! GRID, or `element`
     logical :: whole = .true.        !! false if cards with errors may have other ids
   end type card_index
+
+  !> An id in a field of a card.
+  type :: given_id
+    integer :: id = 0
+    integer :: card(3) = 0   !! table, card, field
+  end type given_id
 
   !> A node that a card names, with some of its DOFs.
   type :: named_node
@@ -41,24 +47,45 @@ contains
     end associate
   end function index_of
 
-  !> Check that each id is used once in the first fields of these tables, which share their ids.
-  pure subroutine check_unique(deck, cards, found)
-    type(deck_type), intent(in) :: deck      !! its cards
-    integer, intent(in) :: cards(:)          !! tables
-    type(findings), intent(inout) :: found   !! errors are added
-    integer, allocatable :: id(:), order(:), row(:), table(:)
-    integer :: c, earlier, i, k
+  !> Ids in fields of cards that are not blank.
+  pure function ids_in(deck, cards, columns) result(given)
+    type(deck_type), intent(in) :: deck
+    integer, intent(in) :: cards(:), columns(:)   !! tables, and fields of each card
+    type(given_id), allocatable :: given(:)
+    integer :: c, i, k, last
 
-    id = [(int(deck%card(cards(c))%value(1, :)), c=1, size(cards))]
-    table = [(spread(cards(c), 1, deck%card(cards(c))%count), c=1, size(cards))]
-    row = [((i, i=1, deck%card(cards(c))%count), c=1, size(cards))]
-    order = sorted_order(id)
-    do k = 2, size(id)
-      i = order(k)
-      earlier = order(k - 1)
-      if (id(i) == id(earlier) .and. deck%card(table(i))%given(1, row(i))) &
-        call found%add_error(table(i), row(i), 1, ': the id is taken by '// &
-                             deck%card(table(earlier))%identity(row(earlier)), 'give it an id of its own')
+    allocate (given(size(columns)*sum(deck%card(cards)%count)))
+    last = 0
+    do c = 1, size(cards)
+      associate (table => deck%card(cards(c)))
+        do i = 1, table%count
+          do k = 1, size(columns)
+            if (.not. table%given(columns(k), i)) cycle
+            last = last + 1
+            given(last) = given_id(int(table%value(columns(k), i)), [cards(c), i, columns(k)])
+          end do
+        end do
+      end associate
+    end do
+    given = given(:last)
+  end function ids_in
+
+  !> Check that each id is used once in these fields, which share their ids.
+  pure subroutine check_unique(deck, cards, columns, found)
+    type(deck_type), intent(in) :: deck           !! its cards
+    integer, intent(in) :: cards(:), columns(:)   !! tables, and fields of each card
+    type(findings), intent(inout) :: found        !! errors are added
+    type(given_id), allocatable :: given(:)
+    integer :: k
+
+    given = ids_in(deck, cards, columns)
+    given = given(sorted_order(given%id))
+    do k = 2, size(given)
+      associate (card => given(k)%card, earlier => given(k - 1)%card)
+        if (given(k)%id == given(k - 1)%id) &
+          call found%add_error(card(1), card(2), card(3), ': the id is taken by '// &
+                               deck%card(earlier(1))%identity(earlier(2)), 'give it an id of its own')
+      end associate
     end do
   end subroutine check_unique
 
@@ -122,28 +149,26 @@ contains
     character(len=*), intent(in) :: word     !! SPC, MPC or LOAD
     type(findings), intent(inout) :: found   !! errors are added
     integer, intent(out) :: set(:)           !! 0 if absent [cases]
-    integer, allocatable :: id(:), row(:), table(:)   ! of all cards whose set is given
-    integer :: c, i
+    type(given_id), allocatable :: given(:)
+    integer :: i
 
-    id = [(nint(deck%card(cards(c))%value(1, :)), c=1, size(cards))]
-    table = [(spread(cards(c), 1, deck%card(cards(c))%count), c=1, size(cards))]
-    row = [((i, i=1, deck%card(cards(c))%count), c=1, size(cards))]
-    id = merge(id, 0, [(deck%card(table(i))%given(1, row(i)), i=1, size(row))])
+    given = ids_in(deck, cards, [1])
     set = choice%id
     ! Without LOAD, a SUBCASE has no loads at its end; so has a deck that continues earlier loads.
     if (all(choice%id == 0) .and. (size(choice) == 1 .and. deck%restart == '' .or. word /= 'LOAD') .and. &
-        any(id > 0)) then
-      set = id(findloc(id > 0, .true., dim=1))
-      i = findloc(id > 0 .and. id /= set(1), .true., dim=1)
+        size(given) > 0) then
+      set = given(1)%id
+      i = findloc(given%id /= set(1), .true., dim=1)
       if (i > 0) then
-        call found%add_error(table(i), row(i), 1, ': the deck has several sets, '//text_of(set(1))// &
-                             ' and '//text_of(id(i))//', and chooses none', &
+        call found%add_error(given(i)%card(1), given(i)%card(2), 1, ': the deck has several sets, '// &
+                             text_of(set(1))//' and '//text_of(given(i)%id)//', and chooses none', &
                              'write '//word//' = '//text_of(set(1))//' before BEGIN BULK')
         return
       end if
     end if
-    if (all(id /= 0)) &
-      call check_choices(deck, choice, id, word, 'the deck has no such set', set_remedy(id), found)
+    if (size(given) == sum(deck%card(cards)%count)) &
+      call check_choices(deck, choice, given%id, word, 'the deck has no such set', set_remedy(given%id), &
+                         found)
   end subroutine chosen_sets
 
   !> Name the sets of the deck, as a remedy for a set that does not exist.
@@ -215,44 +240,28 @@ contains
     if (set == 0) set = nint(item%number(2))
   end function member_of
 
-  !> Note the cards that no other card names.
-  pure subroutine note_unnamed(deck, card, column, names, by, found)
-    type(deck_type), intent(in) :: deck       !! its cards
-    integer, intent(in) :: card, column       !! table of cards that may be named, and column of their ids
-    integer, intent(in) :: names(:)           !! ids in the fields that name them
-    character(len=*), intent(in) :: by        !! cards with these fields
-    type(findings), intent(inout) :: found    !! notes are added
-    type(id_index) :: named
-    integer :: i
+  !> Note each id once that no other card and no load case names.
+  pure subroutine note_unnamed(deck, cards, columns, names, by, found)
+    type(deck_type), intent(in) :: deck           !! its cards
+    integer, intent(in) :: cards(:), columns(:)   !! tables that may be named, and fields of their ids
+    integer, intent(in) :: names(:)               !! ids that are named
+    character(len=*), intent(in) :: by            !! what could name it: `CGAP`; `load case` for sets
+    type(findings), intent(inout) :: found        !! notes are added
+    type(given_id), allocatable :: given(:)
+    type(id_index) :: first, named
+    integer :: k
 
+    if (by == 'load case' .and. deck%is_part()) return   ! other parts of the history may name it
     named = new_id_index(names)
-    associate (table => deck%card(card))
-      do i = 1, table%count
-        if (.not. table%given(column, i)) cycle
-        if (named%find(nint(table%value(column, i))) > 0) cycle
-        call found%add_note(card, i, column, ': no '//by//' names '//text_of(nint(table%value(column, i))))
-      end do
-    end associate
-  end subroutine note_unnamed
-
-  !> Note each card whose set no load case uses.
-  pure subroutine note_unused(deck, cards, used, found)
-    type(deck_type), intent(in) :: deck      !! its cards
-    integer, intent(in) :: cards(:)          !! tables whose first field is the set
-    integer, intent(in) :: used(:)           !! ids of sets
-    type(findings), intent(inout) :: found   !! notes are added
-    integer :: c, i
-
-    if (deck%is_part()) return   ! other parts of the history use them
-    do c = 1, size(cards)
-      associate (table => deck%card(cards(c)))
-        do i = 1, table%count
-          if (.not. table%given(1, i) .or. any(used == nint(table%value(1, i)))) cycle
-          call found%add_note(cards(c), i, 1, ': set not used')
-        end do
+    given = ids_in(deck, cards, columns)
+    first = new_id_index(given%id)
+    do k = 1, size(given)
+      if (named%find(given(k)%id) > 0 .or. first%find(given(k)%id) /= k) cycle
+      associate (card => given(k)%card)
+        call found%add_note(card(1), card(2), card(3), ': no '//by//' names '//text_of(given(k)%id))
       end associate
     end do
-  end subroutine note_unused
+  end subroutine note_unnamed
 
   !> Read SPC and SUPORT: nodes, each with its directions in the next field.
   function nodes_of_fields(deck, card, columns, nodes, found) result(named)

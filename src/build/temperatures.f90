@@ -2,7 +2,7 @@
 module epcont_build_temperatures
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of
-  use epcont_build_reference, only: card_index, check_choices, resolve
+  use epcont_build_reference, only: card_index, check_choices, note_unnamed, resolve
   use epcont_deck_card_kinds, only: card_grid, card_temp, card_tempd
   use epcont_deck_deck, only: deck_type
   use epcont_model_arrays, only: scene_type
@@ -42,7 +42,8 @@ contains
                            'TEMPERATURE', 'the deck has no such set', &
                            'give the set of TEMP or TEMPD cards in the deck', found)
     end associate
-    call note_unused(deck, cases%heat%set, found)
+    call note_unnamed(deck, [card_temp], [1], cases%heat%set, 'load case', found)
+    call note_unnamed(deck, [card_tempd], [1, 3, 5, 7], cases%heat%set, 'load case', found)
 
   contains
 
@@ -156,28 +157,4 @@ contains
       end do
     end do
   end function expanding_nodes
-
-  !> Note each set that no load case chooses.
-  pure subroutine note_unused(deck, used, found)
-    type(deck_type), intent(in) :: deck       !! its cards
-    integer, intent(in) :: used(:)            !! ids of sets
-    type(findings), intent(inout) :: found    !! notes are added
-    integer, parameter :: card(2) = [card_temp, card_tempd]
-    integer, allocatable :: heard(:)
-    integer :: c, i, k
-
-    if (deck%is_part()) return   ! other parts of the history use them
-    heard = used
-    do c = 1, size(card)
-      associate (table => deck%card(card(c)))
-        do i = 1, table%count
-          do k = 1, merge(1, size(table%value, 1), card(c) == card_temp), 2
-            if (.not. table%given(k, i) .or. any(heard == nint(table%value(k, i)))) cycle
-            heard = [heard, nint(table%value(k, i))]
-            call found%add_note(card(c), i, k, ': set '//text_of(heard(size(heard)))//' not used')
-          end do
-        end do
-      end associate
-    end do
-  end subroutine note_unused
 end module epcont_build_temperatures

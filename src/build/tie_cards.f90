@@ -2,10 +2,10 @@
 !> moments (MOMENT); equations (MPC, MPCADD); springs (CELAS1, CELAS2, PELAS).
 module epcont_build_tie_cards
   use epcont_base_kinds, only: wp
-  use epcont_base_sorting, only: id_index, new_id_index
+  use epcont_base_sorting, only: new_id_index
   use epcont_base_text, only: text_of
   use epcont_build_reference, only: card_index, check_combinations, chosen_sets, named_node, &
-      nodes_of_fields, note_unused, resolve
+      nodes_of_fields, note_unnamed, resolve
   use epcont_deck_card_kinds, only: card_celas1, card_celas2, card_grid, card_moment, card_mpc, card_mpcadd, &
       card_pelas, card_rbe2, card_spc, card_spcd, card_suport
   use epcont_deck_deck, only: deck_type
@@ -130,12 +130,9 @@ contains
     allocate (moment(0))
     associate (cards => deck%card(card_moment))
       do i = 1, cards%count
-        if (node(i) == 0 .or. all(loads /= nint(cards%value(1, i)))) cycle
+        if (node(i) == 0 .or. all(loads /= nint(cards%value(1, i))) .or. .not. cards%sound(i)) cycle
         platen = findloc(data%platen%leader, node(i), dim=1)
-        if (any([cards%number('N1', i), cards%number('N2', i)] /= 0.0_wp)) then
-          call found%add_error(card_moment, i, cards%column('N1'), ': the moment is not about z', &
-                               'write 0.0 for N1 and N2'//in_plane)
-        else if (cards%number('N3', i) == 0.0_wp) then
+        if (cards%number('N3', i) == 0.0_wp) then
           call found%add_error(card_moment, i, cards%column('N3'), ': field 8 (N3) is 0.0: no direction', &
                                'write 1.0, or -1.0 for clockwise')
         else if (platen == 0) then
@@ -172,8 +169,8 @@ contains
         sets = [sets, sums%list(sums%list_start(i):sums%list_start(i + 1) - 1)%from]
       end do
     end associate
-    call note_unused(deck, [card_mpc], sets, found)
-    call note_unused(deck, [card_mpcadd], set, found)
+    call note_unnamed(deck, [card_mpc], [1], sets, 'load case', found)
+    call note_unnamed(deck, [card_mpcadd], [1], set, 'load case', found)
     card = pack([(i, i=1, deck%card(card_mpc)%count)], &
                 [(any(sets == nint(deck%card(card_mpc)%value(1, i))), i=1, deck%card(card_mpc)%count)])
     deallocate (data%equation)
@@ -230,44 +227,28 @@ contains
     type(card_index), intent(in) :: nodes      !! ids of GRID
     type(scene_type), intent(inout) :: data    !! gets the springs
     type(findings), intent(inout) :: found     !! errors are added
-    type(id_index) :: properties
+    type(card_index) :: properties
+    integer :: property(deck%card(card_celas1)%count)
     real(wp), allocatable :: stiffness(:)      ! of the properties
-    integer :: i
 
-    associate (pelas => deck%card(card_pelas))
-      properties = new_id_index(int([pelas%value(1, :), pelas%value(5, :)]))
+    associate (pelas => deck%card(card_pelas))   ! a card may have two properties
+      properties = card_index(new_id_index(int([pelas%value(1, :), pelas%value(5, :)])), 'PELAS', &
+                              deck%whole .and. all(pelas%sound))
       stiffness = [pelas%value(2, :), pelas%value(6, :)]
-      call check_properties(pelas%count)
     end associate
+    call resolve(deck, card_celas1, 2, properties, found, property)
     call read_table(card_celas1)
     call read_table(card_celas2)
 
   contains
 
-    !> Check properties. A card may have two, each with its own id.
-    subroutine check_properties(cards)
-      integer, intent(in) :: cards
-      integer :: at
-
-      do i = 1, 2*cards
-        associate (column => merge(1, 5, i <= cards), row => merge(i, i - cards, i <= cards))
-          if (.not. deck%card(card_pelas)%given(column, row)) cycle
-          at = findloc(int([deck%card(card_pelas)%value(1, :), deck%card(card_pelas)%value(5, :)]), &
-                       int(deck%card(card_pelas)%value(column, row)), dim=1)
-          if (at < i) call found%add_error(card_pelas, row, column, ': the id '// &
-            text_of(nint(deck%card(card_pelas)%value(column, row)))//' is taken by another PELAS', &
-            'give it an id of its own')
-        end associate
-      end do
-    end subroutine check_properties
-
-    !> Read the cards of one type. A spring is left out if a node was not found.
+    !> Read the cards of one type. A spring is left out if a node or its property was not found.
     subroutine read_table(card)
       integer, intent(in) :: card
       integer, parameter :: first = 3   ! column of nodes and directions
       integer, dimension(deck%card(card)%count) :: a, b
       type(spring_type) :: spring
-      integer :: end, property
+      integer :: end, i
 
       call resolve(deck, card, first, nodes, found, a)
       call resolve(deck, card, first + 2, nodes, found, b)
@@ -277,11 +258,8 @@ contains
           spring = spring_type(nint(table%value([first + 1, first + 3], i)), [a(i), b(i)], &
                                table%value(2, i), int(table%value(1, i)))
           if (card == card_celas1) then
-            property = properties%find(nint(table%value(2, i)))
-            if (property == 0) call found%add_error(card, i, 2, ': there is no PELAS '// &
-              text_of(nint(table%value(2, i))), 'give the id of a PELAS')
-            if (property == 0) cycle
-            spring%stiffness = stiffness(property)
+            if (property(i) == 0) cycle
+            spring%stiffness = stiffness(property(i))
           end if
           if (any(spring%node == 0 .and. nint(table%value([first, first + 2], i)) > 0)) cycle
           data%spring = [data%spring, spring]

@@ -5,13 +5,12 @@ module epcont_deck_bulk
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of, upper
   use epcont_deck_card, only: card_fields, continues, find_name, gather
-  use epcont_deck_card_kinds, only: card_kinds, card_mat1, card_param
+  use epcont_deck_card_kinds, only: card_kinds, card_param
   use epcont_deck_card_reader, only: read_card
   use epcont_deck_case_control, only: keyword
   use epcont_deck_catalogue, only: catalogue, parameters
-  use epcont_deck_entry, only: card_entry, field_entry, kind_any, kind_word, listed
+  use epcont_deck_entry, only: card_entry, field_entry, kind_word
   use epcont_deck_field, only: scan_sound, scan_word
-  use epcont_deck_former, only: report_former
   use epcont_deck_refused, only: refused_card
   use epcont_deck_source, only: source
   use epcont_deck_spelling, only: suggestion
@@ -26,10 +25,9 @@ module epcont_deck_bulk
 contains
 
   !> Read the cards, beginning with line `first`.
-  subroutine read_bulk(lines, first, heated, table, faults)
+  subroutine read_bulk(lines, first, table, faults)
     type(source), intent(in) :: lines   !! of the deck
     integer, intent(in) :: first                              !! first line after case control
-    logical, intent(in) :: heated                             !! temperatures have an effect
     type(card_table), allocatable, intent(out) :: table(:)    !! cards of each kind [card_kinds]
     type(diagnostics), intent(inout) :: faults   !! errors and notes are added
     type(card_entry) :: entry(card_kinds)
@@ -42,17 +40,12 @@ contains
     integer :: errors, k, line
 
     entry = catalogue()
-    associate (field => entry(card_mat1)%field)
-      field%used = field%used .and. (heated .or. field%name /= 'A' .and. field%name /= 'TREF')
-    end associate
     names = entry%name
     parameter_entry = parameters()
     call find_kinds(lines, first, names, kind)
     begun = new_incidence(kind, unknown_card)
-    call note_without_cards(parameter_entry)
     allocate (table(card_kinds))
     do k = 1, card_kinds
-      call note_without_cards(entry(k)%field)
       call table(k)%begin(entry(k), begun%of(k))
     end do
     next = 1
@@ -75,20 +68,6 @@ contains
     do k = 1, card_kinds
       call note_fields(lines, table(k), faults)
     end do
-
-  contains
-
-    !> Mark the fields that have no effect because the deck has no card of certain names.
-    pure subroutine note_without_cards(field)
-      type(field_entry), intent(inout) :: field(:)
-      integer :: i, k
-
-      do i = 1, size(field)
-        if (field(i)%with_cards /= '') &
-          field(i)%used = any([(begun%start(k + 1) > begun%start(k) .and. &
-                                index(field(i)%with_cards, '/'//trim(names(k))//'/') > 0, k=1, card_kinds)])
-      end do
-    end subroutine note_without_cards
   end subroutine read_bulk
 
   !> Find the kind of the card that begins on each line. Cards with the same name are usually consecutive.
@@ -97,46 +76,29 @@ contains
     integer, intent(in) :: first
     character(len=*), intent(in) :: names(:)
     integer, allocatable, intent(inout) :: kind(:, :)
-    character(len=8) :: text, before
-    logical :: is_first
-    integer :: i, found
+    character(len=8) :: name, before
+    logical :: is_first, large
+    integer :: at, comma, found, from, to
 
     allocate (kind(1, lines%count), source=no_card)
     is_first = .true.
     before = ''
     found = unknown_card   ! a card without a name
-    do i = first, lines%count
-      associate (line => lines%line(i))
-        if (line%last < line%first) cycle
-        if (.not. is_first) then
-          if (continues(lines%text(line%first:line%last))) cycle
-        end if
+    do at = first, lines%count
+      if (lines%blank(at)) cycle
+      associate (text => lines%text(lines%line(at)%first:lines%line(at)%last))
+        if (continues(text) .and. .not. is_first) cycle
         is_first = .false.
-        text = lines%text(line%first:min(line%last, line%first + 7))
-        if (line%special <= line%last) then   ! with a comma, the name may be longer
-          found = kind_of(names, lines%text(line%first:line%last))
-          before = ''
-        else if (text /= before) then
-          found = kind_of(names, text)
-          before = text
-        end if
-        kind(1, i) = found
+        comma = 0
+        if (lines%line(at)%special <= lines%line(at)%last) comma = index(text, ',')
+        call find_name(text, comma, from, to, large)
+        name = text(from:min(to, from + 7))
+        if (name /= before) found = findloc([names, upper(name)] == upper(name), .true., dim=1)
+        before = name
+        kind(1, at) = found
       end associate
     end do
   end subroutine find_kinds
-
-  !> The kind of the card that begins on a line.
-  pure integer function kind_of(names, text)
-    character(len=*), intent(in) :: names(:), text
-    character(len=8) :: name
-    integer :: first, last
-    logical :: large
-
-    call find_name(text, index(text, ','), first, last, large)
-    name = upper(text(first:min(last, first + 7)))
-    kind_of = findloc(names == name, .true., dim=1)
-    if (kind_of == 0) kind_of = unknown_card
-  end function kind_of
 
   !> Report a card whose name is not in the catalogue.
   subroutine refuse_name(first, card, names, faults)
@@ -159,9 +121,6 @@ contains
       return
     end if
     remedy = suggestion(name, names, 'epcont --cards lists the cards that are read')
-    if (name == 'CQUAD9' .or. name == 'CQUAD') remedy = 'use CTRIA6, CQUAD4 or CQUAD8'
-    if (name == 'MATT1' .or. index(name, 'TABLEM') == 1) &
-      remedy = 'use MAT1: moduli do not depend on temperature'
     if (any(names == word)) remedy = 'use fields of 8 columns, or commas'
     if (first == 1 .and. any(keyword == word) .or. word == 'BEGIN') &
       remedy = 'write one line BEGIN BULK after case control'
@@ -177,45 +136,24 @@ contains
     type(diagnostics), intent(inout) :: faults
     character(len=8) :: word
     integer :: outcome, i
-    logical :: is_former
 
     value_entry = field_entry('VALUE', kind_word, required=.true.)
     if (.not. card%filled(1)) return
     call scan_word(card%text(card%slot(1)%first:card%slot(1)%last), word, outcome)
     if (outcome /= scan_sound) return
-    call report_former(card, trim(word), faults, is_former)
-    if (is_former) value_entry = field_entry('VALUE', kind_any)
-    if (is_former) return
     i = findloc(parameter_entry%name == word, .true., dim=1)
     if (i > 0) then
       value_entry = parameter_entry(i)
       value_entry%name = 'VALUE'
       value_entry%used = .true.
       if (.not. parameter_entry(i)%used) &
-        call faults%add_note(card%place(1), &
-                             'PARAM '//trim(word)//' has no effect'//without(parameter_entry(i)))
+        call faults%add_note(card%place(1), 'PARAM '//trim(word)//' has no effect')
     else
       call faults%add_error(card%place(1), 'unknown parameter '//trim(word), &
                             suggestion(word, parameter_entry%name, &
                                        'epcont --cards PARAM lists the parameters'))
     end if
   end subroutine choose_parameter
-
-  !> ` without GRAV or RFORCE`: cards without which a field has no effect; empty if the field does not depend
-  !! on cards.
-  pure function without(field) result(text)
-    type(field_entry), intent(in) :: field
-    character(len=:), allocatable :: text
-    integer :: k
-
-    text = ''
-    if (field%with_cards == '') return
-    text = field%with_cards(2:index(field%with_cards, '/', back=.true.) - 1)
-    do k = 1, len(text)
-      if (text(k:k) == '/') text(k:k) = ' '
-    end do
-    text = ' without '//listed(text)
-  end function without
 
   !> Report once each field that is filled but has no effect.
   subroutine note_fields(lines, cards, faults)

@@ -6,9 +6,9 @@ module epcont_deck_card_reader
   use epcont_base_text, only: short_real, text_of, upper
   use epcont_deck_card, only: card_fields
   use epcont_deck_entry, only: farthest, field_entry, kind_blank, kind_components, kind_integer, kind_real, &
-      kind_word, largest_id, number_of
+      kind_word, largest_id, least_cause, number_of
   use epcont_deck_field, only: scan_components, scan_integer, scan_malformed, scan_no_point, scan_real, &
-      scan_sound, scan_too_large, scan_too_long, scan_too_small, scan_word
+      scan_sound, scan_too_far, scan_too_long, scan_word
   use epcont_deck_table, only: card_table, list_item
   implicit none
   private
@@ -18,8 +18,8 @@ module epcont_deck_card_reader
   type(field_entry), parameter :: &
     id = field_entry(kind=kind_integer, lowest=1.0_wp, highest=real(largest_id, wp))
 
-  !> Errors of range, in addition to the outcomes of a scan.
-  integer, parameter :: out_of_range = -1, out_of_reach = -2
+  !> Error of range, in addition to the outcomes of a scan.
+  integer, parameter :: out_of_range = -1
   !> Contents of fields, by their kinds.
   character(len=*), parameter :: noun(4) = [character(len=20) :: &
     'a whole number', 'a real number', 'a list of directions', 'a word']
@@ -147,7 +147,7 @@ contains
         value%outcome = out_of_range
       else if (entry%kind == kind_real .and. entry%used) then   ! integers are always within reach
         if (abs(number) > farthest .or. (number /= 0.0_wp .and. abs(number) < entry%least)) &
-          value%outcome = out_of_reach
+          value%outcome = scan_too_far
       end if
     end associate
   end subroutine read_value
@@ -350,18 +350,11 @@ contains
       last = verify(text(2:)//'.', '0123456789')   ! last of its digits
       remedy = 'add the decimal point: '//text(:last)//'.'//text(last + 1:)
       if (last == len(text)) remedy = remedy//'0'
-    case (scan_too_large)
-      what = 'is too large for a number'
-      if (entry%kind == kind_real) remedy = 'give at most 1.0E+30'
-    case (scan_too_small)
-      what = 'is too small for a number'
-      remedy = 'give 0.0, or at least 2.226E-308'
-    case (out_of_reach)
+    case (scan_too_far)
       what = 'is too far from 1.0'
-      remedy = 'use other units: magnitudes'
-      if (entry%least > 0.0_wp) remedy = remedy//' from '//short_real(entry%least)
-      remedy = remedy//' to '//short_real(farthest)
-      if (entry%least > 0.0_wp .and. .not. entry%above_lowest) remedy = remedy//', or 0.0'
+      remedy = 'use other units: magnitudes from '//short_real(max(entry%least, least_cause))//' to '// &
+               short_real(farthest)
+      if (.not. entry%above_lowest) remedy = remedy//', or 0.0'
     case (scan_too_long)
       what = 'has more than 8 characters'
     case (scan_malformed)

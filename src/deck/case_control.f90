@@ -77,11 +77,12 @@ contains
     logical :: stated(size(keyword))
     type(statement) :: parts
     type(subcase_control) :: common, now   ! statements before the first SUBCASE, and of the current load case
+    type(subcase_control), allocatable :: subcase(:)   ! [cases or more]
     integer :: cases, line
     logical :: goes_on   ! the list of a statement without effect goes on in the next line
 
     bulk = behind_begin_bulk(lines)
-    allocate (control%subcase(max(1, count([(is_subcase(lines, line), line=1, bulk - 2)]))))
+    allocate (subcase(bulk))
     control%title = ''
     control%restart = ''
     now%subtitle = ''
@@ -98,7 +99,8 @@ contains
       if (goes_on .or. parts%word == '') cycle
       call take_statement()
     end do
-    control%subcase(max(1, cases)) = now
+    subcase(max(1, cases)) = now
+    control%subcase = subcase(:max(1, cases))
 
   contains
 
@@ -119,12 +121,8 @@ contains
           call faults%add_error(parts%value_place, 'CEND takes no value', 'remove it')
       case ('CNTNLSUB')
         control%sequence = place_type()
-        if (len(parts%value) == 0 .or. upper(parts%value) == 'YES') then
-          control%sequence = parts%word_place
-        else if (upper(parts%value) /= 'NO') then
-          call refuse(parts, 'a word', ' known to epcont', &
-                      'give NO or YES: a list of SUBCASEs (SID) is not supported', faults)
-        end if
+        if (len(parts%value) == 0) parts%value = 'YES'
+        if (says(parts, 'YES', 'NO', faults)) control%sequence = parts%word_place
       case ('RESTART')
         control%restart = trim(parts%value)
         if (scan(parts%value, '''"') == 1) control%restart = parts%value(2:len(parts%value) - 1)
@@ -148,7 +146,8 @@ contains
         if (any(parts%option == [character(len=6) :: '', '(LOAD)', '(BOTH)'])) then
           call take_set(parts, now%temperature, faults)
         else
-          call refuse_option(parts, faults)
+          call faults%add_error(parts%option_place, 'TEMPERATURE'//parts%option//' is not supported', &
+                                'use TEMPERATURE(LOAD), and TREF of MAT1 for the unloaded bodies')
         end if
       case ('MPC')
         call take_set(parts, now%mpc, faults)
@@ -165,11 +164,11 @@ contains
         if (all(words /= [' UNSORT', ' SORT  ', ' BOTH  ', ' NONE  '])) &
           call faults%add_note(parts%value_place, 'ECHO: only UNSORT, SORT and BOTH have an effect')
       case ('DISPLACEMENT')
-        now%displacement = says_all(parts, faults)
+        now%displacement = says(parts, 'ALL', 'NONE', faults)
       case ('STRESS')
-        now%stress = says_all(parts, faults)
+        now%stress = says(parts, 'ALL', 'NONE', faults)
       case ('SPCFORCES')
-        now%spcforces = says_all(parts, faults)
+        now%spcforces = says(parts, 'ALL', 'NONE', faults)
       case ('NLPARM')
         call take_set(parts, now%nlparm, faults)
       end select
@@ -178,12 +177,12 @@ contains
     !> Begin a load case. Statements before the first SUBCASE apply to it too.
     subroutine begin_subcase()
       if (cases == 0) common = now
-      if (cases > 0) control%subcase(cases) = now
+      if (cases > 0) subcase(cases) = now
       now = common
       cases = cases + 1
       call take_number(parts, now%id, faults)
       now%place = parts%word_place
-      if (now%id > 0 .and. any(control%subcase(:cases - 1)%id == now%id)) call faults%add_error( &
+      if (now%id > 0 .and. any(subcase(:cases - 1)%id == now%id)) call faults%add_error( &
         parts%value_place, 'SUBCASE '//text_of(now%id)//' is used twice', 'use another number')
       stated(first_own:) = .false.
     end subroutine begin_subcase
@@ -229,27 +228,16 @@ contains
     call take_number(parts, set%id, faults)
   end subroutine take_set
 
-  !> Is the value ALL? Report an error if it is neither ALL nor NONE.
-  logical function says_all(parts, faults)
+  !> Is the value the word `yes`? Report an error if it is neither this nor `no`.
+  logical function says(parts, yes, no, faults)
     type(statement), intent(in) :: parts
+    character(len=*), intent(in) :: yes, no
     type(diagnostics), intent(inout) :: faults
 
-    says_all = upper(parts%value) == 'ALL'
-    if (.not. says_all .and. upper(parts%value) /= 'NONE') &
-      call refuse(parts, 'a word', ' known to epcont', 'give ALL or NONE', faults)
-  end function says_all
-
-  !> Report a TEMPERATURE statement whose option is not LOAD.
-  subroutine refuse_option(parts, faults)
-    type(statement), intent(in) :: parts
-    type(diagnostics), intent(inout) :: faults
-    character(len=:), allocatable :: remedy
-
-    remedy = 'use TEMPERATURE(LOAD)'
-    if (index(parts%option, '(INI') == 1) remedy = 'use TREF of MAT1: the temperature of the unloaded bodies'
-    if (index(parts%option, '(MAT') == 1) remedy = 'use MAT1: moduli do not depend on temperature'
-    call faults%add_error(parts%option_place, 'TEMPERATURE'//parts%option//' is not supported', remedy)
-  end subroutine refuse_option
+    says = upper(parts%value) == yes
+    if (.not. says .and. upper(parts%value) /= no) &
+      call refuse(parts, 'a word', ' known to epcont', 'give '//yes//' or '//no, faults)
+  end function says
 
   !> Check that a statement is known and given once; its options have no effect.
   subroutine check_word(now, faults, stated, parts)
@@ -257,6 +245,7 @@ contains
     type(diagnostics), intent(inout) :: faults
     logical, intent(inout) :: stated(:)
     type(statement), intent(inout) :: parts
+    character(len=:), allocatable :: words
     integer :: k
 
     k = findloc(keyword == parts%word, .true., dim=1)
@@ -267,8 +256,12 @@ contains
       return
     end if
     if (k == 0) then
+      words = ''
+      do k = 1, size(keyword)
+        words = words//' '//trim(keyword(k))
+      end do
       call faults%add_error(parts%word_place, 'unknown case control statement '//parts%word, &
-        suggestion(parts%word, keyword, listed(all_keywords())))
+                            suggestion(parts%word, keyword, listed(words(2:))))
       return
     end if
     if (stated(k)) &
@@ -287,29 +280,6 @@ contains
     is_idle = any(idle == word)
     if (len(word) > 3) is_idle = is_idle .or. any(index(idle, word) == 1)
   end function is_idle
-
-  !> Does a load case begin on a line?
-  logical function is_subcase(lines, line)
-    type(source), intent(in) :: lines
-    integer, intent(in) :: line
-    type(statement) :: parts
-
-    is_subcase = .false.
-    if (lines%blank(line)) return
-    parts = cut(lines%text_of_line(line), line)
-    is_subcase = len(parts%word) > 3 .and. index('SUBCASE', parts%word) == 1
-  end function is_subcase
-
-  !> All keywords, separated by blanks.
-  pure function all_keywords() result(words)
-    character(len=:), allocatable :: words
-    integer :: k
-
-    words = trim(keyword(1))
-    do k = 2, size(keyword)
-      words = words//' '//trim(keyword(k))
-    end do
-  end function all_keywords
 
   !> Number of the line after BEGIN BULK; 1 if there is no such line.
   pure integer function behind_begin_bulk(lines) result(bulk)

@@ -17,7 +17,7 @@ module epcont_deck_catalogue
     '  CP; system only_zero; system of X1 to X3: the basic one', &
     '  X1; real zero point_optional; coordinate x [length]', &
     '  X2; real zero point_optional; coordinate y [length]', &
-    '  X3; real zero point_optional; coordinate z; 0.0 in plane models [length]', &
+    '  X3; real only_zero point_optional; coordinate z [length] | models are in the x-y plane', &
     '  CD; system only_zero; system of the displacements: the basic one', &
     '  PS; digits optional; permanent supports', &
     'CTRIA3: constant-strain triangle', &
@@ -32,7 +32,7 @@ module epcont_deck_catalogue
     '  T; real needed positive; thickness [length]', &
     '  MID2; whole from=-1 to=99999999 heard_to=-1; -1: plane strain; else as PARAM PLANE says', &
     '  ; any ignored times=3; bending', &
-    '  NSM; real for=GRAV/RFORCE; non-structural mass of a unit of area', &
+    '  NSM; real; non-structural mass of a unit of area', &
     '  ; any ignored times=3; bending', &
     'MAT1: isotropic elastic material; two of E, G, NU', &
     '  MID; id; material', &
@@ -40,7 +40,7 @@ module epcont_deck_catalogue
     '  G; real positive; shear modulus [stress]', &
     '  NU; real from=0 below=0.5 instead=0.4999; Poisson''s ratio | incompressible: the bulk'// &
     ' modulus is infinite', &
-    '  RHO; real for=GRAV/RFORCE; density', &
+    '  RHO; real; density', &
     '  A; real cause zero; thermal expansion: strain by one degree', &
     '  TREF; real zero; temperature without thermal strain', &
     '  GE; real ignored; damping', &
@@ -67,7 +67,7 @@ module epcont_deck_catalogue
     '  F; real needed cause; factor [force]', &
     '  N1; real zero; direction x', &
     '  N2; real zero; direction y', &
-    '  N3; real zero; direction z; 0.0 in plane models', &
+    '  N3; real only_zero; direction z | models are in the x-y plane', &
     'PLOADX1: pressure on the edge of an element', &
     '  SID; id; set', &
     '  EID; id; element', &
@@ -226,14 +226,14 @@ module epcont_deck_catalogue
     '  A; real needed cause; factor: acceleration', &
     '  N1; real zero; direction x; 0.0 in axisymmetric models', &
     '  N2; real zero; direction y', &
-    '  N3; real zero; direction z; 0.0 in plane models', &
+    '  N3; real only_zero; direction z | models are in the x-y plane', &
     '  MB; whole from=-1 to=0 ignored; of superelements', &
     'RFORCE: centrifugal forces of a rotation, on all mass', &
     '  SID; id; set', &
     '  G; system; node that the axis goes through; 0 or blank: the origin', &
     '  CID; system only_zero; system of R1 to R3: the basic one', &
     '  A; real zero cause; factor: revolutions in a unit of time', &
-    '  R1; real zero; axis x; 0.0', &
+    '  R1; real only_zero; axis x | plane models rotate about z, axisymmetric models about y', &
     '  R2; real zero; axis y; axis of axisymmetric models', &
     '  R3; real zero; axis z; axis of plane models', &
     '  METHOD; whole from=1 to=2 ignored; forces act on the undeformed mass', &
@@ -245,8 +245,8 @@ module epcont_deck_catalogue
     '  G; id; node', &
     '  CID; system only_zero; system of N1 to N3: the basic one', &
     '  M; real needed cause; factor [force*length]', &
-    '  N1; real zero; direction x; 0.0 in plane models', &
-    '  N2; real zero; direction y; 0.0 in plane models', &
+    '  N1; real only_zero; direction x | models are in the x-y plane', &
+    '  N2; real only_zero; direction y | models are in the x-y plane', &
     '  N3; real zero; direction z', &
     'MPC: equation, sum of A times displacement = 0; the first DOF depends on the others', &
     '  SID; id; set', &
@@ -285,9 +285,9 @@ module epcont_deck_catalogue
     '  ID; id; parameters', &
     '  NINC; whole from=1 to=10000 default=1; increments, of equal size', &
     '  ; any ignored times=3; time and stiffness updates', &
-    '  MAXITER; whole from=1 to=100000 for=MATS1; iterations of an increment; default PARAM MAXIT', &
+    '  MAXITER; whole from=1 to=100000; iterations of an increment; default PARAM MAXIT', &
     '  ; any ignored times=2; tests of convergence, output', &
-    '  EPSU; real positive below=1 for=MATS1; instead of PARAM TOL', &
+    '  EPSU; real positive below=1; instead of PARAM TOL', &
     '  ; any ignored times=15; other tests, line search, step control', &
     'BFRIC: friction of a BCONP', &
     '  FID; id; friction', &
@@ -299,41 +299,41 @@ module epcont_deck_catalogue
 
   !> PARAMs: the field VALUE for each NAME.
   character(len=*), parameter :: choices(*) = [character(len=180) :: &
-    'PLANE; for=PSHELL word STRAIN STRESS; every PSHELL with blank MID2', &
-    'RULE; for=CGAP/BCONP word AUTO CONRY JOINED; contact solver: AUTO, simplex (CONRY), all bodies'// &
-    ' in one system (JOINED); default AUTO', &
-    'GAPGEOM; for=CGAP word NO YES; YES adds the distance of the nodes to each gap; default NO', &
+    'PLANE; word STRAIN STRESS; every PSHELL with blank MID2', &
+    'RULE; word AUTO CONRY JOINED BLOCK; contact solver: AUTO, simplex (CONRY), all bodies in one'// &
+    ' system (JOINED); BLOCK of earlier versions means AUTO; default AUTO', &
+    'GAPGEOM; word NO YES; YES adds the distance of the nodes to each gap; default NO', &
     'UNITS; word; printed with the results; nothing is converted', &
-    'METHOD; for=MATS1 word AUTO SECANT MODSEC INISTR NEWTON; plastic iteration; default AUTO', &
-    'TOL; real positive below=1 for=MATS1; largest change of displacements, over the largest, that'// &
+    'METHOD; word AUTO SECANT MODSEC INISTR NEWTON; plastic iteration; default AUTO', &
+    'TOL; real positive below=1; largest change of displacements, over the largest, that'// &
     ' ends the iteration; default 0.01, for NEWTON 1.E-8', &
-    'MAXIT; whole from=1 to=100000 for=MATS1; iterations of a load step; default 100', &
-    'THEORY; for=MATS1 word TOTAL FLOW; plasticity: stresses follow from the strains at full load'// &
+    'MAXIT; whole from=1 to=100000; iterations of a load step; default 100', &
+    'THEORY; word TOTAL FLOW; plasticity: stresses follow from the strains at full load'// &
     ' (TOTAL), or increment by increment (FLOW); default FLOW with a sequence or HR 2, 3', &
-    'HRFRAC; real positive to=1 for=MATS1; kinematic part of the hardening, for HR 3', &
-    'MUP; for=MATS1 word EXACT PAPER; Poisson''s ratio in the equivalent strain: exact, or formula'// &
+    'HRFRAC; real positive to=1; kinematic part of the hardening, for HR 3', &
+    'MUP; word EXACT PAPER; Poisson''s ratio in the equivalent strain: exact, or formula'// &
     ' (2-4); default EXACT', &
     'ORIGINAL; word NO YES; methods of about 1980: SOLVER BAND, RULE CONRY, METHOD'// &
     ' SECANT, TOL 0.01, NLOAD 1, THEORY TOTAL, MUP PAPER, no ACCURACY; default NO', &
-    'NLOAD; whole from=1 to=10000 for=MATS1/PGAP/BFRIC; load steps; default 1', &
+    'NLOAD; whole from=1 to=10000; load steps; default 1', &
     'SAVE; word NO YES; YES saves the end of the last load case in DECK.restart, from which'// &
     ' another deck continues (RESTART); default NO', &
-    'SEARCH; real positive for=BCONP; search distance of BCONP; default twice the longest'// &
+    'SEARCH; real positive; search distance of BCONP; default twice the longest'// &
     ' edge of the two lines [length]', &
     'SOLVER; word AUTO BAND FRONTAL; matrices of the bodies: panels of a band, or nested fronts;'// &
     ' default AUTO', &
     'ACCURACY; real positive below=1; wanted relative error of contact pressures: sets TOL and METHOD'// &
     ' if they are left out', &
-    'CORNER; real positive to=180 for=BCONP; edges of a boundary line with a larger angle between them'// &
+    'CORNER; real positive to=180; edges of a boundary line with a larger angle between them'// &
     ' meet at a corner; default: decided from the neighbouring angles [degree]', &
-    'FRICTION; for=CGAP/BCONP word YES NO; NO: all contact without friction; default YES', &
-    'WTMASS; real positive for=GRAV/RFORCE; factor of all mass: of RHO and NSM; default 1.0', &
+    'FRICTION; word YES NO; NO: all contact without friction; default YES', &
+    'WTMASS; real positive; factor of all mass: of RHO and NSM; default 1.0', &
     'LGDISP; whole from=-1 to=-1 ignored; no effect | displacements are small', &
     'INREL; whole only_zero ignored; no effect | supports and contact hold bodies']
-  !> PARAMs of other programs that have no effect here.
+  !> PARAMs of other programs, and of earlier versions, that have no effect.
   character(len=*), parameter :: unheard(*) = [character(len=8) :: &
-    'AUTOSPC', 'BAILOUT', 'COUPMASS', 'GRDPNT', 'K6ROT', 'MAXRATIO', 'NOCOMPS', 'OGEOM', 'POST', 'PRGPST', &
-    'PRTMAXIM']
+    'AUTOSPC', 'BAILOUT', 'COUPMASS', 'FLEXIB', 'GRDPNT', 'K6ROT', 'MAXRATIO', 'NOCOMPS', 'OGEOM', 'POST', &
+    'PRECIS', 'PRGPST', 'PRTMAXIM']
 
 contains
 

@@ -44,8 +44,7 @@ contains
     if (allocated(error)) return
     deck%whole = faults%errors == 0
     call read_case_control(deck%source, deck%case_control, bulk, faults)
-    call read_bulk(deck%source, bulk, any(deck%subcase%temperature%id > 0) .or. deck%restart /= '', &
-                   deck%card, faults)
+    call read_bulk(deck%source, bulk, deck%card, faults)
     if (.not. deck%source%ended) call check_end(deck, faults)
   end subroutine read_deck
 

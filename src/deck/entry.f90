@@ -28,7 +28,6 @@ module epcont_deck_entry
     character(len=8) :: unit = ''
     logical :: used = .true.           !! false: ignored, that is, accepted without effect
     real(wp) :: heard_to = huge(1.0_wp)   !! larger values are ignored too
-    character(len=24) :: with_cards = ''  !! ignored without one of these cards (separated by `/`)
     logical :: required = .false.      !! a blank field is an error
     integer :: with(2) = 0             !! required if the previous (-1) or next (1) field is filled
     integer :: same_as = 0             !! a blank field has the value of the previous field (-1)
@@ -122,8 +121,8 @@ contains
   !! `id` (at least 1), a `system` (0 or an id), a `whole` number, a `real`, `digits` (directions 1 to 6), a
   !! `word` (one of the listed words, if there are any), `any`, or `blank`. Attributes follow in any order:
   !! limits (`from=`, `to=`, or `below=`, with a valid value `instead=`); `positive`; `only_zero` (0 or
-  !! blank); `cause` (a load of the model); `ignored` (checked only; also above `heard_to=`, or without
-  !! one of the cards `for=`); `point_optional`. A blank means `zero`, `default=`, or the value of the
+  !! blank); `cause` (a load of the model); `ignored` (checked only; also above `heard_to=`);
+  !! `point_optional`. A blank means `zero`, `default=`, or the value of the
   !! previous field (`as_last`). A blank is allowed for ids and digits if they are `optional` or their
   !! neighbour (`with_next`, `with_last`) is blank, and for numbers unless they are `needed`. `times=` repeats
   !! the field. The catalogue itself reads `each`.
@@ -161,7 +160,7 @@ contains
       real(wp) :: number   ! number after the word
 
       equals = index(word//'=', '=')
-      if (equals < len(word) .and. word(:equals - 1) /= 'for') read (word(equals + 1:), *) number
+      if (equals < len(word)) read (word(equals + 1:), *) number
       select case (word(:equals - 1))
       case ('id', 'system')
         field%kind = kind_integer
@@ -210,8 +209,6 @@ contains
         field%used = .false.
       case ('heard_to')
         field%heard_to = number
-      case ('for')
-        field%with_cards = '/'//word(equals + 1:)//'/'
       case ('point_optional')
         field%point_optional = .true.
       case ('as_last')

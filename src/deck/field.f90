@@ -12,9 +12,8 @@ module epcont_deck_field
     scan_sound = 0, &      !! a value
     scan_malformed = 1, &  !! not of the requested kind
     scan_no_point = 2, &   !! a real without its decimal point
-    scan_too_large = 3, &  !! beyond the largest number
-    scan_too_small = 4, &  !! a real that is not zero, but smaller than the smallest normal number
-    scan_too_long = 5      !! a word of more than eight characters
+    scan_too_far = 3, &    !! a real beyond the range of numbers
+    scan_too_long = 4      !! a word of more than eight characters
 
   !> Above this number another decimal digit might not fit an integer of eight bytes; 18 digits always fit.
   integer(i8), parameter :: full = 10_i8**17
@@ -22,9 +21,8 @@ module epcont_deck_field
   integer(i8), parameter :: exact_mantissa = 2_i8**53
   !> Powers of ten that are exact as reals: one product or quotient of two exact reals is rounded correctly.
   integer, parameter :: exact_power = 22
-  !> Decimal exponent of the largest real, and its first 17 digits.
-  integer, parameter :: largest_exponent = 308
-  integer(i8), parameter :: largest_digits = 17976931348623157_i8
+  !> Powers of ten with which 18 digits neither overflow nor lose digits near zero.
+  integer, parameter :: least_power = -307, largest_power = 290
   !> Exponents are not counted beyond this value.
   integer(i8), parameter :: endless_exponent = 100000
 
@@ -43,29 +41,23 @@ contains
   !> Scan an integer: a sign, then digits.
   pure subroutine scan_integer(text, number, outcome)
     character(len=*), intent(in) :: text  !! without leading or trailing blanks
-    integer(i8), intent(out) :: number   !! of the first digits, if there are too many
+    integer(i8), intent(out) :: number   !! the largest integer if there are too many digits
     integer, intent(out) :: outcome       !! one of the outcomes above
     integer :: at, first
     integer(i8) :: digit
-    logical :: too_large
 
     number = 0
     outcome = scan_malformed
     first = 1
     if (len(text) > 0) first = merge(2, 1, is_sign(text(1:1)))
     if (first > len(text)) return
-    too_large = .false.
     do at = first, len(text)
       digit = iachar(text(at:at), i8) - iachar('0')
       if (digit < 0 .or. digit > 9) return
-      if (number < full) then
-        number = 10*number + digit
-      else
-        too_large = .true.
-      end if
+      number = merge(10*min(number, full) + digit, huge(number), number < full)
     end do
     if (text(1:1) == '-') number = -number
-    outcome = merge(scan_too_large, scan_sound, too_large)
+    outcome = scan_sound
   end subroutine scan_integer
 
   !> Scan a real: `7.0`, `.7E1`, `0.7+1`, `7.-2`, `7.D0`. It needs a decimal point, and is rounded correctly.
@@ -74,6 +66,7 @@ contains
     real(wp), intent(out) :: number       !! set even if only the point is missing
     integer, intent(out) :: outcome       !! one of the outcomes above
     type(decimal) :: parts
+    character(len=len(text) + 8) :: clean
     integer :: k, power
     real(wp), parameter :: power_of_ten(0:exact_power) = [(10.0_wp**k, k=0, exact_power)]
 
@@ -90,44 +83,13 @@ contains
         number = number*power_of_ten(power)
       end if
       if (parts%negative) number = -number
-    else
-      call convert(number, outcome)
-    end if
-    if (outcome == scan_sound .and. parts%point == 0) outcome = scan_no_point
-
-  contains
-
-    !> Convert a mantissa with many digits or a large exponent with READ. Numbers that would overflow do not
-    !! reach READ, which would trap or return infinity.
-    pure subroutine convert(number, outcome)
-      real(wp), intent(out) :: number
-      integer, intent(out) :: outcome
-      character(len=len(text) + 8) :: clean
-      integer(i8) :: first_digits  ! 17 digits, padded with zeros
-      integer :: leading           ! exponent of the first digit
-      integer :: status
-
-      number = 0.0_wp
-      first_digits = parts%digits
-      leading = power + parts%dropped + 16
-      if (first_digits >= full) then
-        first_digits = first_digits/10
-        leading = leading + 1
-      end if
-      do while (first_digits < full/10)
-        first_digits = 10*first_digits
-        leading = leading - 1
-      end do
-      outcome = scan_too_large
-      if (leading > largest_exponent) return
-      if (leading == largest_exponent .and. first_digits > largest_digits) return
-      outcome = scan_too_small
-      if (leading < -largest_exponent) return
+    else if (power + parts%dropped < least_power .or. power + parts%dropped > largest_power) then
+      ! READ could trap or return infinity
+      outcome = scan_too_far
+    else   ! a mantissa with many digits, or a large exponent
       clean = text(:parts%mantissa_last)//'E'//text_of(parts%exponent)
-      read (clean, *, iostat=status) number
-      if (status /= 0) outcome = scan_malformed
-      if (abs(number) >= tiny(number)) outcome = scan_sound
-    end subroutine convert
+      read (clean, *) number
+    end if
   end subroutine scan_real
 
   !> Split a real into its parts; `outcome` says whether it is a real.

@@ -8,7 +8,7 @@ module epcont_deck_refused
   character(len=*), parameter :: table(*) = [character(len=220) :: &
     'CHEXA CPENTA CTETRA CPYRAM: solid elements | model a section with plane elements (CTRIA3 to'// &
     ' CQUAD8) or axisymmetric elements (CTRAX3, CTRAX6)', &
-    'CQUADR CTRIAR CSHEAR: shells | use CTRIA3, CTRIA6, CQUAD4 or CQUAD8', &
+    'CQUAD CQUAD9 CQUADR CTRIAR CSHEAR: shells | use CTRIA3, CTRIA6, CQUAD4 or CQUAD8', &
     'CQUADX CTRIAX CTRIAX6 CQUADX4 CQUADX8: axisymmetric quadrilaterals, or elements in x-z | use'// &
     ' CTRAX3 or CTRAX6, with x as the radius', &
     'CPLSTN3 CPLSTN4 CPLSTN6 CPLSTN8: a formulation chosen by the card name | use CTRIA3, CQUAD4,'// &
@@ -48,7 +48,8 @@ module epcont_deck_refused
     ' and TEMPD', &
     'MAT2 MAT3 MAT8 MAT9 MATORT MATHE MATHP MATVE MATVP MATG: materials other than isotropic elastic,'// &
     ' or plastic with MATS1 | use MAT1', &
-    'MATT1 TABLEM1 TABLEM2 TABLEM3: moduli that depend on temperature | use MAT1 for the mean temperature', &
+    'MATT1 TABLEM1 TABLEM2 TABLEM3 TABLEM4: moduli that depend on temperature | use MAT1 for the mean'// &
+    ' temperature', &
     'MATEP TABLEST TABLES2: other plasticity laws | use MATS1 with a TABLES1', &
     'CORD1R CORD2C CORD2S CORD1C CORD1S: coordinate systems except for gap directions | use coordinates'// &
     ' in x and y; CORD2R for the CID of CGAP', &

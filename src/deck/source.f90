@@ -12,10 +12,8 @@ module epcont_deck_source
   public :: source, read_source
 
   integer, parameter :: &
-    !> Depth of nested INCLUDEs, not counting the deck itself.
-    deepest = 8, &
-    !> Number of INCLUDE lines in a deck: files that include each other twice would double at every depth.
-    most_files = 10000, &
+    !> Files of a deck. A file that includes itself by another name would do so for ever.
+    most_files = 1000, &
     !> Usual length of a line [characters]; determines the initial number of lines.
     usual_line = 32
   !> Ends of a line: one of them, or a return followed by a newline.
@@ -25,7 +23,6 @@ module epcont_deck_source
   type :: source_file
     !> Name as given by the user; for an included file with the directory of its parent
     character(len=:), allocatable :: name
-    integer :: parent = 0                  !! file that includes it
     integer :: first = 1                   !! its first character in the buffer
     integer :: last = 0                    !! its last character
   end type source_file
@@ -66,7 +63,7 @@ contains
 
     allocate (lines%files(0))
     lines%text = ''
-    call load(path, 0, trouble, lines)
+    call load(path, trouble, lines)
     if (allocated(trouble)) then
       call raise(error, status_usage, path//': '//trouble)
       return
@@ -107,7 +104,7 @@ contains
       integer, intent(in) :: line
       character(len=:), allocatable :: name, remedy, trouble
       type(place_type) :: place
-      integer :: parent, depth
+      integer :: k
       logical :: ended
 
       call find_quoted(lines%text_of_line(line), place, name)
@@ -117,21 +114,17 @@ contains
                               'write INCLUDE ''file''')
         return
       end if
-      parent = lines%line(line)%file
-      if (name(1:1) /= '/') &
-        name = lines%files(parent)%name(:index(lines%files(parent)%name, '/', back=.true.))//name
-      depth = files_above(parent, name)
-      if (depth == 0) then
-        trouble = shown(name)//' includes itself'
-        remedy = 'include a file that does not lead back here'
-      else if (depth > deepest) then
-        trouble = 'files are included more than '//text_of(deepest)//' deep'
-        remedy = 'use fewer levels'
+      associate (parent => lines%files(lines%line(line)%file)%name)
+        if (name(1:1) /= '/') name = parent(:index(parent, '/', back=.true.))//name
+      end associate
+      if (any([(lines%files(k)%name == name, k=1, size(lines%files))])) then
+        trouble = shown(name)//' is a file of the deck already'
+        remedy = 'include each file once'
       else if (size(lines%files) > most_files) then
         trouble = 'more than '//text_of(most_files)//' files'
         remedy = 'use fewer files'
       else
-        call load(name, parent, trouble, lines)
+        call load(name, trouble, lines)
         if (allocated(trouble)) trouble = shown(name)//': '//trouble
         remedy = 'give a name relative to the file of this line'
       end if
@@ -141,30 +134,14 @@ contains
         call cut(size(lines%files), ended)
       end if
     end subroutine include_file
-
-    !> Number of files from the deck down to `file`, both included; 0 if one of them is `name`.
-    pure integer function files_above(file, name) result(files)
-      integer, intent(in) :: file
-      character(len=*), intent(in) :: name
-      integer :: at
-
-      files = 0
-      at = file
-      do while (at > 0)
-        files = files + 1
-        if (lines%files(at)%name == name) exit
-        at = lines%files(at)%parent
-      end do
-      if (at > 0) files = 0
-    end function files_above
   end subroutine read_source
 
   !> Append the bytes of a file to the buffer; `trouble` says why this is impossible.
-  subroutine load(path, parent, trouble, lines)
+  subroutine load(path, trouble, lines)
     character(len=*), intent(in) :: path
-    integer, intent(in) :: parent
     character(len=:), allocatable, intent(out) :: trouble
     type(source), intent(inout) :: lines
+    character(len=*), parameter :: unreadable = 'not a regular file, or without permission to read it'
     character(len=:), allocatable :: longer
     integer(i8) :: bytes
     integer :: first, last, status, unit
@@ -172,19 +149,14 @@ contains
 
     inquire (file=path, exist=exists)
     inquire (file=path//'/.', exist=is_directory)
-    if (.not. exists) then
-      trouble = 'no such file'
-    else if (is_directory) then
-      trouble = 'a directory, not a file'
-    else
-      open (newunit=unit, file=path, access='stream', form='unformatted', action='read', status='old', &
-            iostat=status)
-      if (status /= 0) trouble = 'cannot be opened for reading'
-    end if
+    open (newunit=unit, file=path, access='stream', form='unformatted', action='read', status='old', &
+          iostat=status)
+    if (status /= 0) trouble = unreadable
+    if (.not. exists) trouble = 'no such file'
     if (allocated(trouble)) return
     inquire (unit=unit, size=bytes)
-    if (bytes < 0) then
-      trouble = 'not a file that can be read'
+    if (is_directory .or. bytes < 0) then
+      trouble = unreadable
     else if (lines%used + bytes >= huge(1) - 1) then   ! a newline and the position of a next line follow
       trouble = 'the deck is larger than 2 GiB'
     else
@@ -196,14 +168,13 @@ contains
         call move_alloc(longer, lines%text)
       end if
       read (unit, iostat=status) lines%text(first:max(last, first))
-      if (bytes > 0 .and. status /= 0) trouble = 'cannot be read'
-      if (bytes == 0 .and. status == 0) trouble = 'a pipe or a device, not a file of known size'
+      if (bytes > 0 .eqv. status /= 0) trouble = unreadable   ! from a pipe of no size, a byte can be read
       ! Skip the byte-order mark of UTF-8.
       if (lines%text(first:min(first + 2, last)) == char(239)//char(187)//char(191)) first = first + 3
     end if
     close (unit, iostat=status)
     if (allocated(trouble)) return
-    lines%files = [lines%files, source_file(parent=parent, first=first, last=last)]
+    lines%files = [lines%files, source_file(first=first, last=last)]
     lines%files(size(lines%files))%name = path
     lines%used = last + 1
     lines%text(lines%used:lines%used) = newline

@@ -80,8 +80,8 @@ class Scales(Extremes):
 
     def test_not_a_number(self):
         deck = column()
-        for written, cause in (("1.0e-310", "too small|too near|nearer"), ("4.9e-324", "too small|too near|nearer"),
-                               ("1.0e309", "too large|beyond"), ("nan", "not a real"), ("inf", "not a real")):
+        for written, cause in (("1.0e-310", "too far"), ("4.9e-324", "too far"),
+                               ("1.0e309", "too far"), ("nan", "not a real"), ("inf", "not a real")):
             with self.subTest(written=written):
                 self.refused(deck.text().replace("MAT1,1,210000.0", "MAT1,1," + written), 2, f"MAT1 1.*(?:{cause})")
 

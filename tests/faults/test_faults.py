@@ -81,11 +81,11 @@ class Places(Case):
                 self.check(self.run_it(deck, "-o", self.directory), 3, str(deck))
         if os.geteuid() != 0:
             closed.touch(0o000)
-            self.check(self.run_it(closed), 3, "cannot be opened for reading")
+            self.check(self.run_it(closed), 3, "without permission to read it")
 
     def test_a_pipe_is_no_deck(self):
-        self.check(self.run_it("/dev/stdin", "-o", self.directory, input=SMALL.read_bytes()), 3, "a pipe or a device")
-        self.check(self.run_it("/dev/zero", "-o", self.directory), 3, "a pipe or a device")
+        self.check(self.run_it("/dev/stdin", "-o", self.directory, input=SMALL.read_bytes()), 3, "not a regular file")
+        self.check(self.run_it("/dev/zero", "-o", self.directory), 3, "not a regular file")
 
     def test_a_deck_named_like_a_result_is_not_overwritten(self):
         deck = self.directory / "deck.lst"
@@ -286,10 +286,10 @@ class Remarks(Case):
              "PSHELL,1,1,1.,-1", "SPC1,1,12,1,2"]
     FORCE = "FORCE,1,3,,1.,0.,-1.,0."
 
-    def solve(self, *cards, force=FORCE, density="1.", place="."):
+    def solve(self, *cards, force=FORCE, damping="1.", place="."):
         path = self.directory / place / "scene.dat"
         path.parent.mkdir(exist_ok=True)
-        path.write_text("\n".join([*self.BLOCK, f"MAT1,1,1000.,,.3,{density}", force, *cards, "ENDDATA", ""]))
+        path.write_text("\n".join([*self.BLOCK, f"MAT1,1,1000.,,.3,,,,{damping}", force, *cards, "ENDDATA", ""]))
         run = self.run_it(path, "-o", path.parent)
         self.check(run, 0)
         listing = (path.parent / "scene.lst").read_text()
@@ -298,7 +298,7 @@ class Remarks(Case):
         return run.stderr.decode(), section and section[1], section[2].splitlines() if section else [], summary
 
     def test_none(self):
-        self.assertEqual(("", None, [], ["status,valid,", "warnings,0,", "notes,0,"]), self.solve(density=""))
+        self.assertEqual(("", None, [], ["status,valid,", "warnings,0,", "notes,0,"]), self.solve(damping=""))
 
     def test_a_hundred_warnings(self):
         (self.directory / "there").mkdir()
@@ -308,7 +308,7 @@ class Remarks(Case):
         self.assertEqual("WARNINGS AND NOTES  (100 warnings, 1 note)", heading)
         self.assertEqual(["status,valid,", "warnings,100,", "notes,1,"], summary)
         remedy = "no BCONP names it; add a BCONP with it as SLAVE or MASTER, or remove the line"
-        self.assertEqual(["  9:18-19: MAT1: field 6 (RHO) has no effect (cards with it: 1)"] +
+        self.assertEqual(["  9:21-22: MAT1: field 9 (GE) has no effect (cards with it: 1)"] +
                          [f"  lines.inc:{k}:7{'-8' if k > 9 else ''}: warning: BLSEG {k}: {remedy}" for k in range(1, 51)] +
                          [f"  {k - 39}:7-{8 if k < 100 else 9}: warning: BLSEG {k}: {remedy}" for k in range(51, 101)], lines)
         self.assertIn("100 warnings (5 shown)\n", said)
@@ -320,7 +320,7 @@ class Remarks(Case):
         self.assertEqual(["status,valid,", "warnings,1,", "notes,1,"], summary)
         text = "warning: displacements too large for small-displacement theory: rotation or strain exceeds 0.1 in 100 % of the volume (largest at 0.5000 0.5000); " \
                "equilibrium and contact use the undeformed shape"
-        self.assertEqual(["  9:18-19: MAT1: field 6 (RHO) has no effect (cards with it: 1)",
+        self.assertEqual(["  9:21-22: MAT1: field 9 (GE) has no effect (cards with it: 1)",
                           "  " + text[:text.index(" at 0.5000")], "    " + text[text.index("at 0.5000"):]], lines)
         self.assertEqual(f"{self.directory}/scene.dat: {text}\n", said)
 
