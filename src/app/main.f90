@@ -11,8 +11,7 @@ program epcont_main
   use epcont_base_version, only: program_name, program_version
   use epcont_deck_manual, only: manual
   use epcont_report_file, only: make_directory
-  use epcont_system_memory, only: prepare_heap
-  use epcont_system_memory, only: has_memory, memory_of_libraries
+  use epcont_system_memory, only: has_memory, memory_of_libraries, prepare_heap
   use epcont_system_threads, only: one_thread, use_threads
   implicit none
   logical(c_bool), target :: ended = .false.

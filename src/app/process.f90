@@ -4,7 +4,7 @@ module epcont_app_process
       c_long, c_null_char, c_ptr, c_short, c_size_t
   use epcont_base_error, only: status_internal, status_usage
   use epcont_base_kinds, only: i8
-  use epcont_base_text, only: newline
+  use epcont_base_text, only: newline, text_of
   use epcont_base_version, only: program_name
   use epcont_system_memory, only: has_memory
   use epcont_system_threads, only: stated_threads
@@ -139,28 +139,13 @@ contains
     threads = max(1_c_long, min(int(stated_threads(), c_long), c_sysconf(processors_online)))
     wanted = threads*memory_of_blas + memory_beside
     if (.not. has_memory(wanted)) call stop_now(status_usage, &
-      'OpenBLAS needs '//figures(wanted/1000000)//' MB of memory, but less is free or allowed: '// &
+      'OpenBLAS needs '//text_of(wanted/1000000)//' MB of memory, but less is free or allowed: '// &
       'raise ulimit -v or lower OMP_NUM_THREADS')
     if (c_getrlimit(stack_size, stack) /= 0) return
     if (stack(1) >= 0 .and. stack(1) < least_stack) call stop_now(status_usage, &
-      'the stack is limited to '//figures(stack(1)/1024_i8)//' kB: raise ulimit -s to at least '// &
-      figures(least_stack/1024_i8)//' kB')
+      'the stack is limited to '//text_of(stack(1)/1024_i8)//' kB: raise ulimit -s to at least '// &
+      text_of(least_stack/1024_i8)//' kB')
   end subroutine prepare_start
-
-  !> Write a number of at most nine digits, without WRITE.
-  pure function figures(number) result(text)
-    integer(i8), intent(in) :: number
-    character(len=:), allocatable :: text
-    integer(i8) :: left
-
-    text = ''
-    left = number
-    do
-      text = achar(iachar('0') + int(mod(left, 10_i8)))//text
-      left = left/10
-      if (left == 0) return
-    end do
-  end function figures
 
   !> Make sure that the exit status is epcont's own: that of `c_exit`, or that of the fault. The Fortran
   !! runtime and OpenBLAS use other statuses, which could mean a valid answer here. A closed pipe, or a file

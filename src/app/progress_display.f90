@@ -3,13 +3,13 @@
 module epcont_app_progress_display
   use epcont_app_process, only: print_error, terminal_columns
   use epcont_base_kinds, only: i8, wp
-  use epcont_base_text, only: formatted, newline, short_real, text_of
+  use epcont_base_text, only: newline, short_real, text_of
   use epcont_plasticity_observer, only: iteration_record, observer
   use epcont_report_columns, only: rounding_number
   use epcont_system_stopwatch, only: stage_name, stages, stopwatch
   implicit none
   private
-  public :: progress_type, progress_line, duration, timing_text
+  public :: progress_type, progress_line, timing_text
 
   !> Shortest run time with progress [s], and fewest operations of a solve with progress before it.
   real(wp), parameter :: short_run = 1.0_wp, short_solve = 2.0e10_wp
@@ -64,14 +64,13 @@ contains
     class(progress_type), intent(inout) :: self
     type(iteration_record), intent(in) :: now
     character(len=:), allocatable :: line
-    integer :: width
 
     if (self%elapsed() < self%silent_to .and. .not. &
         (now%iteration == 0 .and. self%operations >= short_solve .and. self%silent_to <= short_run)) return
-    ! A line that fills the last column may continue in the next row, where it cannot be erased.
-    width = merge(terminal_columns() - 1, huge(1), self%on_terminal)
-    line = progress_line(self%stem, self%elapsed(), self%operations, now, width)
+    line = progress_line(self%stem, self%elapsed(), self%operations, now)
     if (self%on_terminal) then
+      ! A line that fills the last column may continue in the next row, where it cannot be erased.
+      line = line(:min(len(line), terminal_columns() - 1))
       call print_error(achar(13)//line//repeat(' ', max(0, self%drawn - len(line))))
       self%drawn = max(self%drawn, len(line))
     else
@@ -88,45 +87,23 @@ contains
   end subroutine erase
 
   !> Make the progress line: elapsed time, then the operations of a solve, or the results of the last solve,
-  !! in the words of the listing. If the line is longer than `width`, its last parts are omitted.
-  pure function progress_line(stem, elapsed, operations, now, width) result(text)
+  !! in the words of the listing.
+  pure function progress_line(stem, elapsed, operations, now) result(text)
     character(len=*), intent(in) :: stem             !! name of the deck
     real(wp), intent(in) :: elapsed                  !! [s]
     real(wp), intent(in) :: operations               !! of a solve
     type(iteration_record), intent(in) :: now        !! iteration 0: before the first solve
-    integer, intent(in) :: width                     !! of the terminal, in columns
-    character(len=:), allocatable :: text, more
-    integer :: room
+    character(len=:), allocatable :: text
 
-    text = stem//': '//duration(elapsed)
-    more = ', solving: '//short_real(operations)//' operations'
-    if (now%iteration > 0) then
-      more = ', iteration '//text_of(now%iteration)//', load factor '//short_real(now%load_factor)// &
+    text = stem//': '//text_of(nint(elapsed))//' s'
+    if (now%iteration == 0) then
+      text = text//', solving: '//short_real(operations)//' operations'
+    else
+      text = text//', iteration '//text_of(now%iteration)//', load factor '//short_real(now%load_factor)// &
              ', change '//rounding_number(now%change)//', yielded '//text_of(now%yielded)//', in contact '// &
              text_of(now%touching)
     end if
-    room = max(0, width - len(text))
-    if (len(text) > width) text = text(:width)
-    ! a comma right after the last column ends a complete part
-    if (len(more) > room) more = more(:index(more(:room + 1), ',', back=.true.) - 1)
-    text = text//more
   end function progress_line
-
-  !> Write a duration as seconds, minutes or hours, in two or three digits.
-  pure function duration(seconds) result(text)
-    real(wp), intent(in) :: seconds   !! a time [s]
-    character(len=:), allocatable :: text
-
-    if (seconds < 9.95_wp) then
-      text = formatted('(f4.1)', seconds)//' s'
-    else if (seconds < 119.5_wp) then
-      text = text_of(nint(seconds))//' s'
-    else if (seconds < 119.5_wp*60) then
-      text = text_of(nint(seconds/60))//' min'
-    else
-      text = formatted('(f12.1)', seconds/3600)//' h'
-    end if
-  end function duration
 
   !> Make the table of --timing, one row for each stage. Each row begins with the name of the deck, so that
   !! several decks can share a file.

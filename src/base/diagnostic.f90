@@ -27,7 +27,6 @@ module epcont_base_diagnostic
     integer :: of = 0, which = 0, item = 0
     character(len=:), allocatable :: what    !! `GRID 17: field 4 (X1) is not a real number`
     character(len=:), allocatable :: remedy  !! an imperative; may be empty
-    integer, allocatable :: node(:)          !! all nodes concerned, if they are needed [any]
   end type diagnostic
 
   !> All findings about a deck or model, in the order in which they were found.

@@ -1,27 +1,25 @@
 !> Makes the model from the cards of a deck, and messages with card and field from its findings.
 module epcont_build_build
   use epcont_base_diagnostic, only: diagnostic, diagnostics
-  use epcont_base_sorting, only: sorted_order
   use epcont_base_text, only: text_of
   use epcont_build_cases, only: read_cases
   use epcont_build_choices, only: check_once, read_controls
   use epcont_build_contacts, only: read_contacts
   use epcont_build_mesh_cards, only: element_cards, read_mesh, take_ids
-  use epcont_build_reference, only: card_index, check_unique, chosen_sets, index_of, note_unnamed
+  use epcont_build_reference, only: card_index, check_unique, index_of, note_unnamed
   use epcont_build_supports, only: read_references, read_supports, read_ties
   use epcont_build_temperatures, only: read_temperatures
   use epcont_build_tie_cards, only: read_equations, read_springs
   use epcont_contact_geometry_complete, only: complete_model
   use epcont_deck_card_kinds, only: card_bconp, card_bfric, card_blseg, card_celas1, card_celas2, card_cgap, &
       card_cord2r, card_grav, card_grid, card_load, card_mat1, card_mats1, card_mpcadd, card_nlparm, &
-      card_param, card_pelas, card_pgap, card_pshell, card_psolid, card_rbe2, card_rforce, card_spc, &
-      card_spc1, card_tables1
+      card_param, card_pelas, card_pgap, card_pshell, card_psolid, card_rbe2, card_rforce, card_tables1
   use epcont_deck_case_control, only: subcase_control
   use epcont_deck_deck, only: deck_type
   use epcont_element_element_kind, only: element_kind
   use epcont_element_element_kinds, only: element_kinds
   use epcont_model_arrays, only: scene_type
-  use epcont_model_finding, only: and_more, findings, of_body, of_body_load, of_couple, of_element, of_line, &
+  use epcont_model_finding, only: and_more, of_body, of_body_load, of_couple, of_element, of_line, &
       of_node, of_pair, of_paper_ratio, of_scene, of_section, of_theory
   use epcont_model_load_cases, only: contact_all, contact_none, load_cases
   use epcont_model_model, only: model_type
@@ -163,8 +161,6 @@ contains
       type(diagnostic), intent(inout) :: one
       integer :: card(3)
 
-      if (allocated(one%node)) &
-        one%remedy = one%remedy//': '//holding_cards(deck, nint(deck%card(card_grid)%value(1, one%node)))
       card = card_of(one)
       one%place = deck%place(card(1), card(2), card(3))
       if (one%of /= of_body) one%what = deck%card(card(1))%identity(card(2))//one%what
@@ -242,51 +238,11 @@ contains
     type(diagnostic), intent(inout) :: one
     type(subcase_control), intent(in) :: subcase(:)   !! [cases]
     integer, intent(in) :: case                       !! index of the case
-    character(len=:), allocatable :: name
-    integer :: other
+    character(len=:), allocatable :: supports
 
-    other = findloc(subcase%spc%id /= subcase(case)%spc%id, .true., dim=1)
-    if (other == 0) return
-    name = 'SUBCASE '//text_of(subcase(case)%id)
-    if (subcase(case)%spc%id > 0) then
-      one%what = name//', SPC = '//text_of(subcase(case)%spc%id)//': '//one%what
-    else
-      one%what = name//' has no SPC: '//one%what
-      one%remedy = 'write SPC = '//text_of(subcase(other)%spc%id)//' in it; or '//one%remedy
-      one%place = subcase(case)%place
-    end if
+    if (all(subcase%spc%id == subcase(case)%spc%id)) return
+    supports = ', SPC = '//text_of(subcase(case)%spc%id)
+    if (subcase(case)%spc%id == 0) supports = ' without SPC'
+    one%what = 'SUBCASE '//text_of(subcase(case)%id)//supports//': '//one%what
   end subroutine name_supports
-
-  !> SPC1 cards, in free field, that fix some nodes in direction 1.
-  pure function holding_cards(deck, ids) result(text)
-    type(deck_type), intent(in) :: deck
-    integer, intent(in) :: ids(:)
-    character(len=:), allocatable :: text
-    integer, parameter :: most_fields = 6   ! of a line that begins with SPC1, set and directions
-    integer, allocatable :: id(:)
-    integer :: fields, from, item, set(size(deck%subcase)), to
-    type(findings) :: unheard
-
-    call chosen_sets(deck, [card_spc1, card_spc], deck%subcase%spc, 'SPC', unheard, set)
-    id = ids(sorted_order(ids))
-    text = ''
-    fields = most_fields
-    from = 1
-    do while (from <= size(id))
-      do to = from, size(id) - 1
-        if (id(to + 1) /= id(to) + 1) exit
-      end do
-      if (to == from + 1) to = from   ! two nodes are not a range
-      item = merge(3, 1, to > from)
-      if (fields + item > most_fields) then
-        if (len(text) > 0) text = text//' and '
-        text = text//'SPC1,'//text_of(max(set(1), 1))//',1'
-        fields = 0
-      end if
-      fields = fields + item
-      text = text//','//text_of(id(from))
-      if (to > from) text = text//',THRU,'//text_of(id(to))
-      from = to + 1
-    end do
-  end function holding_cards
 end module epcont_build_build

@@ -167,23 +167,9 @@ contains
       end if
     end if
     if (size(given) == sum(deck%card(cards)%count)) &
-      call check_choices(deck, choice, given%id, word, 'the deck has no such set', set_remedy(given%id), &
-                         found)
+      call check_choices(deck, choice, given%id, word, 'the deck has no such set', &
+                         'give a set of the deck, or add its cards', found)
   end subroutine chosen_sets
-
-  !> Name the sets of the deck, as a remedy for a set that does not exist.
-  pure function set_remedy(ids) result(text)
-    integer, intent(in) :: ids(:)   !! sets of all cards
-    character(len=:), allocatable :: text
-    integer :: i
-
-    text = ''
-    do i = 1, size(ids)
-      if (all(ids(:i - 1) /= ids(i))) text = text//' '//text_of(ids(i))
-    end do
-    if (text /= '') text = 'give a set of the deck:'//text
-    if (text == '') text = 'remove this line, or add cards of this set'
-  end function set_remedy
 
   !> Report once each choice of case control that no card matches.
   pure subroutine check_choices(deck, choice, ids, word, what, remedy, found)

@@ -2,7 +2,7 @@
 module epcont_build_temperatures
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: text_of
-  use epcont_build_reference, only: card_index, check_choices, note_unnamed, resolve
+  use epcont_build_reference, only: card_index, check_choices, named_node, nodes_of_fields, note_unnamed
   use epcont_deck_card_kinds, only: card_grid, card_temp, card_tempd
   use epcont_deck_deck, only: deck_type
   use epcont_model_arrays, only: scene_type
@@ -21,14 +21,12 @@ contains
     type(scene_type), intent(in) :: data         !! elements and sections
     type(load_cases), intent(inout) :: cases     !! sets of temperatures are added
     type(findings), intent(inout) :: found       !! errors are added
-    integer :: node(deck%card(card_temp)%count, 3)   ! nodes that a TEMP names
+    type(named_node), allocatable :: named(:)   ! by TEMP
     integer :: named_by(2, deck%card(card_grid)%count)   ! TEMP card and field that name a node, 0 if absent
     integer :: default_by                 ! TEMPD of all other nodes, 0 if absent
     integer :: k
 
-    do k = 1, size(node, 2)
-      call resolve(deck, card_temp, 2*k, nodes, found, node(:, k))
-    end do
+    named = nodes_of_fields(deck, card_temp, [2, 4, 6], nodes, found)
     call choose_sets()
     do k = 1, size(cases%heat)
       call read_default(cases%heat(k)%set, cases%heat(k)%temperature)
@@ -82,17 +80,15 @@ contains
     subroutine read_nodes(set, temperature)
       integer, intent(in) :: set
       real(wp), intent(inout) :: temperature(:)
-      integer :: i, k
+      integer :: i
 
       named_by = 0
-      do k = 1, size(node, 2)
-        do i = 1, size(node, 1)
-          associate (n => node(i, k))
-            if (n == 0 .or. nint(deck%card(card_temp)%value(1, i)) /= set) cycle
-            named_by(2, n) = 2*k
-            call take(card_temp, i, 2*k, named_by(1, n), temperature(n:n))
-          end associate
-        end do
+      do i = 1, size(named)
+        associate (card => named(i)%card, node => named(i)%node)
+          if (nint(deck%card(card_temp)%value(1, card(2))) /= set) cycle
+          named_by(2, node) = card(3)
+          call take(card_temp, card(2), card(3), named_by(1, node), temperature(node:node))
+        end associate
       end do
     end subroutine read_nodes
 
@@ -127,8 +123,6 @@ contains
     if (k > 0 .and. default_by == 0) call found%add_error(of_node, k, 1, &
       ': has no temperature in set '//text_of(set)//and_more(count(unnamed), '; nor have ', ' more'), &
       'add TEMP or TEMPD')
-    if (default_by > 0 .and. .not. any(unnamed) .and. any(expands)) &
-      call found%add_note(card_tempd, default_by, 1, ': all nodes have a TEMP in set '//text_of(set))
     if (found%errors > 0) return   ! a wrong card may have it
     vain = named_by(1, :) > 0 .and. .not. expands
     k = findloc(vain, .true., dim=1)

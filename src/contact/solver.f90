@@ -1,19 +1,17 @@
 !> Solution of a contact problem: scaling, rigid start, active set by the simplex, units.
 module epcont_contact_solver
   use epcont_base_kinds, only: wp
-  use epcont_base_tolerances, only: cancelled, lost_digits, negligible, null_component, &
-    solved_to
+  use epcont_base_tolerances, only: cancelled, lost_digits, negligible, null_component
   use epcont_contact_basis, only: contact_basis, move_basis, new_basis, respond
   use epcont_contact_equilibrium, only: find_rigid_start, rigid_start
   use epcont_contact_friction, only: solve_friction
   use epcont_contact_problem, only: contact_no_equilibrium, contact_overlap, contact_problem, &
-    contact_solution, contact_stalled, new_solution
+    contact_solution, contact_solved, new_solution
   use epcont_contact_scaling, only: drop_motions, scale_problem, scaled_problem
   use epcont_contact_simplex, only: find_contacts
   use epcont_contact_state, only: contact_state, gaps_under, solve_set, terms_of_gaps
   use epcont_contact_uniqueness, only: find_undetermined_motions, find_indeterminate_forces, share_equally
   use epcont_flexibility_motion_matrix, only: motion_matrix
-  use epcont_linalg_dense, only: null_space
   implicit none
   private
   public :: solve_contact
@@ -33,7 +31,7 @@ contains
     type(rigid_start) :: rigid
     type(contact_state) :: state
     type(motion_matrix) :: motion   ! A of all modes, scaled [n, m]
-    real(wp), allocatable :: loose(:, :), ray(:)
+    real(wp), allocatable :: ray(:)
 
     if (allocated(problem%friction)) then
       call solve_friction(problem, solution, start, any_forces)
@@ -57,13 +55,7 @@ contains
     select case (solution%state)
     case (contact_overlap)
       solution%overlapping = ray > null_component*maxval(ray)
-    case (contact_stalled)
-      loose = null_space(motion%dense(), cancelled/solved_to)
-      if (size(loose, 2) == 0) return
-      solution%escape = loose(:, 1)/scaled%motion_size
-      ray = abs(motion%times(loose(:, 1)))
-      solution%overlapping = ray > 0.5_wp*maxval(ray)
-    case default
+    case (contact_solved)
       call settle(scaled, motion, state, solution, .not. present(any_forces))
       if (present(basis)) call move_basis(state%contact_basis, basis)
     end select

@@ -363,10 +363,6 @@ contains
     case default
       what = 'is out of range'
       if (entry%kind == kind_word) what = 'is not an allowed word'
-      if (entry%instead /= '' .and. value%number == entry%highest) then
-        what = 'is '//text//', '//trim(entry%reason)
-        remedy = 'give less, such as '//trim(entry%instead)
-      end if
     end select
   end subroutine explain
 end module epcont_deck_card_reader

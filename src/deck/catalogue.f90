@@ -38,8 +38,7 @@ module epcont_deck_catalogue
     '  MID; id; material', &
     '  E; real positive; Young''s modulus [stress]', &
     '  G; real positive; shear modulus [stress]', &
-    '  NU; real from=0 below=0.5 instead=0.4999; Poisson''s ratio | incompressible: the bulk'// &
-    ' modulus is infinite', &
+    '  NU; real from=0 below=0.5; Poisson''s ratio | with 0.5 the bulk modulus is infinite', &
     '  RHO; real; density', &
     '  A; real cause zero; thermal expansion: strain by one degree', &
     '  TREF; real zero; temperature without thermal strain', &

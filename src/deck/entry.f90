@@ -1,7 +1,7 @@
 !> Catalogue entries of cards and of their fields.
 module epcont_deck_entry
   use epcont_base_kinds, only: wp
-  use epcont_base_text, only: formatted, text_of
+  use epcont_base_text, only: short_real, text_of
   implicit none
   private
   public :: field_entry, card_entry, listed, new_field, number_of
@@ -38,9 +38,8 @@ module epcont_deck_entry
     real(wp) :: least = 0.0_wp           !! smallest magnitude, except zero, of a number that has an effect
     logical :: point_optional = .false.  !! a large-field real may lack its decimal point
     character(len=40) :: choices = ''    !! allowed words, separated by blanks; blank: any word
-    character(len=60) :: reason = ''     !! why the upper limit is out of range, or why only zero is allowed
+    character(len=60) :: reason = ''     !! why other values are out of range
     integer :: times = 1                 !! number of such fields in a row
-    character(len=8) :: instead = ''     !! a valid value near the upper limit
   contains
     procedure :: allowed
   end type field_entry
@@ -120,7 +119,7 @@ contains
   !> Read a field from its line in the catalogue: `name; contents; meaning [unit] | reason`. Contents are an
   !! `id` (at least 1), a `system` (0 or an id), a `whole` number, a `real`, `digits` (directions 1 to 6), a
   !! `word` (one of the listed words, if there are any), `any`, or `blank`. Attributes follow in any order:
-  !! limits (`from=`, `to=`, or `below=`, with a valid value `instead=`); `positive`; `only_zero` (0 or
+  !! limits (`from=`, `to=`, or `below=`); `positive`; `only_zero` (0 or
   !! blank); `cause` (a load of the model); `ignored` (checked only; also above `heard_to=`);
   !! `point_optional`. A blank means `zero`, `default=`, or the value of the
   !! previous field (`as_last`). A blank is allowed for ids and digits if they are `optional` or their
@@ -191,8 +190,6 @@ contains
       case ('default')
         field%default = number
         field%has_default = .true.
-      case ('instead')
-        field%instead = word(equals + 1:)
       case ('positive')
         field%lowest = 0.0_wp
         field%above_lowest = .true.
@@ -244,7 +241,7 @@ contains
     case default
       text = 'anything'
     end select
-    if (self%lowest >= self%highest .and. self%reason /= '') text = text//': '//trim(self%reason)
+    if (self%reason /= '') text = text//': '//trim(self%reason)
   end function allowed
 
   pure function real_range(self) result(text)
@@ -257,25 +254,14 @@ contains
     if (.not. (lower .or. upper)) then
       text = 'a real such as 1.5, 1.5E-3 or 1.5-3'
     else if (self%lowest >= self%highest) then
-      text = decimal(self%lowest)//' or blank'
+      text = short_real(self%lowest)//' or blank'
     else
       text = 'a real'
-      if (lower) text = text//trim(merge(' above', ' from ', self%above_lowest))//' '//decimal(self%lowest)
+      if (lower) text = text//trim(merge(' above', ' from ', self%above_lowest))//' '//short_real(self%lowest)
       if (upper) &
-        text = text//trim(merge(' to below', ' to      ', self%below_highest))//' '//decimal(self%highest)
+        text = text//trim(merge(' to below', ' to      ', self%below_highest))//' '//short_real(self%highest)
     end if
   end function real_range
-
-  !> A limit in the form of a deck.
-  pure function decimal(number) result(text)
-    real(wp), intent(in) :: number
-    character(len=:), allocatable :: text
-
-    text = formatted('(f0.4)', number)
-    text = text(:verify(text, '0', back=.true.))
-    if (text(len(text):) == '.') text = text//'0'
-    if (text(1:1) == '.') text = '0'//text
-  end function decimal
 
   !> Join words: `AUTO, CONRY or JOINED`.
   pure function listed(words) result(text)

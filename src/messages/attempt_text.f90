@@ -2,6 +2,7 @@
 module epcont_messages_attempt_text
   use epcont_attempts, only: attempt_type, more_pairs, more_steps, other_rule, refinement
   use epcont_base_text, only: plural, text_of
+  use epcont_messages_names, only: when
   use epcont_solution, only: solution_type
   implicit none
   private
@@ -25,7 +26,7 @@ contains
     associate (made => solution%attempts%made)
       if (size(made) == 0) return
       joined = solution%iteration%joined .neqv. mod(count(made%what == other_rule), 2) == 1
-      text = '(1) '//rule_text(joined)
+      text = '(1) '//when(joined, 'JOINED', 'CONRY')
       do k = 1, size(made)
         if (made(k)%what == other_rule) joined = .not. joined
         text = text//': '//trim(reason(made(k)%why))//'; ('//text_of(k + 1)//') '//what_text(made(k), joined)
@@ -33,15 +34,6 @@ contains
     end associate
     text = text//': '//solution%verdict%word()
   end function attempts_text
-
-  !> Name of the contact solver, as in PARAM RULE.
-  pure function rule_text(joined) result(text)
-    logical, intent(in) :: joined
-    character(len=:), allocatable :: text
-
-    text = 'CONRY'
-    if (joined) text = 'JOINED'
-  end function rule_text
 
   !> Describe the change.
   pure function what_text(attempt, joined) result(text)
@@ -53,7 +45,7 @@ contains
     case (more_steps)
       text = plural(attempt%many, 'load step')
     case (other_rule)
-      text = rule_text(joined)
+      text = when(joined, 'JOINED', 'CONRY')
     case (refinement)
       text = plural(attempt%many, 'step')//' of refinement'
     case (more_pairs)

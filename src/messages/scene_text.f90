@@ -3,7 +3,6 @@ module epcont_messages_scene_text
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: short_real, text_of
   use epcont_certificate_scene, only: beyond_place, largest_change, overlap_place, overlaps_type
-  use epcont_contact_geometry_mates, only: find_mates, is_mate
   use epcont_geometry_boundary_line, only: boundary_line
   use epcont_model_finding, only: of_element, of_node
   use epcont_model_model, only: model_type
@@ -79,14 +78,12 @@ contains
     type(overlap_place), intent(in) :: place
     character(len=:), allocatable :: text, by_much, finer
     type(place_words) :: word
-    real(wp) :: side   ! length [length]
 
     word = words_of(model, place)
-    side = longest_side(model, place)
     by_much = text_of(nint(100.0_wp*place%depth/scene%moved))//' % of the largest displacement, '// &
               short_real(scene%moved)//': '
     ! Depths shrink with the edges at corners, and faster elsewhere. Sliding and rotation do not shrink.
-    finer = '; edges of about '//short_real(side/max(place%ratio, tiny(side)))//' there reduce it to 10 %'
+    finer = '; shorter edges there reduce it'
     if (place%moving) finer = '; rotation or sliding there is large'
     select case (about)
     case (body_in_itself)
@@ -98,7 +95,7 @@ contains
       text = 'a pair carries a force across a gap of '//by_much//word%distance//finer
     case default
       text = large_displacements//'bodies in contact slide by '//word%depth//' along each other, at '// &
-             word%at//', where edges are '//short_real(side)//' long; contact uses the undeformed shape'
+             word%at//'; contact uses the undeformed shape'
     end select
   end function place_warning
 
@@ -188,49 +185,21 @@ contains
     end associate
   end function side_name
 
-  !> Length of the longer of the two undeformed edges at a place [length].
-  pure real(wp) function longest_side(model, place) result(longest)
-    type(model_type), intent(in) :: model
-    type(overlap_place), intent(in) :: place
-
-    associate (node => model%mesh%body_outline%node(:2, [place%side, place%other]))
-      longest = maxval(norm2(model%mesh%x(:, node(2, :)) - model%mesh%x(:, node(1, :)), dim=1))
-    end associate
-  end function longest_side
-
   !> Name cards that would keep the bodies apart at two of their edges.
   pure function remedy(model, side) result(text)
     type(model_type), intent(in) :: model
     integer, intent(in) :: side(2)
     character(len=:), allocatable :: text
-    logical :: of_slave(2), of_master(2)
-    integer :: k, line(2)
+    integer :: k
 
-    do k = size(model%contact%line_contact), 1, -1
-      of_slave = are_of(model, model%contact%line_contact(k)%slave, side)
-      of_master = are_of(model, model%contact%line_contact(k)%master, side)
-      if (.not. any(of_slave .and. of_master([2, 1]))) cycle
-      text = 'use shorter edges on both lines there'
-      if (of_master(1)) text = 'exchange SLAVE and MASTER of BCONP '// &
-        text_of(model%contact%line_contact(k)%bconp(1))//', or '//text
-      return
+    text = 'add a BLSEG along each of the two edges and a BCONP between the lines, or CGAPs'
+    do k = 1, size(model%contact%line_contact)
+      associate (couple => model%contact%line_contact(k))
+        if (any(are_of(model, couple%slave, side) .and. are_of(model, couple%master, side([2, 1])))) &
+          text = 'exchange SLAVE and MASTER of BCONP '//text_of(couple%bconp(1))// &
+                 ', or use shorter edges on both lines there'
+      end associate
     end do
-    line = 0
-    do k = 1, size(model%contact%line)
-      where ([any(model%contact%line(k)%side == side(1)), &
-              any(model%contact%line(k)%side == side(2))]) line = k
-    end do
-    if (all(line > 0)) then
-      text = 'add a BCONP between BLSEG '//text_of(model%contact%line(line(1))%id)//' and BLSEG '// &
-             text_of(model%contact%line(line(2))%id)
-    else if (any(line > 0)) then
-      text = 'add a BLSEG along '//side_name(model, side(minloc(line, dim=1)))// &
-             ', and a BCONP between it and BLSEG '//text_of(model%contact%line(maxval(line))%id)
-    else
-      text = 'add a BLSEG along each of the two edges, and a BCONP between the lines'
-      if (is_mate(find_mates(model), model%mesh%body_outline%node(:, side(1)), &
-                  model%mesh%body_outline%part(side(2)))) text = 'add CGAPs there, or '//text
-    end if
   end function remedy
 
   !> Which of two edges of the outlines belong to a line?

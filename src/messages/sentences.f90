@@ -8,7 +8,7 @@ module epcont_messages_sentences
       reason_no_equilibrium, reason_none, reason_not_converged, reason_overlap, &
       reason_rounding, reason_singular, reason_unsound
   use epcont_element_kinematics, only: directions
-  use epcont_messages_names, only: first_grid, joined, motion_name, when
+  use epcont_messages_names, only: first_grid, joined, when
   use epcont_messages_scene_text, only: scene_sentence, unsound
   use epcont_model_arrays, only: angle
   use epcont_model_controls, only: method_newton
@@ -47,8 +47,8 @@ contains
       text = 'pairs overlap and no body can deform: CGAP '// &
              joined(pack(run%model%contact%pair_id, run%answer%contact%overlapping), ' ', most_pairs)
     case (reason_rounding)
-      text = 'no active set passed the test, because of rounding ('// &
-             cause_of_rounding(run)//')'
+      text = 'no active set passed the test, because of rounding: the condition of the stiffness is '// &
+             'too large, or pairs hardly restrain a body (fix it with SPC1)'
     case (reason_unsound)
       text = scene_sentence(run%model, run%certificate%scene, unsound)
     case (reason_limit_load, reason_not_converged)
@@ -80,21 +80,6 @@ contains
            ' (SUPORT at '//run%model%name_of(of_node, run%motions%node(k))//'), and '// &
            when(run%model%contact%has_friction(), 'neither contact nor friction', 'no contact')//' resists it'
   end function escaping
-
-  !> Say why no active set passed the test.
-  pure function cause_of_rounding(run) result(text)
-    class(solution_type), intent(in) :: run
-    character(len=:), allocatable :: text
-
-    text = 'condition of the stiffness'
-    if (.not. any(run%answer%contact%overlapping)) return
-    associate (turn => abs(run%answer%contact%escape))
-      text = 'CGAP '//joined(pack(run%model%contact%pair_id, run%answer%contact%overlapping), ' ', &
-                             most_pairs)// &
-             ' alone restrain '//motion_name(run, findloc(turn > 0.5_wp*maxval(turn), .true., dim=1))// &
-             ', and hardly: fix it with SPC1'
-    end associate
-  end function cause_of_rounding
 
   !> Say why an answer is not certified: the certificate value that exceeds its tolerance most, and lost
   !! digits.

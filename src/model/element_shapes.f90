@@ -185,8 +185,8 @@ contains
     if (.not. any(loose)) return
     call found%add_error(of_node, findloc(loose, .true., dim=1), 3, &
                          ': is on the axis of axisymmetric bodies and could leave it'// &
-                         and_more(count(loose), '; so could ', ' more'), 'fix direction 1')
-    found%list(found%count)%node = pack([(i, i=1, model%mesh%nodes)], loose)
+                         and_more(count(loose), '; so could ', ' more'), &
+                         'fix direction 1 of all nodes with an x of 0.0')
   end subroutine check_axis
 
   !> Check for elements that overlap. Two elements on the same corners add their stiffnesses: laminae, or a

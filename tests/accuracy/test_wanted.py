@@ -51,7 +51,7 @@ class Wanted(unittest.TestCase):
             run, _, _ = self.run_deck("hertz/hertz44", f"ACCURACY,{value}")
             self.assertEqual(2, run.returncode)
             self.assertIn("PARAM ACCURACY: field 3 (VALUE) is out of range\n", run.stderr)
-            self.assertIn(" a real above 0.0 to below 1.0\n", run.stderr)
+            self.assertIn(" a real above 0.0 to below 1.000\n", run.stderr)
 
     def test_choices_of_accuracy(self):
         chosen = "  ACCURACY {}\n".format

@@ -14,7 +14,7 @@ ELASTIC = ROOT / "input" / "hertz" / "hertz44_elastic.dat"
 REJECTED = ROOT / "input" / "faults" / "no_suport.dat"
 STAGES = ["reading", "model", "plan", "numbering", "stiffness", "factor", "flexibility", "contact", "displacements", "yielding",
           "stresses", "certificate", "accuracy", "writing"]
-TIME = r"\d+(\.\d)? (s|min|h)"
+TIME = r"\d+ s"
 SOLVE = rf"{TIME}, iteration \d+, load factor \d\.\d+, change \S+( \S+)?, yielded \d+, in contact \d+"
 
 
@@ -110,7 +110,7 @@ class Progress(Case):
         self.assertRegex(output, r"^hertz44  valid  p_max .*\n$")
 
     def test_width(self):
-        """Parts that do not fit are omitted, never cut; a line without any space is omitted."""
+        """Lines are cut at the last column, so that each is erased."""
         wide = self.on_terminal(YIELDING, "--progress", columns=200)[2].split("\r")
         self.assertRegex(wide[3].rstrip(), rf"^hertz44: {SOLVE}$")
         for columns in (20, 40, 60, 81):
@@ -118,10 +118,6 @@ class Progress(Case):
             self.assertEqual("", self.screen(seen))
             for part in seen.split("\r"):
                 self.assertLess(len(part), columns)
-                if columns > 30 and part.strip() and "solving" not in part:
-                    self.assertRegex(part.rstrip() + ", ", rf"^hertz44: {TIME}, (iteration \d+, )?(load factor \d\.\d\d\d, )?"
-                                     r"(change [\d.E+-]+, )?(yielded \d+, )?(in contact \d+, )?$")
-        self.assertTrue(all(len(part) <= 9 for part in self.on_terminal(YIELDING, "--progress", columns=10)[2].split("\r")))
 
     def test_nothing_is_mixed(self):
         """Output, messages and progress on one terminal: the remaining text is that without progress."""

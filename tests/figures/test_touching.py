@@ -163,7 +163,7 @@ class Touching(scene.Extremes):
     def test_wall_that_no_line_names(self):
         """The block is pushed into a wall that is in no line: not certified, with a remedy."""
         self.not_certified("wall_not_in_line", "bodies pass through each other: the body of GRID 15 penetrates the body of GRID 1 by 0.01348, at "
-                           "-0.01296 0.1206 on edge", "Possible fix: add a BLSEG along edge")
+                           "-0.01296 0.1206 on edge", "Possible fix: add a BLSEG along each")
 
     def test_corner_at_a_corner(self):
         """A key bulges into walls that are in no line. Its corner is at that of the groove: rounding chooses the nearer edge there."""
