@@ -1,5 +1,4 @@
-!> Data that all elements of one type share. `element_kinds.f90` has a row for each type, and each type has a
-!> file.
+!> Data that all elements of one type share. `element_kinds.f90` has the types.
 !>
 !> Corners come first, counter-clockwise; then the mid-side nodes, starting after the first corner. Edges are
 !> straight, or parabolas through their mid-side nodes.
@@ -13,13 +12,10 @@ module epcont_element_element_kind
 
   !> Largest numbers of nodes, integration points and comparison points of an element.
   integer, parameter, public :: most_nodes = 8, most_points = 9, most_places = 9
-  !> Search for folds: after ten bisections of each coordinate, the sign of the area is open only if it is
-  !! below about 4**-10, a millionth, of its largest value.
-  integer, parameter :: most_halvings = 20
 
-  !> Bernstein coefficients of a cubic from its values at 0, 1/3, 2/3 and 1.
-  real(wp), parameter :: from_values(4, 0:3) = &
-    reshape([6, -5, 2, 0, 0, 18, -9, 0, 0, -9, 18, 0, 0, 2, -5, 6]/6.0_wp, [4, 4])
+  !> Powers of both local coordinates in each monomial of the shape functions: 1, x, y, xy, x**2 and so on.
+  integer, parameter :: powers(directions, most_nodes) = &
+    reshape([0, 0, 1, 0, 0, 1, 1, 1, 2, 0, 0, 2, 2, 1, 1, 2], [directions, most_nodes])
 
   !> Values of `estimated_as`.
   integer, parameter, public :: by_linear_triangles = 1, by_quadrilaterals = 2, by_quadratics = 3
@@ -33,15 +29,15 @@ module epcont_element_element_kind
     logical :: mean_dilatation = .false.
     logical :: locks = .false.              !! it locks in nearly incompressible materials
     integer :: vtk = 0                      !! VTK cell type
-    procedure(shape_functions), pointer, nopass :: shape => null()
+    !> Coefficients of the shape functions: of each node, for each monomial of `powers`
+    real(wp) :: coefficient(most_nodes, most_nodes) = 0.0_wp
     integer :: points = 0                               !! number of integration points
     real(wp) :: point(directions, most_points) = 0.0_wp !! their local coordinates
     real(wp) :: weight(most_points) = 0.0_wp            !! their parts of the local area
     real(wp) :: values(most_nodes, most_points) = 0.0_wp               !! shape functions at the points
     !> Their derivatives by the local coordinates
     real(wp) :: slopes(directions, most_nodes, most_points) = 0.0_wp
-    !> Contribution of each two nodes to the area, see `turn`: Bernstein coefficients [4, 4, nodes, nodes]
-    real(wp) :: spanned(4, 4, 2:most_nodes - 1, 3:most_nodes) = 0.0_wp
+    real(wp) :: node_slopes(directions, most_nodes, most_nodes) = 0.0_wp   !! the same at the nodes
     ! For the error estimate (accuracy/):
     integer :: estimated_as = by_linear_triangles       !! column of its weights
     !> Recovered strains are fitted to samples: strain(points) sample_of, at the points where the shape
@@ -59,120 +55,109 @@ module epcont_element_element_kind
     real(wp) :: p(most_points, most_places) = 0.0_wp
     real(wp) :: v(most_points, most_places) = 0.0_wp
   contains
+    procedure :: shape => shape_functions
     procedure :: turn
     procedure :: compare_at
     procedure :: sample_at
   end type element_kind
 
-  abstract interface
-    !> Shape functions at a local point, and their derivatives by the local coordinates; 0 beyond the last
-    !! node.
-    pure subroutine shape_functions(place, n, slope)
-      import
-      real(wp), intent(in) :: place(directions)
-      real(wp), intent(out) :: n(most_nodes), slope(directions, most_nodes)
-    end subroutine shape_functions
-  end interface
-
 contains
 
-  !> Create a type from its nodes, shape functions and integration points, at which strains are sampled and
-  !! compared.
-  pure function new_kind(corner, nodes, shape, point, weight) result(kind)
+  !> Create a type from its shape functions and integration points, at which strains are sampled and compared.
+  pure function new_kind(corner, coefficient, point, weight) result(kind)
     real(wp), intent(in) :: corner(:, :)       !! local coordinates [directions, corners]
-    integer, intent(in) :: nodes               !! number of nodes
-    procedure(shape_functions) :: shape        !! of the nodes
+    !> Of the shape functions: of all nodes for each monomial; each node has one [nodes**2]
+    real(wp), intent(in) :: coefficient(:)
     real(wp), intent(in) :: point(:, :)        !! local coordinates [directions, points]
     real(wp), intent(in) :: weight(:)          !! [points]
     type(element_kind) :: kind
-    real(wp) :: unit(size(weight), size(weight))
-    integer :: p
+    real(wp) :: at(directions), unit(size(weight), size(weight)), unused(most_nodes)
+    integer :: n, p
 
+    n = nint(sqrt(real(size(coefficient))))
+    kind%nodes = n
     kind%corners = size(corner, 2)
-    kind%nodes = nodes
-    kind%degree = nodes/kind%corners
-    kind%shape => shape
+    kind%degree = n/kind%corners
+    kind%coefficient(:n, :n) = reshape(coefficient, [n, n])
     kind%points = size(weight)
     kind%point(:, :kind%points) = point
     kind%weight(:kind%points) = weight
     unit = 0.0_wp
     do p = 1, kind%points
-      call shape(point(:, p), kind%values(:, p), kind%slopes(:, :, p))
+      call kind%shape(point(:, p), kind%values(:, p), kind%slopes(:, :, p))
       unit(p, p) = 1.0_wp
+    end do
+    do p = 1, n
+      at = corner(:, mod(p - 1, kind%corners) + 1)
+      if (p > kind%corners) at = 0.5_wp*(at + corner(:, mod(p, kind%corners) + 1))   ! mid-side node
+      call kind%shape(at, unused, kind%node_slopes(:, :, p))
     end do
     call kind%compare_at(point, unit, unit)
     kind%sees_points = .true.
     if (kind%degree > 1) call kind%sample_at(point, unit)
-    call find_spanned(kind, corner(:, min([1, 2, 3, 4], kind%corners)))
   end function new_kind
 
-  !> Expand the determinant of the Jacobian as a sum over each two nodes: the cross product of their vectors,
-  !! times a polynomial of degree at most three in each coordinate of a square. A triangle is a square with a
-  !! degenerate edge at its third corner.
-  pure subroutine find_spanned(kind, corner)
-    type(element_kind), intent(inout) :: kind
-    real(wp), intent(in) :: corner(directions, 4)   !! local coordinates of the square's corners
-    real(wp) :: n(most_nodes), part(4, 4), slope(directions, most_nodes)
-    integer :: a, b, i, j
+  !> Find shape functions at a local point, and their derivatives by the local coordinates; 0 beyond the last
+  !! node.
+  pure subroutine shape_functions(self, place, n, slope)
+    class(element_kind), intent(in) :: self
+    real(wp), intent(in) :: place(directions)   !! local coordinates
+    real(wp), intent(out) :: n(most_nodes), slope(directions, most_nodes)
+    integer :: k
 
-    do j = 0, 3
-      do i = 0, 3
-        call kind%shape(matmul(corner, [(3 - i)*(3 - j), i*(3 - j), i*j, (3 - i)*j]/9.0_wp), n, slope)
-        part = sum(kind%weight)*matmul(from_values(:, i:i), transpose(from_values(:, j:j)))
-        do b = 3, kind%nodes
-          do a = 2, b - 1
-            kind%spanned(:, :, a, b) = kind%spanned(:, :, a, b) + &
-                                       part*(slope(1, a)*slope(2, b) - slope(2, a)*slope(1, b))
-          end do
-        end do
-      end do
+    n = 0.0_wp
+    slope = 0.0_wp
+    do k = 1, self%nodes
+      associate (x => place(1), y => place(2), p => powers(1, k), q => powers(2, k), &
+                 coefficient => self%coefficient(:, k))
+        n = n + coefficient*(x**p*y**q)
+        if (p > 0) slope(1, :) = slope(1, :) + coefficient*(p*x**(p - 1)*y**q)
+        if (q > 0) slope(2, :) = slope(2, :) + coefficient*(q*x**p*y**(q - 1))
+      end associate
     end do
-  end subroutine find_spanned
+  end subroutine shape_functions
 
-  !> Find the orientation of an element: 1 counter-clockwise, -1 clockwise, 0 if it folds over or is flat
-  !! somewhere. It is 0 if the determinant of its Jacobian, times the local area, is not above rounding of the
-  !! square of its extent and of its coordinates.
+  !> Find the orientation of an element: 1 counter-clockwise, -1 clockwise, 0 if it folds over or is flat. It
+  !! is 0 if the determinant of its Jacobian, times the local area, has two signs at its nodes and integration
+  !! points, or is not above rounding of the square of its extent and of its coordinates.
   pure integer function turn(self, x)
     class(element_kind), intent(in) :: self
     real(wp), intent(in) :: x(directions, most_nodes)   !! of its nodes [length]
-    real(wp) :: area(4, 4), extent, farthest, to(directions, most_nodes)
-    integer :: a, b
+    real(wp) :: area(most_nodes + most_points), extent, least, to(directions, most_nodes)
+    integer :: k, n
 
-    area = 0.0_wp
-    extent = 0.0_wp
-    farthest = maxval(abs(x(:, 1)))
-    do b = 2, self%nodes
-      to(:, b) = x(:, b) - x(:, 1)
-      extent = max(extent, abs(to(1, b)), abs(to(2, b)))
-      farthest = max(farthest, abs(x(1, b)), abs(x(2, b)))
-      do a = 2, b - 1
-        area = area + self%spanned(:, :, a, b)*(to(1, a)*to(2, b) - to(2, a)*to(1, b))
-      end do
+    n = self%nodes
+    do k = 1, n
+      to(:, k) = x(:, k) - x(:, 1)
     end do
-    turn = merge(1, -1, sum(area) > 0.0_wp)
-    if (.not. is_above(turn*area, extent*max(rounded_off*extent, cancelled*farthest), most_halvings)) turn = 0
+    do k = 1, n
+      area(k) = determinant(self%node_slopes(:, :n, k), to)
+    end do
+    do k = 1, self%points
+      area(n + k) = determinant(self%slopes(:, :n, k), to)
+    end do
+    extent = maxval(abs(to(:, :n)))
+    least = extent*max(rounded_off*extent, cancelled*maxval(abs(x(:, :n))))/sum(self%weight)
+    turn = 0
+    if (all(area(:n + self%points) > least)) turn = 1
+    if (all(area(:n + self%points) < -least)) turn = -1
   end function turn
 
-  !> Is a polynomial above a bound on the unit square? Its values are between its Bernstein coefficients, and
-  !! those at the corners are values (Johnen, Remacle and Geuzaine 2013). If these do not decide, both halves
-  !! are checked (de Casteljau), along one coordinate after the other. If all bisections do not decide, the
-  !! answer is no.
-  pure recursive logical function is_above(net, bound, halvings) result(above)
-    real(wp), intent(in) :: net(4, 4), bound   !! coefficients, and bound in their unit
-    integer, intent(in) :: halvings            !! largest number of bisections
-    real(wp), dimension(4, 4) :: lower, upper
+  !> Determinant of the Jacobian [length**2].
+  pure real(wp) function determinant(slope, x)
+    real(wp), intent(in) :: slope(:, :)   !! derivatives of the shape functions [directions, nodes]
+    real(wp), intent(in) :: x(:, :)       !! [length] [directions, nodes or more]
+    real(wp) :: along(directions), across(directions)
     integer :: k
 
-    above = all(net > bound)
-    if (above .or. halvings == 0 .or. any(net(::3, ::3) <= bound)) return
-    upper = net
-    do k = 1, 4
-      lower(k, :) = upper(1, :)
-      upper(:4 - k, :) = 0.5_wp*(upper(:4 - k, :) + upper(2:5 - k, :))
+    along = 0.0_wp
+    across = 0.0_wp
+    do k = 1, size(slope, 2)
+      along = along + slope(1, k)*x(:, k)
+      across = across + slope(2, k)*x(:, k)
     end do
-    above = is_above(transpose(lower), bound, halvings - 1)
-    if (above) above = is_above(transpose(upper), bound, halvings - 1)
-  end function is_above
+    determinant = along(1)*across(2) - along(2)*across(1)
+  end function determinant
 
   !> Set the points at which strains are compared.
   pure subroutine compare_at(self, place, p, v)

@@ -8,47 +8,31 @@ module epcont_model_body_forces
   use epcont_model_model, only: model_type
   implicit none
   private
-  public :: are_massless, body_forces, put_body_forces, weigh_nodes
+  public :: body_forces, put_body_forces, weigh_nodes
 
-  !> Gauss points along a line, for linear and quadratic elements, and their weights. A triangle is a square
-  !! with one edge collapsed to its third corner. They integrate rho x N exactly, also for axisymmetric
-  !! elements and curved edges: shape function, coordinate and radius have degree d each, the
-  !! determinant of the Jacobian 2 d - 1. The points of the stiffness are too few.
-  integer, parameter :: along(2) = [3, 5], most_along = 5
+  !> Gauss points along a line, and their weights. A triangle is a square with one edge collapsed to its third
+  !! corner. They integrate rho x N exactly, also for axisymmetric elements and curved edges: shape function,
+  !! coordinate and radius have degree 2 each, the determinant of the Jacobian 3. The points of the stiffness
+  !! are too few.
+  integer, parameter :: along = 5
   real(wp), parameter :: &
     inner = sqrt(5.0_wp - 2.0_wp*sqrt(10.0_wp/7.0_wp))/3.0_wp, &
     outer = sqrt(5.0_wp + 2.0_wp*sqrt(10.0_wp/7.0_wp))/3.0_wp, &
     heavy = (322.0_wp + 13.0_wp*sqrt(70.0_wp))/900.0_wp, &
     light = (322.0_wp - 13.0_wp*sqrt(70.0_wp))/900.0_wp, &
-    place(most_along, 2) = reshape([-sqrt(0.6_wp), 0.0_wp, sqrt(0.6_wp), 0.0_wp, 0.0_wp, &
-                                    -outer, -inner, 0.0_wp, inner, outer], [most_along, 2]), &
-    weight(most_along, 2) = reshape([5/9.0_wp, 8/9.0_wp, 5/9.0_wp, 0.0_wp, 0.0_wp, &
-                                     light, heavy, 128/225.0_wp, heavy, light], [most_along, 2])
+    place(along) = [-outer, -inner, 0.0_wp, inner, outer], &
+    weight(along) = [light, heavy, 128/225.0_wp, heavy, light]
 
   real(wp), parameter :: full_turn = 2.0_wp*acos(-1.0_wp)
 
   !> Integration points of an element type.
   type :: mass_rule
-    integer :: points = 0
-    real(wp) :: weight(most_along**2) = 0.0_wp               !! fractions of the local area
-    real(wp) :: values(most_nodes, most_along**2) = 0.0_wp   !! shape functions
-    real(wp) :: slopes(directions, most_nodes, most_along**2) = 0.0_wp   !! local derivatives
+    real(wp) :: weight(along**2) = 0.0_wp               !! fractions of the local area
+    real(wp) :: values(most_nodes, along**2) = 0.0_wp   !! shape functions
+    real(wp) :: slopes(directions, most_nodes, along**2) = 0.0_wp   !! local derivatives
   end type mass_rule
 
 contains
-
-  !> Find the sections that have elements, but no mass [sections].
-  pure function are_massless(model) result(massless)
-    type(model_type), intent(in) :: model   !! the model
-    logical :: massless(size(model%sections%density))
-    integer :: e
-
-    massless = .false.
-    do e = 1, model%mesh%elements
-      if (model%mesh%section(e) > 0) massless(model%mesh%section(e)) = &
-        model%sections%density(model%mesh%section(e)) <= 0.0_wp
-    end do
-  end function are_massless
 
   !> Find the mass of each node and its moments: integrals of rho N and rho N (x - x of the node).
   pure subroutine weigh_nodes(model)
@@ -70,24 +54,20 @@ contains
   pure function new_mass_rule(kind) result(rule)
     type(element_kind), intent(in) :: kind
     type(mass_rule) :: rule
-    real(wp) :: at(directions), part
-    integer :: i, j
+    real(wp) :: at(directions)
+    integer :: i, j, p
 
-    associate (d => kind%degree, p => rule%points)
-      do j = 1, along(d)
-        do i = 1, along(d)
-          p = p + 1
-          at = [place(i, d), place(j, d)]
-          part = weight(i, d)*weight(j, d)
-          if (kind%corners == 3) then
-            part = part*0.125_wp*(1.0_wp - at(2))
-            at = 0.5_wp*[0.5_wp*(1.0_wp + at(1))*(1.0_wp - at(2)), 1.0_wp + at(2)]
-          end if
-          rule%weight(p) = part
-          call kind%shape(at, rule%values(:, p), rule%slopes(:, :, p))
-        end do
-      end do
-    end associate
+    do p = 1, along**2
+      i = mod(p - 1, along) + 1
+      j = (p - 1)/along + 1
+      at = [place(i), place(j)]
+      rule%weight(p) = weight(i)*weight(j)
+      if (kind%corners == 3) then
+        rule%weight(p) = rule%weight(p)*0.125_wp*(1.0_wp - at(2))
+        at = 0.5_wp*[0.5_wp*(1.0_wp + at(1))*(1.0_wp - at(2)), 1.0_wp + at(2)]
+      end if
+      call kind%shape(at, rule%values(:, p), rule%slopes(:, :, p))
+    end do
   end function new_mass_rule
 
   !> Add the mass of an element to its nodes.
@@ -102,7 +82,7 @@ contains
     n = model%mesh%node_count(element)
     associate (node => model%mesh%connectivity(:n, element))
       from_first(:, :n) = model%mesh%x(:, node) - spread(model%mesh%x(:, node(1)), 2, n)
-      do p = 1, rule%points
+      do p = 1, along**2
         do c = 1, directions
           at(c) = dot_product(from_first(c, :n), rule%values(:n, p))
           jacobian(1, c) = dot_product(from_first(c, :n), rule%slopes(1, :n, p))

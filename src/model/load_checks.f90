@@ -6,7 +6,7 @@ module epcont_model_load_checks
   use epcont_deck_entry, only: farthest, least_cause
   use epcont_geometry_plane, only: extent_of
   use epcont_model_arrays, only: body_load
-  use epcont_model_body_forces, only: are_massless, body_forces, weigh_nodes
+  use epcont_model_body_forces, only: body_forces, weigh_nodes
   use epcont_model_finding, only: and_more, findings, item_acceleration, item_centre, item_density, &
       item_spin_up, of_body_load, of_element, of_node, of_pressure, of_section
   use epcont_model_load_cases, only: load_cases, set_pressure
@@ -60,7 +60,7 @@ contains
     logical :: massless(size(model%sections%density))
     integer :: s
 
-    massless = are_massless(model)
+    massless = model%sections%density <= 0.0_wp .and. [(any(model%mesh%section == s), s=1, size(massless))]
     do s = 1, size(massless)
       if (.not. massless(s)) cycle
       if (any(massless(:s - 1) .and. model%sections%material_id(:s - 1) == &

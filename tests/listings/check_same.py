@@ -26,7 +26,8 @@ WAY = {"equilibrium_residual", "smallest_force", "smallest_gap", "largest_force_
        "friction_above_limit", "largest_force_slip_product", "iteration_error_displacement", "iteration_error_force", "pivots"}
 #: Figures that set the scale of others: without a push, the friction force is the rounding of the contact force.
 QUANTITY = {"friction_force": "total_contact_force", "max_shear": "max_pressure", "total_friction_force": "total_contact_force", "stress": "max_equivalent_stress", "half_width": "stick_half_width",
-            "allowed_worst_penetration": "max_displacement",
+            "largest_penetration": "max_displacement", "worst_penetration": "max_displacement",
+            "allowed_worst_penetration": "max_displacement", "largest_pressed_gap": "max_displacement",
             "worst_pressed_gap": "max_displacement", "allowed_worst_pressed_gap": "max_displacement"}
 
 
