@@ -3,12 +3,11 @@
 module epcont_contact_geometry_complete
   use epcont_base_kinds, only: wp
   use epcont_contact_geometry_line_contacts, only: find_line_contacts
-  use epcont_contact_geometry_loose_nodes, only: warn_of_hanging_nodes, warn_of_lying_together
+  use epcont_contact_geometry_loose_nodes, only: warn_of_loose_nodes
   use epcont_contact_geometry_pair_checks, only: check_pairs
   use epcont_contact_geometry_tangential_rows, only: add_tangential_rows
   use epcont_deck_entry, only: least_cause
   use epcont_element_kinematics, only: directions, plane_strain
-  use epcont_geometry_outline_shape, only: new_outline_shape, outline_shape
   use epcont_model_arrays, only: angle, dof_tie, scene_type
   use epcont_model_controls, only: method_modsec, method_newton, method_secant
   use epcont_model_element_shapes, only: check_axis, complete_elements
@@ -49,7 +48,6 @@ contains
     integer, intent(in) :: case                !! load case of the model
     type(model_type), intent(inout) :: model   !! has ids, if they are not positions
     type(findings), intent(inout) :: found     !! all errors and warnings are added
-    type(outline_shape) :: drawn
 
     if (found%errors == 0) then
       call check_values(data, found)
@@ -74,9 +72,7 @@ contains
     call put_case(cases, case, model)
     call check_body_forces(model, cases%body%given, found)
     call check_pairs(model, found)
-    drawn = new_outline_shape(model%mesh%body_outline, model%mesh%x)
-    call warn_of_hanging_nodes(model, drawn, found)
-    call warn_of_lying_together(model, drawn, found)
+    call warn_of_loose_nodes(model, found)
   end subroutine complete_model
 
   !> Complete ties, platens, SUPORT DOFs, equations and springs. Each is checked against the earlier ones.

@@ -99,12 +99,7 @@ contains
       integer, allocatable :: part(:), set(:)
       integer :: i, sets
 
-      if (model%constraints%is_tied([(i, i=1, model%mesh%nodes)])) then
-        call join_nodes(model, .false., set, sets)
-      else
-        set = model%mesh%body
-        sets = model%mesh%bodies
-      end if
+      call join_nodes(model, .false., set, sets)
       allocate (part(sets), outline%part_of(model%mesh%nodes), source=0)
       do i = 1, model%mesh%nodes
         if (model%mesh%around%start(i) == model%mesh%around%start(i + 1)) cycle
