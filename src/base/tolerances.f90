@@ -69,7 +69,7 @@ module epcont_base_tolerances
     no_effect = 1.0e-6_wp, &
     !> Points within this part of an edge are one point or on one line; lines within this part of a radius
     !! meet.
-    !! > model/test_body_outline, test_pair_faults, extremes/test_motions; < model/test_body_outline,
+    !! > model/test_body_outline, extremes/test_motions; < model/test_body_outline,
     !! certificate/test_allowance, extremes/test_motions
     coincident = 1.0e-4_wp, &
     !> Area of a corner on the axis due to rounding and curvature alone, relative to the area of its edge: for

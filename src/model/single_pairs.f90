@@ -2,7 +2,7 @@
 module epcont_model_single_pairs
   use epcont_base_kinds, only: wp
   use epcont_base_text, only: short_real, text_of
-  use epcont_base_tolerances, only: coincident
+  use epcont_base_tolerances, only: no_effect
   use epcont_element_kinematics, only: directions
   use epcont_model_finding, only: findings, of_pair
   use epcont_model_model, only: model_type
@@ -20,7 +20,6 @@ contains
   subroutine complete_pairs(model, found)
     type(model_type), intent(inout) :: model   !! the model
     type(findings), intent(inout) :: found   !! errors are added
-    real(wp), allocatable :: shortest(:)     ! edge at each node, found when a pair first needs it
     character(len=:), allocatable :: others
     real(wp) :: between(directions)
     integer :: i, overlaps
@@ -37,8 +36,7 @@ contains
         end if
         between = model%mesh%x(:, b) - model%mesh%x(:, a)
         if (all(normal == 0.0_wp)) then
-          if (.not. allocated(shortest)) shortest = shortest_edge()
-          if (norm2(between) > coincident*min(shortest(a), shortest(b))) then
+          if (norm2(between) > no_effect*maxval(abs(model%mesh%x(:, [a, b])))) then
             normal = between/norm2(between)
           else
             call found%add_error(of_pair, i, 8, &
@@ -65,27 +63,5 @@ contains
     call found%add_warning(of_pair, i, 1, ': the initial gap is '// &
                            short_real(model%contact%initial_gap(i))//others, &
                            'give a gap of 0.0 or more, unless you mean an interference fit')
-
-  contains
-
-    !> Shortest edge at each node; 0 at nodes without elements, which have no mesh size.
-    pure function shortest_edge() result(edge)
-      real(wp) :: edge(model%mesh%nodes)
-      integer :: e, k, side(3)
-
-      edge = huge(1.0_wp)
-      do e = 1, model%mesh%elements
-        if (any(model%mesh%connectivity(:model%mesh%node_count(e), e) == 0)) cycle
-        do k = 1, model%mesh%corners(e)
-          side = model%mesh%edge(e, k)
-          associate (node => side(:merge(3, 2, side(3) > 0)))
-            edge(node) = min(edge(node), norm2(model%mesh%x(:, side(1)) - model%mesh%x(:, &
-              side(2)))/(size(node) - 1))
-          end associate
-        end do
-      end do
-      where (edge == huge(1.0_wp)) edge = maxval(edge, mask=edge < huge(1.0_wp))
-      where (edge < 0.0_wp) edge = 0.0_wp
-    end function shortest_edge
   end subroutine complete_pairs
 end module epcont_model_single_pairs
