@@ -118,7 +118,7 @@ contains
                                           0.0_wp, moved)
         end do
       end do
-      if (size(model%constraints%sum%first) == 0) return
+      if (size(model%constraints%sum) == 0) return
       do node = 1, model%mesh%nodes
         do c = 1, directions
           if (model%constraints%sum_of(c, node) > 0) displacement(c, node) = &
@@ -134,11 +134,11 @@ contains
       integer :: i
 
       u = 0.0_wp
-      associate (sums => scene%model%constraints%sum)
-        do i = sums%first(row), sums%last(row)
-          associate (of => sums%component(i), at => sums%node(i))
-            if (of == angle) u = u + sums%weight(i)*turned(at)
-            if (of /= angle) u = u + sums%weight(i)*displacement(of, at)
+      associate (sum => scene%model%constraints%sum(row))
+        do i = 1, size(sum%node)
+          associate (of => sum%component(i), at => sum%node(i))
+            if (of == angle) u = u + sum%coefficient(i)*turned(at)
+            if (of /= angle) u = u + sum%coefficient(i)*displacement(of, at)
           end associate
         end do
       end associate

@@ -273,13 +273,12 @@ contains
           stiffness(leader) = max(stiffness(leader), stiffness(i))
         end associate
         if (scene%model%constraints%sum_of(c, i) == 0) cycle
-        do j = scene%model%constraints%sum%first(scene%model%constraints%sum_of(c, i)), &
-          scene%model%constraints%sum%last(scene%model%constraints%sum_of(c, i))
-          if (scene%model%constraints%sum%component(j) == angle) cycle
-          associate (master => scene%model%constraints%sum%node(j))
-            stiffness(master) = max(stiffness(master), scene%model%constraints%sum%weight(j)**2*stiffness(i))
-          end associate
-        end do
+        associate (sum => scene%model%constraints%sum(scene%model%constraints%sum_of(c, i)))
+          do j = 1, size(sum%node)
+            if (sum%component(j) /= angle) stiffness(sum%node(j)) = &
+              max(stiffness(sum%node(j)), sum%coefficient(j)**2*stiffness(i))
+          end do
+        end associate
       end do
     end do
   end subroutine measure

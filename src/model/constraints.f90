@@ -5,14 +5,7 @@ module epcont_model_constraints
   use epcont_model_arrays, only: angle, linear_equation, spring_type, turning_platen
   implicit none
   private
-  public :: constraints_type, freedom_sums
-
-  !> DOFs that are sums of independent DOFs: row k has the terms first(k) to last(k).
-  type :: freedom_sums
-    integer, allocatable :: first(:), last(:)       !! [rows]
-    integer, allocatable :: component(:), node(:)   !! for the component `angle`: number of the platen [terms]
-    real(wp), allocatable :: weight(:)              !! [terms]
-  end type freedom_sums
+  public :: constraints_type
 
   type :: constraints_type
     logical, allocatable :: held(:, :)          !! the DOF has a prescribed displacement [2, nodes]
@@ -21,7 +14,8 @@ module epcont_model_constraints
     !> Node whose displacement the DOF has: itself if it is not tied [2, nodes]
     integer, allocatable :: leader(:, :)
     integer, allocatable :: sum_of(:, :)        !! row of each DOF that is a sum, else 0 [2, nodes]
-    type(freedom_sums) :: sum
+    !> Terms of each row; for the component `angle`, the node is the number of the platen [rows]
+    type(linear_equation), allocatable :: sum(:)
     type(turning_platen), allocatable :: platen(:)    !! rotating rigid bodies (RBE2) [any]
     type(linear_equation), allocatable :: equation(:) !! between displacements [any]
     type(spring_type), allocatable :: spring(:)       !! [any]
@@ -75,9 +69,10 @@ contains
     integer, intent(in) :: node   !! index of the node
 
     platen = findloc(self%platen%leader, node, dim=1)
-    associate (row => self%sum_of(1, node))
-      if (row == 0) return
-      if (self%sum%component(self%sum%last(row)) == angle) platen = self%sum%node(self%sum%last(row))
+    if (self%sum_of(1, node) == 0) return
+    associate (row => self%sum(self%sum_of(1, node)))
+      if (size(row%node) == 0) return
+      if (row%component(size(row%node)) == angle) platen = row%node(size(row%node))
     end associate
   end function platen_of
 end module epcont_model_constraints

@@ -33,7 +33,7 @@ contains
     end associate
     associate (c => model%constraints)
       mark(4) = checksum([real(wp) :: merge(1, 0, c%held), merge(1, 0, c%reference), c%leader, c%sum_of, &
-                          c%sum%first, c%sum%component, c%sum%node, c%sum%weight, &
+                          (c%sum(k)%component, c%sum(k)%node, c%sum(k)%coefficient, k=1, size(c%sum)), &
                           c%platen%leader, merge(1, 0, c%platen%held), c%spring%stiffness, &
                           (c%spring(k)%component, c%spring(k)%node, k=1, size(c%spring))])
     end associate

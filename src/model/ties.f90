@@ -3,7 +3,7 @@
 module epcont_model_ties
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: directions
-  use epcont_model_arrays, only: angle
+  use epcont_model_arrays, only: angle, linear_equation
   use epcont_model_finding, only: findings, of_equation, of_node, of_platen
   use epcont_model_freedoms, only: freedom, why_not_tied
   use epcont_model_model, only: model_type
@@ -66,33 +66,45 @@ contains
   subroutine complete_ties(model, found)
     type(model_type), intent(inout) :: model   !! the model
     type(findings), intent(inout) :: found     !! equations with circular dependence are added
-    integer, parameter :: untouched = 0, begun = 1, done = 2
-    integer, allocatable :: state(:), equation(:)
-    integer, allocatable :: first(:), component(:), node(:)   ! terms on the cards
-    real(wp), allocatable :: weight(:)
-    integer :: c, i, k, last, rows
+    integer :: c, i
+
+    call list_rows(model, found)
+    call resolve_rows(model, found)
+    associate (constraints => model%constraints)
+      do i = 1, model%mesh%nodes
+        do c = 1, directions
+          if (constraints%leader(c, i) /= i) &
+            constraints%sum_of(c, i) = constraints%sum_of(c, constraints%leader(c, i))
+        end do
+      end do
+    end associate
+  end subroutine complete_ties
+
+  !> List the rows of the nodes of platens, u = u of the master node + angle x arm, then those of the
+  !! equations, as they are given.
+  subroutine list_rows(model, found)
+    type(model_type), intent(inout) :: model
+    type(findings), intent(inout) :: found
+    real(wp) :: arm(directions)
+    integer :: i, k, rows
+    logical :: turns
 
     model%constraints%sum_of = spread([0, 0], 2, model%mesh%nodes)
-    rows = directions*sum([(size(model%constraints%platen(k)%follower), k=1, &
-                            size(model%constraints%platen))]) + size(model%constraints%equation)
-    allocate (first(rows + 1), source=1)
-    allocate (equation(rows), state(rows), source=untouched)
-    allocate (model%constraints%sum%first(rows), model%constraints%sum%last(rows), source=0)
-    last = 0
+    rows = directions*sum([(size(model%constraints%platen(k)%follower), k=1, size(model%constraints%platen))])
+    allocate (model%constraints%sum(rows + size(model%constraints%equation)))
     rows = 0
-    k = 2*size(state) + sum([(size(model%constraints%equation(k)%node), k=1, &
-                              size(model%constraints%equation))])
-    allocate (component(k), node(k), weight(k))
     do k = 1, size(model%constraints%platen)
-      call add_platen()
-      if (size(model%constraints%platen(k)%follower) > 0) then
-        if (any(model%mesh%x(:, model%constraints%platen(k)%follower) /= &
-                spread(model%mesh%x(:, model%constraints%platen(k)%leader), 2, &
-                       size(model%constraints%platen(k)%follower)))) cycle
-      end if
-      call found%add_error(of_node, model%constraints%platen(k)%leader, 0, &
-                           ': rotates, and no node that depends on it is'// &
-                           ' anywhere else', 'give a GM at another point')
+      associate (platen => model%constraints%platen(k))
+        turns = .false.
+        do i = 1, size(platen%follower)
+          arm = model%mesh%x(:, platen%follower(i)) - model%mesh%x(:, platen%leader)
+          turns = turns .or. any(arm /= 0.0_wp)
+          call add_row(1, platen%follower(i), [1, angle], [platen%leader, k], [1.0_wp, -arm(2)])
+          call add_row(2, platen%follower(i), [2, angle], [platen%leader, k], [1.0_wp, arm(1)])
+        end do
+        if (.not. turns) call found%add_error(of_node, platen%leader, 0, &
+          ': rotates, and no node that depends on it is anywhere else', 'give a GM at another point')
+      end associate
     end do
     do k = 1, size(model%constraints%equation)
       associate (given => model%constraints%equation(k), &
@@ -100,132 +112,82 @@ contains
         ! A first coefficient of 0.0 has been reported; avoid the division by it.
         call add_row(given%component(1), given%node(1), given%component(2:), given%node(2:), &
                      -given%coefficient(2:)/merge(1.0_wp, first_one, first_one == 0.0_wp))
-        equation(rows) = k
       end associate
-    end do
-    call make_room(last, k, model)
-    do k = 1, rows
-      if (state(k) == untouched) call resolve(k)
-    end do
-    call make_room(last, last, model)
-    do i = 1, model%mesh%nodes
-      do c = 1, directions
-        if (model%constraints%leader(c, i) /= i) model%constraints%sum_of(c, i) = &
-          model%constraints%sum_of(c, model%constraints%leader(c, i))
-      end do
     end do
 
   contains
 
-    !> Add u = u of the master node + angle x arm.
-    subroutine add_platen()
-      real(wp) :: arm(directions)
-      integer :: j
-
-      associate (platen => model%constraints%platen(k))
-        do j = 1, size(platen%follower)
-          arm = model%mesh%x(:, platen%follower(j)) - model%mesh%x(:, platen%leader)
-          call add_row(1, platen%follower(j), [1, angle], [platen%leader, k], [1.0_wp, -arm(2)])
-          call add_row(2, platen%follower(j), [2, angle], [platen%leader, k], [1.0_wp, arm(1)])
-        end do
-      end associate
-    end subroutine add_platen
-
     !> Add a row for one DOF, with its terms.
-    subroutine add_row(c, follower, components, nodes, weights)
-      integer, intent(in) :: c, follower, components(:), nodes(:)
-      real(wp), intent(in) :: weights(:)
+    subroutine add_row(c, follower, component, node, weight)
+      integer, intent(in) :: c, follower, component(:), node(:)
+      real(wp), intent(in) :: weight(:)
 
       rows = rows + 1
       model%constraints%sum_of(c, follower) = rows
-      first(rows + 1) = first(rows) + size(nodes)
-      associate (from => first(rows), to => first(rows + 1) - 1)
-        component(from:to) = components
-        node(from:to) = nodes
-        weight(from:to) = weights
-      end associate
+      model%constraints%sum(rows)%component = component
+      model%constraints%sum(rows)%node = node
+      model%constraints%sum(rows)%coefficient = weight
     end subroutine add_row
+  end subroutine list_rows
 
-    !> Replace each term that is a sum by the terms of that sum.
-    recursive subroutine resolve(row)
-      integer, intent(in) :: row
-      integer :: i, j
-
-      state(row) = begun
-      do i = first(row), first(row + 1) - 1
-        if (component(i) == angle) cycle
-        node(i) = model%constraints%leader(component(i), node(i))
-        j = model%constraints%sum_of(component(i), node(i))
-        if (j == 0) cycle
-        if (state(j) == begun) then
-          ! The row may be that of a platen; a circle has an equation.
-          call found%add_error(of_equation, maxval(equation, mask=state == begun), 0, ': '// &
-                               freedom(model, component(i), node(i))//' would depend on itself', &
-                               'remove the circle of equations')
-          model%constraints%sum_of(component(i), node(i)) = 0
-        else if (state(j) == untouched) then
-          call resolve(j)
-        end if
-      end do
-      call put_terms(first, component, node, weight, row, model, last)
-      state(row) = done
-    end subroutine resolve
-  end subroutine complete_ties
-
-  !> Add the independent terms of a DOF.
-  subroutine put_terms(first, component, node, weight, row, model, last)
-    integer, intent(in) :: first(:), component(:), node(:), row
-    real(wp), intent(in) :: weight(:)
+  !> Replace each term that is a sum by the terms of that sum.
+  subroutine resolve_rows(model, found)
     type(model_type), intent(inout) :: model
-    integer, intent(inout) :: last
-    integer :: i, j
+    type(findings), intent(inout) :: found
+    integer, parameter :: untouched = 0, begun = 1, done = 2
+    integer :: k, state(size(model%constraints%sum))
 
-    model%constraints%sum%first(row) = last + 1
-    do i = first(row), first(row + 1) - 1
-      j = 0
-      if (component(i) /= angle) j = model%constraints%sum_of(component(i), node(i))
-      if (j == 0) then
-        call put([component(i)], [node(i)], [weight(i)])
-      else
-        associate (from => model%constraints%sum%first(j), to => model%constraints%sum%last(j))
-          call put([model%constraints%sum%component(from:to)], [model%constraints%sum%node(from:to)], &
-                   weight(i)*model%constraints%sum%weight(from:to))
-        end associate
-      end if
+    state = untouched
+    do k = 1, size(state)
+      if (state(k) == untouched) call resolve(k)
     end do
-    model%constraints%sum%last(row) = last
 
   contains
 
-    subroutine put(components, nodes, weights)
-      integer, intent(in) :: components(:), nodes(:)
-      real(wp), intent(in) :: weights(:)
+    recursive subroutine resolve(k)
+      integer, intent(in) :: k
+      type(linear_equation) :: given, whole
+      integer :: c, i, j, node
 
-      if (last + size(nodes) > size(model%constraints%sum%node)) call make_room(last, &
-        2*(last + size(nodes)), model)
-      model%constraints%sum%component(last + 1:last + size(nodes)) = components
-      model%constraints%sum%node(last + 1:last + size(nodes)) = nodes
-      model%constraints%sum%weight(last + 1:last + size(nodes)) = weights
-      last = last + size(nodes)
-    end subroutine put
-  end subroutine put_terms
-
-  !> Make space for more terms after the present ones.
-  subroutine make_room(last, terms, model)
-    integer, intent(in) :: last, terms
-    type(model_type), intent(inout) :: model
-    integer :: new_component(terms), new_node(terms)
-    real(wp) :: new_weight(terms)
-
-    if (last > 0) then
-      new_component(:last) = model%constraints%sum%component(:last)
-      new_node(:last) = model%constraints%sum%node(:last)
-      new_weight(:last) = model%constraints%sum%weight(:last)
-    end if
-    model%constraints%sum%component = new_component
-    model%constraints%sum%node = new_node
-    model%constraints%sum%weight = new_weight
-  end subroutine make_room
+      state(k) = begun
+      given = model%constraints%sum(k)
+      allocate (whole%component(0), whole%node(0), whole%coefficient(0))
+      do i = 1, size(given%node)
+        c = given%component(i)
+        node = given%node(i)
+        j = 0
+        if (c /= angle) then
+          node = model%constraints%leader(c, node)
+          j = model%constraints%sum_of(c, node)
+        end if
+        if (j > 0) then
+          if (state(j) == untouched) call resolve(j)
+          if (state(j) == begun) then
+            ! The row may be that of a platen; a circle has an equation, and these are the last rows.
+            call found%add_error(of_equation, size(model%constraints%equation) - size(state) + &
+                                 findloc(state, begun, dim=1, back=.true.), 0, ': '// &
+                                 freedom(model, c, node)//' would depend on itself', &
+                                 'remove the circle of equations')
+            model%constraints%sum_of(c, node) = 0
+            j = 0
+          end if
+        end if
+        if (j == 0) then
+          whole%component = [whole%component, c]
+          whole%node = [whole%node, node]
+          whole%coefficient = [whole%coefficient, given%coefficient(i)]
+        else
+          associate (sum => model%constraints%sum(j))
+            whole%component = [whole%component, sum%component]
+            whole%node = [whole%node, sum%node]
+            whole%coefficient = [whole%coefficient, given%coefficient(i)*sum%coefficient]
+          end associate
+        end if
+      end do
+      model%constraints%sum(k) = whole
+      state(k) = done
+    end subroutine resolve
+  end subroutine resolve_rows
 
   !> Apply a moment at a rotating platen as forces: on the dependent nodes, normal and proportional to their
   !! arms, and on the master node the negative of their sum.

@@ -101,13 +101,13 @@ contains
     if (model%constraints%leader(c, node) /= node) then
       row = row - row_of(model, parts, columns, c, model%constraints%leader(c, node))
     else if (model%constraints%sum_of(c, node) > 0) then
-      do i = model%constraints%sum%first(model%constraints%sum_of(c, node)), &
-        model%constraints%sum%last(model%constraints%sum_of(c, node))
-        weight = model%constraints%sum%weight(i)
-        if (model%constraints%sum%component(i) == angle) weight = weight/parts%extent(model%mesh%body(node))
-        row = row - weight*row_of(model, parts, columns, model%constraints%sum%component(i), &
-                                  model%constraints%sum%node(i))
-      end do
+      associate (sum => model%constraints%sum(model%constraints%sum_of(c, node)))
+        do i = 1, size(sum%node)
+          weight = sum%coefficient(i)
+          if (sum%component(i) == angle) weight = weight/parts%extent(model%mesh%body(node))
+          row = row - weight*row_of(model, parts, columns, sum%component(i), sum%node(i))
+        end do
+      end associate
     end if
   end function row_of_tie
 

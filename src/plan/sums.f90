@@ -31,7 +31,11 @@ contains
       end do
     end do
     leads(model%constraints%platen%leader) = .true.
-    leads(pack(model%constraints%sum%node, model%constraints%sum%component /= angle)) = .true.
+    do i = 1, size(model%constraints%sum)
+      associate (sum => model%constraints%sum(i))
+        leads(pack(sum%node, sum%component /= angle)) = .true.
+      end associate
+    end do
   end function followed_nodes
 
   !> Find the DOFs that gaps depend on: those of contact nodes along their normals, and those on which these
@@ -58,12 +62,12 @@ contains
           if (pair(i) == 0 .or. .not. wanted(c, i)) cycle
           wanted(c, ties%leader(c, i)) = .true.
           if (ties%sum_of(c, i) == 0) cycle
-          do k = ties%sum%first(ties%sum_of(c, i)), ties%sum%last(ties%sum_of(c, i))
-            associate (of => ties%sum%component(k), node => ties%sum%node(k))
-              if (of == angle) wanted(angle, ties%platen(node)%leader) = .true.
-              if (of /= angle) wanted(of, node) = .true.
-            end associate
-          end do
+          associate (sum => ties%sum(ties%sum_of(c, i)))
+            do k = 1, size(sum%node)
+              if (sum%component(k) == angle) wanted(angle, ties%platen(sum%node(k))%leader) = .true.
+              if (sum%component(k) /= angle) wanted(sum%component(k), sum%node(k)) = .true.
+            end do
+          end associate
         end do
       end do
     end associate
@@ -89,14 +93,14 @@ contains
       do c = 1, directions
         associate (k => model%constraints%sum_of(c, nodes(i)), sum => model%constraints%sum)
           if (model%constraints%leader(c, nodes(i)) /= nodes(i) .or. k == 0) cycle
-          number = [(0, e=sum%first(k), sum%last(k))]
+          number = 0*sum(k)%node
           do e = 1, size(number)
-            associate (of => sum%component(sum%first(k) + e - 1), node => sum%node(sum%first(k) + e - 1))
+            associate (of => sum(k)%component(e), node => sum(k)%node(e))
               if (of == angle) number(e) = angles(node)
               if (of /= angle) number(e) = equation(of, node)
             end associate
           end do
-          call put_row(no_sums, number, sum%weight(sum%first(k):sum%last(k)), row + 1, tied)
+          call put_row(no_sums, number, sum(k)%coefficient, row + 1, tied)
         end associate
         equation(c, nodes(i)) = 0
         if (tied%start(row + 2) == tied%start(row + 1)) cycle

@@ -72,9 +72,9 @@ contains
       real(wp), intent(in) :: force
       integer :: i
 
-      do i = model%constraints%sum%first(row), model%constraints%sum%last(row)
-        associate (c => model%constraints%sum%component(i), at => model%constraints%sum%node(i), &
-                   share => model%constraints%sum%weight(i)*force)
+      do i = 1, size(model%constraints%sum(row)%node)
+        associate (c => model%constraints%sum(row)%component(i), at => model%constraints%sum(row)%node(i), &
+                   share => model%constraints%sum(row)%coefficient(i)*force)
           if (c == angle) then
             if (model%constraints%platen(at)%held) answer%moment(at) = answer%moment(at) + share
           else if (model%constraints%held(c, at)) then
