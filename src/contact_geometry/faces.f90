@@ -19,7 +19,6 @@ module epcont_contact_geometry_faces
     type(node_face), allocatable :: row(:)   !! one row for each projection [any]
     !> Rows of the nodes of each edge; 0: no projection [3, edges]
     integer, allocatable :: row_of(:, :)
-    integer :: same_way = 0                  !! nodes near edges whose normals have the same sense
   end type faces_type
 
 contains
@@ -80,7 +79,6 @@ contains
               all(second(:seconds)%node /= node)) return
         end if
         face = find_facing(contact%master, obstacles, node_of(slave, side, which), contact%search)
-        if (face(1)%same_way .and. (neighbour == 0 .or. neighbour > side)) faces%same_way = faces%same_way + 1
         if (face(2)%found) then
           seconds = seconds + 1
           second(seconds) = node_face(facing_type=face(2), node=node)

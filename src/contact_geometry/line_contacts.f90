@@ -191,27 +191,14 @@ contains
       call add_pairs(model, contact, faces)
       if (contact%last >= contact%first) exit
       if (contact%search > sum(extent_of(model%mesh%x(:, model%mesh%around%members())))) then
-        call add_nothing_faced()
+        call found%add_error(of_couple, contact%couple(1), 1, &
+          ': no node of BLSEG '//text_of(contact%slave_id(1))//' faces an edge of BLSEG '// &
+          text_of(contact%master_id(1)), 'give boundaries of two bodies that face each other')
         return
       end if
       contact%search = widening*contact%search
     end do
     call warn_of_contact(model, contact, faces, found)
-
-  contains
-
-    subroutine add_nothing_faced()
-      character(len=:), allocatable :: remedy, what
-
-      what = ': no node of BLSEG '//text_of(contact%slave_id(1))//' faces an edge of BLSEG '// &
-             text_of(contact%master_id(1))
-      remedy = 'give lines that face each other'
-      if (faces%same_way > 0) then
-        what = what//'; '//text_of(faces%same_way)//' of them near edges that face the same way'
-        remedy = 'give boundaries of two bodies that face each other'
-      end if
-      call found%add_error(of_couple, contact%couple(1), 1, what, remedy)
-    end subroutine add_nothing_faced
   end subroutine find_pairs
 
   !> Have two lists a positive number in common?

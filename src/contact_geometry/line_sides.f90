@@ -76,11 +76,6 @@ contains
       if (.not. sound .or. sides == 0) return
       if (model%contact%boundary%segment(1, side(1)) /= node(1)) side(:sides) = side(sides:1:-1)
       model%contact%line(i)%side = side(:sides)
-      k = model%mesh%body_outline%after(side(sides))
-      if (sides > 3 .and. model%mesh%body_outline%after(k) == side(1)) &
-        call found%add_warning(of_line, i, -size(node), &
-                               ': it leaves out only the edge back to its first node', &
-                               'repeat that node at its end: the line is then closed')
       model%contact%line(i)%box = reshape([minval(model%mesh%x(:, node), dim=2), &
                                            maxval(model%mesh%x(:, node), dim=2)], [2, 2])
     end subroutine walk

@@ -7,7 +7,6 @@ module epcont_contact_geometry_mortar_sides
   use epcont_base_kinds, only: wp
   use epcont_contact_geometry_faces, only: faces_type
   use epcont_geometry_boundary_line, only: beyond, facing_type
-  use epcont_geometry_box_tree, only: line_query
   use epcont_geometry_facing, only: find_facing, looking_point, rise_of
   use epcont_geometry_plane, only: right_of, unit
   use epcont_model_contact_rows, only: line_contact
@@ -142,8 +141,7 @@ contains
         reach = min(reach, 2.0_wp*max(slave%chord_length(s), maxval(abs(faces%row(row(:2))%gap))))
       middle = 0.5_wp*(slave%x(:, 1, s) + slave%x(:, 2, s))
       within = reach + slave%chord_length(s)
-      near = master%in_box(line_query(middle - within, middle + within, slave%box_of(s), .false., &
-                                      slave%normals_of(s)))
+      near = master%in_box(middle - within, middle + within)
       cut = [0.0_wp, 1.0_wp]
       do i = 1, size(near)
         do k = 1, 2

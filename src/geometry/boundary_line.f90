@@ -11,7 +11,7 @@ module epcont_geometry_boundary_line
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: sorted_order
   use epcont_geometry_box_tree, only: box_query, box_tree, new_box_tree
-  use epcont_geometry_plane, only: cross_product, right_of, span_along, unit
+  use epcont_geometry_plane, only: cross_product, right_of, unit
   implicit none
   private
   public :: boundary_line, facing_type
@@ -24,6 +24,8 @@ module epcont_geometry_boundary_line
   !> Largest distance of a projection along an edge [lengths of the edge].
   real(wp), parameter :: farthest = 10.0_wp
   real(wp), parameter :: converged = 1.0e-14_wp
+  !> Positions whose normals show on which side of an edge a point is: beyond both ends, and the middle.
+  real(wp), parameter :: tried(3) = [-10.0_wp*beyond, 1.0_wp + 10.0_wp*beyond, 0.5_wp]
 
   type :: boundary_line
     integer, allocatable :: segment(:, :)      !! start, end, mid-side node (or 0) of each edge [3, sides]
@@ -36,12 +38,10 @@ module epcont_geometry_boundary_line
     !> Start and end lie on a line of symmetry, and the normal along that line, also if the end is a corner
     logical, allocatable :: mirrored(:, :)     !! [2, sides]
     real(wp), allocatable :: end_normal(:, :, :)   !! [2, 2, sides]
-    type(box_tree), private :: tree            !! boxes of the edges, with their normals
+    type(box_tree), private :: tree            !! boxes of the edges
   contains
     procedure :: set_boxes
     procedure :: in_box
-    procedure :: box_of
-    procedure :: normals_of
     procedure :: pick
     procedure :: chord_length
     procedure :: own_normal
@@ -52,7 +52,6 @@ module epcont_geometry_boundary_line
   !> Projection of a point on a line.
   type :: facing_type
     logical :: found = .false.
-    logical :: same_way = .false.    !! no projection, but a near edge has a similar normal
     integer :: segment = 0           !! the edge
     real(wp) :: s = 0.0_wp           !! from 0 at the start of the edge to 1 at its end, or slightly beyond
     real(wp) :: share(3) = 0.0_wp    !! shape functions of start, end and middle of the edge [-]
@@ -72,47 +71,26 @@ module epcont_geometry_boundary_line
 
 contains
 
-  !> Compute the boxes of the edges.
+  !> Compute the boxes of the edges, enlarged by half their lengths because of the curves over them.
   pure subroutine set_boxes(self)
     class(boundary_line), intent(inout) :: self
-    real(wp), dimension(2, 2, size(self%element)) :: box, normals
+    real(wp), dimension(2, size(self%element)) :: half, middle
     integer :: i
 
     do i = 1, size(self%element)
-      box(:, :, i) = self%box_of(i)
-      normals(:, :, i) = self%normals_of(i)
+      half(:, i) = self%chord_length(i)
+      middle(:, i) = 0.5_wp*(self%x(:, 1, i) + self%x(:, 2, i))
     end do
-    self%tree = new_box_tree(box(:, 1, :), box(:, 2, :))
-    call self%tree%set_spans(normals)
+    self%tree = new_box_tree(middle - half, middle + half)
   end subroutine set_boxes
 
-  !> Box of an edge, enlarged by half its length because of the curve over it: low and high corner.
-  pure function box_of(self, side) result(box)
+  !> Edges whose boxes meet a box, in their order.
+  pure function in_box(self, low, high) result(sides)
     class(boundary_line), intent(in) :: self
-    integer, intent(in) :: side   !! number of the edge
-    real(wp) :: box(2, 2)   !! [length]
-
-    box(:, 1) = 0.5_wp*(self%x(:, 1, side) + self%x(:, 2, side)) - self%chord_length(side)
-    box(:, 2) = 0.5_wp*(self%x(:, 1, side) + self%x(:, 2, side)) + self%chord_length(side)
-  end function box_of
-
-  !> Least and largest components of the normals along an edge, and slightly beyond its ends.
-  pure function normals_of(self, side) result(normals)
-    class(boundary_line), intent(in) :: self
-    integer, intent(in) :: side   !! number of the edge
-    real(wp) :: normals(2, 2)
-
-    normals = span_along(self%normal(:, :, side), self%segment(3, side) > 0)
-    normals = normals + 10.0_wp*beyond*spread([-1.0_wp, 1.0_wp], 1, 2)
-  end function normals_of
-
-  !> Edges whose boxes meet a query, in their order. The vectors of the boxes are the normals.
-  pure function in_box(self, query) result(sides)
-    class(boundary_line), intent(in) :: self
-    class(box_query), intent(in) :: query   !! box to be met
+    real(wp), intent(in) :: low(2), high(2)   !! corners of the box [length]
     integer, allocatable :: sides(:)
 
-    sides = self%tree%meeting(query)
+    sides = self%tree%meeting(box_query(low, high))
     sides = sides(sorted_order(sides))   ! not in the order of the tree: of equal edges the first is used
   end function in_box
 
@@ -202,17 +180,25 @@ contains
 
   contains
 
-    !> Find the position whose normal leads to the point, with Newton's method.
+    !> Find the position whose normal leads to the point, with Newton's method. Most edges have none: the
+    !! point is on one side of the normals at both ends and in the middle.
     pure subroutine find_foot(s, found)
       real(wp), intent(out) :: s      !! from 0 to 1, or beyond
       logical, intent(out) :: found   !! there is a position
       real(wp) :: away(2), normal(2), rate, step
+      real(wp) :: aside(3)
       integer :: k
 
       associate (chord => side%x(:, 2))
         s = dot_product(from, chord)/dot_product(chord, chord)
       end associate
       found = .false.
+      do k = 1, 3
+        associate (n => values(side, tried(k)))
+          aside(k) = cross_product(matmul(side%normal, n), from - matmul(side%x, n))
+        end associate
+      end do
+      if (all(aside > 0.0_wp) .or. all(aside < 0.0_wp)) return
       do k = 1, most_steps
         if (abs(s) > farthest) return
         away = from - matmul(side%x, values(side, s))

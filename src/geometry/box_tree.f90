@@ -1,21 +1,21 @@
-!> Tree of boxes that finds the boxes that meet a given box, a line, or a moving box.
+!> Tree of boxes that finds the boxes that meet a given box or a moving box.
 !>
 !> The boxes are divided repeatedly into halves by their centres, along their larger extent. Node i of the
 !> tree has the children 2i and 2i + 1, and the box of all its descendants. A leaf is one box. Boxes may have
-!> vectors: normals of their contents, or displacements.
+!> displacements.
 module epcont_geometry_box_tree
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: halve
   implicit none
   private
-  public :: box_tree, box_query, line_query, motion_query, new_box_tree
+  public :: box_tree, box_query, motion_query, new_box_tree
 
   type :: box_tree
     integer, allocatable :: item(:)      !! number of the box of each leaf; 0 for other nodes [nodes]
     real(wp), allocatable :: low(:, :)   !! low corner of each node's box [length] [2, nodes]
     real(wp), allocatable :: high(:, :)  !! high corner [length] [2, nodes]
-    !> Least and largest components of the vectors in each node's box; not allocated if there are no vectors
-    !! [2, 2, nodes]
+    !> Least and largest components of the displacements in each node's box; not allocated if boxes do not
+    !! move [2, 2, nodes]
     real(wp), allocatable :: span(:, :, :)
   contains
     procedure :: set_spans
@@ -30,17 +30,8 @@ module epcont_geometry_box_tree
     procedure :: may_meet
   end type box_query
 
-  !> Query: also boxes that a line meets, which starts in another box within a range of directions.
-  type, extends(box_query) :: line_query
-    real(wp) :: from(2, 2) = 0.0_wp      !! low and high corner of the start box [length]
-    logical :: by_vectors = .false.      !! the directions are the vectors of the boxes
-    real(wp) :: along(2, 2) = 0.0_wp     !! otherwise least and largest components of the directions
-  contains
-    procedure :: may_meet => may_pass
-  end type line_query
-
-  !> Query: boxes that a moving box meets, while each of them moves by its vectors. Boxes are given at time 1;
-  !! motions are straight and begin at time 0.
+  !> Query: boxes that a moving box meets, while each of them moves by its displacements. Boxes are given at
+  !! time 1; motions are straight and begin at time 0.
   type, extends(box_query) :: motion_query
     real(wp) :: motion(2) = 0.0_wp                 !! displacement of the given box [length]
     real(wp) :: time(2) = [0.0_wp, 1.0_wp]         !! start and end of the time range
@@ -84,7 +75,7 @@ contains
     end do
   end function new_box_tree
 
-  !> Set the vectors of the boxes.
+  !> Set the displacements of the boxes.
   pure subroutine set_spans(self, span)
     class(box_tree), intent(inout) :: self
     real(wp), intent(in) :: span(:, :, :)   !! least and largest components for each box [2, 2, boxes]
@@ -138,27 +129,6 @@ contains
 
     may_meet = all(self%low <= tree%high(:, node)) .and. all(self%high >= tree%low(:, node))
   end function may_meet
-
-  !> May a line of the query meet a node's box? Then the vector product of its direction and the distance can
-  !! be zero.
-  pure logical function may_pass(self, tree, node)
-    class(line_query), intent(in) :: self
-    type(box_tree), intent(in) :: tree
-    integer, intent(in) :: node          !! number of the node
-    real(wp) :: along(2, 2), least(2), most(2), way(2)
-    integer :: k
-
-    may_pass = self%box_query%may_meet(tree, node)
-    if (.not. may_pass) return
-    along = self%along
-    if (self%by_vectors) along = tree%span(:, :, node)
-    do k = 1, 2
-      way = [tree%low(3 - k, node) - self%from(3 - k, 2), tree%high(3 - k, node) - self%from(3 - k, 1)]
-      least(k) = min(along(k, 1)*way(1), along(k, 1)*way(2), along(k, 2)*way(1), along(k, 2)*way(2))
-      most(k) = max(along(k, 1)*way(1), along(k, 1)*way(2), along(k, 2)*way(1), along(k, 2)*way(2))
-    end do
-    may_pass = least(1) <= most(2) .and. least(2) <= most(1)
-  end function may_pass
 
   !> Does a moving box meet that of a node? Distances along an axis are linear in time: each axis leaves a
   !! part of the time range.

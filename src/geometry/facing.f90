@@ -5,7 +5,6 @@
 module epcont_geometry_facing
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: cancelled, least_difference
-  use epcont_geometry_box_tree, only: line_query
   use epcont_geometry_boundary_line, only: boundary_line, facing_type
   use epcont_geometry_plane, only: crossing
   implicit none
@@ -76,7 +75,7 @@ contains
     more = min(search, 2.0_wp*norm2(from%along))
     within = min(search, max(nearby*more, least_difference*search))
     do
-      sides = line%in_box(line_query(from%x - within, from%x + within, spread(from%x, 2, 2), .true.))
+      sides = line%in_box(from%x - within, from%x + within)
       met = [(look_at(sides(k)), k=1, size(sides))]
       face = best_two(pack(met, met%found))
       ! Edges that were left out are farther away than `within`.
@@ -86,22 +85,19 @@ contains
     end do
     if (abs(face(2)%gap) > abs(face(1)%gap) + more) face(2) = facing_type()
     where (abs(face%gap) <= rounding) face%gap = 0.0_wp
-    face(1)%same_way = any(met%same_way) .and. .not. face(1)%found
 
   contains
 
     !> Project the point on an edge; `found` if the projection is valid.
     pure type(facing_type) function look_at(side) result(face)
       integer, intent(in) :: side
-      real(wp) :: away(2), cosine
+      real(wp) :: away(2)
 
       if (from%node > 0 .and. any(line%segment(:, side) == from%node)) return
       face = line%face(side, from%x)
       face%found = face%found .and. abs(face%gap) <= search*(1.0_wp + least_difference)
       if (.not. face%found) return
-      cosine = dot_product(face%normal, from%outward)
-      face%found = cosine < against
-      face%same_way = cosine > -against
+      face%found = dot_product(face%normal, from%outward) < against
       if (.not. face%found) return
       if (face%at_corner .and. .not. from%at_tip) then   ! in contact along the normal of the smooth boundary
         away = face%gap*face%normal
@@ -178,8 +174,7 @@ contains
     near = max([from%rise, rise_of(line, face%segment) + aside*norm2(from%along)]/abs(face%gap), at_end)
     if (sum(near) >= 1.0_wp) return
     place = ahead - face%gap*face%normal
-    between = obstacles%in_box(line_query(min(ahead, place), max(ahead, place), spread(ahead, 2, 2), &
-                                          .false., spread(place - ahead, 2, 2)))
+    between = obstacles%in_box(min(ahead, place), max(ahead, place))
     do i = 1, size(between)
       associate (side => obstacles%x(:, :2, between(i)))
         part = crossing(ahead, place - ahead, side(:, 1), side(:, 2) - side(:, 1))
