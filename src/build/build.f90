@@ -54,7 +54,7 @@ contains
     kinds = element_kinds()
     call check_ids(deck, kinds, faults)
     call read_data(deck, kinds, pattern, data, cases, faults)
-    call take_ids(deck, kinds, size(data%initial_gap), model)
+    call take_ids(deck, kinds, data, model)
     case = findloc(cases%case%pattern, pattern, dim=1)
     call complete_model(data, cases, case, model, faults)
     call note_without_effect(deck, kinds, cases, faults)

@@ -82,11 +82,11 @@ contains
   end subroutine read_mesh
 
   !> Take the ids of nodes, elements, sections and pairs from their cards.
-  subroutine take_ids(deck, kinds, pairs, model)
+  subroutine take_ids(deck, kinds, data, model)
     type(deck_type), intent(in) :: deck          !! its cards
     type(element_kind), intent(in) :: kinds(:)   !! of elements
-    integer, intent(in) :: pairs                 !! number of CGAPs that are not switched off
-    type(model_type), intent(inout) :: model     !! gets the ids
+    type(scene_type), intent(inout) :: data      !! gets the ids of sections
+    type(model_type), intent(inout) :: model     !! gets the other ids
     integer, allocatable :: cards(:)
     integer :: i
 
@@ -94,11 +94,12 @@ contains
     model%mesh%node_id = int(deck%card(card_grid)%value(1, :))
     model%mesh%element_id = [(int(deck%card(cards(i))%value(1, :)), i=1, size(cards))]
     associate (shell => deck%card(card_pshell), solid => deck%card(card_psolid))
-      model%sections%property_id = nint([shell%value(1, :), solid%value(1, :)])
-      model%sections%material_id = nint([shell%value(shell%column('MID1'), :), &
-                                         solid%value(solid%column('MID'), :)])
+      data%property_id = nint([shell%value(1, :), solid%value(1, :)])
+      data%material_id = nint([shell%value(shell%column('MID1'), :), &
+                               solid%value(solid%column('MID'), :)])
     end associate
-    model%contact%pair_id = nint(deck%card(card_cgap)%value(1, :pairs))
+    ! CGAPs that are switched off are no pairs.
+    model%contact%pair_id = nint(deck%card(card_cgap)%value(1, :size(data%initial_gap)))
   end subroutine take_ids
 
   !> Report an error in a field.

@@ -4,6 +4,7 @@ module epcont_model_arrays
   use epcont_base_kinds, only: wp
   use epcont_element_kinematics, only: directions
   use epcont_model_controls, only: controls_type, uniaxial_curve
+  use epcont_model_sections, only: sections_type
   implicit none
   private
   public :: scene_type, new_scene, set_sections, add_elements, set_pairs, count_from_one
@@ -91,17 +92,9 @@ module epcont_model_arrays
     integer :: id = 0                         !! of its card
   end type spring_type
 
-  type :: scene_type
+  type, extends(sections_type) :: scene_type
     real(wp), allocatable :: x(:, :)            !! coordinates [length] [2, nodes]
     type(element_block), allocatable :: block(:)   !! elements, numbered through all blocks [any]
-    real(wp), allocatable :: young(:)           !! [stress] [sections]
-    real(wp), allocatable :: poisson(:)         !! [sections]
-    integer, allocatable :: kinematics(:)       !! plane_strain, plane_stress or axisymmetric [sections]
-    real(wp), allocatable :: thickness(:)       !! [length] [sections]
-    real(wp), allocatable :: density(:)         !! [mass/length**3] [sections]
-    type(uniaxial_curve), allocatable :: curve(:)  !! stress-strain curve, if the section can yield [sections]
-    real(wp), allocatable :: expansion(:)       !! strain for each degree [1/temperature] [sections]
-    real(wp), allocatable :: reference_temperature(:)   !! without thermal strain [temperature] [sections]
     logical, allocatable :: held(:, :)          !! the DOF has a prescribed displacement [2, nodes]
     real(wp), allocatable :: prescribed(:, :)   !! that displacement [length] [2, nodes]
     type(dof_tie), allocatable :: tie(:)        !! [any]
@@ -172,22 +165,14 @@ contains
     !! [nodes, elements]
     integer, intent(in) :: node(:, :)
     integer, intent(in) :: section(:)          !! section of each element [elements]
-    type(element_block), allocatable :: longer(:)
-    integer :: blocks, i
+    type(element_block) :: block
 
     if (size(section) == 0 .and. size(node, 2) == 0) return
-    blocks = 0
-    if (allocated(scene%block)) blocks = size(scene%block)
-    allocate (longer(blocks + 1))
-    do i = 1, blocks   ! for each new block, the lists of the earlier blocks are moved, not copied
-      longer(i)%name = scene%block(i)%name
-      call move_alloc(scene%block(i)%node, longer(i)%node)
-      call move_alloc(scene%block(i)%section, longer(i)%section)
-    end do
-    longer(blocks + 1)%name = name
-    longer(blocks + 1)%node = node
-    longer(blocks + 1)%section = section
-    call move_alloc(longer, scene%block)
+    block%name = name
+    block%node = node
+    block%section = section
+    if (.not. allocated(scene%block)) allocate (scene%block(0))
+    scene%block = [scene%block, block]
   end subroutine add_elements
 
   !> Set the pairs of nodes that may come into contact, numbered from 1.

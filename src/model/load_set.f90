@@ -36,17 +36,13 @@ contains
     type(load_set), intent(in) :: last
     real(wp), intent(in) :: part          !! part of the path, from 0 to 1
 
-    self%load = part*last%load
-    self%prescribed = part*last%prescribed
-    self%travel = part*last%travel
-    self%beyond_travel = part*last%beyond_travel
+    call mix(start%load, last%load, part, self%load)
+    call mix(start%prescribed, last%prescribed, part, self%prescribed)
+    call mix(start%travel, last%travel, part, self%travel)
+    call mix(start%beyond_travel, last%beyond_travel, part, self%beyond_travel)
     self%rotation = part*last%rotation
     self%body_load%factor = part*last%body_load%factor
     if (allocated(start%load)) then
-      self%load = self%load + (1.0_wp - part)*start%load
-      self%prescribed = self%prescribed + (1.0_wp - part)*start%prescribed
-      self%travel = self%travel + (1.0_wp - part)*start%travel
-      self%beyond_travel = self%beyond_travel + (1.0_wp - part)*start%beyond_travel
       self%rotation = self%rotation + (1.0_wp - part)*start%rotation
       self%body_load%factor = self%body_load%factor + (1.0_wp - part)*start%body_load%factor
     end if

@@ -18,16 +18,7 @@ contains
     call move_alloc(data%x, model%mesh%x)
     model%mesh%nodes = size(model%mesh%x, 2)
     call list_elements(data%block, model)
-    associate (sections => model%sections)
-      call move_alloc(data%young, sections%young)
-      call move_alloc(data%poisson, sections%poisson)
-      call move_alloc(data%kinematics, sections%kinematics)
-      call move_alloc(data%thickness, sections%thickness)
-      call move_alloc(data%density, sections%density)
-      call move_alloc(data%curve, sections%curve)
-      call move_alloc(data%expansion, sections%expansion)
-      call move_alloc(data%reference_temperature, sections%reference_temperature)
-    end associate
+    model%sections = data%sections_type
     associate (constraints => model%constraints)
       call move_alloc(data%held, constraints%held)
       call move_alloc(data%reference, constraints%reference)

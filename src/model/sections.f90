@@ -16,8 +16,8 @@ module epcont_model_sections
     type(uniaxial_curve), allocatable :: curve(:)  !! stress-strain curve, if it can yield
     real(wp), allocatable :: expansion(:)       !! strain for each degree [1/temperature]
     real(wp), allocatable :: reference_temperature(:)   !! temperature without thermal strain [temperature]
-    integer, allocatable :: property_id(:)      !! PSHELL or PSOLID
-    integer, allocatable :: material_id(:)      !! MAT1
+    integer, allocatable :: property_id(:)      !! PSHELL or PSOLID; not of model data from arrays
+    integer, allocatable :: material_id(:)      !! MAT1; not of model data from arrays
   contains
     procedure :: has_flat_curve
   end type sections_type
