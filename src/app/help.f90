@@ -3,7 +3,7 @@
 module epcont_app_help
   use epcont_app_options, only: option_type, options
   use epcont_base_error, only: status_meaning
-  use epcont_base_text, only: newline, text_of, upper
+  use epcont_base_text, only: newline, text_of
   use epcont_base_version, only: program_date, program_name, program_version
   use epcont_messages_names, only: when
   use epcont_report_results, only: result_files
@@ -77,6 +77,7 @@ contains
   !> Return the text of --man.
   function man_page() result(text)
     character(len=:), allocatable :: text
+    type(option_type) :: option
     integer :: i, k
 
     text = ''
@@ -84,7 +85,8 @@ contains
       select case (page(k))
       case ('@options')
         do i = 1, size(options)
-          call add_entry(heading(options(i)), options(i)%text, options(i)%more)
+          option = options(i)
+          call add_entry('.B '//roff(option%usage()), option%text, option%more)
         end do
       case ('@statuses')
         do i = 0, size(status_meaning) - 1
@@ -110,18 +112,6 @@ contains
       if (more /= '') text = text//'.br'//newline//paragraph(more)
     end subroutine add_entry
   end function man_page
-
-  !> Print names in bold, and the value too if it is a literal.
-  pure function heading(option) result(text)
-    type(option_type), intent(in) :: option
-    character(len=:), allocatable :: text
-    integer :: value
-
-    text = '.B '//roff(option%usage())
-    value = index(text, ' ', back=.true.) + 1
-    if (option%value /= '' .and. upper(option%value) == option%value) &
-      text = '.BI "'//text(4:value - 1)//'" '//text(value:)
-  end function heading
 
   !> Split text into source lines.
   pure function paragraph(text)

@@ -23,7 +23,7 @@ module epcont_app_progress_display
   contains
     procedure :: begin
     procedure :: expect
-    procedure :: solved
+    procedure :: solved => show
     procedure :: erase
   end type progress_type
 
@@ -51,18 +51,10 @@ contains
     call show(self, iteration_record())
   end subroutine expect
 
-  !> Show the progress after a solve.
-  subroutine solved(self, now)
-    class(progress_type), intent(inout) :: self
-    type(iteration_record), intent(in) :: now   !! data of the solve
-
-    call show(self, now)
-  end subroutine solved
-
   !> Show the progress, if requested.
   subroutine show(self, now)
     class(progress_type), intent(inout) :: self
-    type(iteration_record), intent(in) :: now
+    type(iteration_record), intent(in) :: now   !! data of the solve; iteration 0: before the first one
     character(len=:), allocatable :: line
 
     if (self%elapsed() < self%silent_to .and. .not. &

@@ -5,7 +5,7 @@ module epcont_build_build
   use epcont_build_cases, only: read_cases
   use epcont_build_choices, only: check_once, read_controls
   use epcont_build_contacts, only: read_contacts
-  use epcont_build_mesh_cards, only: element_cards, read_mesh, take_ids
+  use epcont_build_mesh_cards, only: read_mesh, take_ids
   use epcont_build_reference, only: card_index, check_unique, index_of, note_unnamed
   use epcont_build_supports, only: read_references, read_supports, read_ties
   use epcont_build_temperatures, only: read_temperatures
@@ -13,11 +13,10 @@ module epcont_build_build
   use epcont_contact_geometry_complete, only: complete_model
   use epcont_deck_card_kinds, only: card_bconp, card_bfric, card_blseg, card_celas1, card_celas2, card_cgap, &
       card_cord2r, card_grav, card_grid, card_load, card_mat1, card_mats1, card_mpcadd, card_nlparm, &
-      card_param, card_pelas, card_pgap, card_pshell, card_psolid, card_rbe2, card_rforce, card_tables1
+      card_param, card_pelas, card_pgap, card_pshell, card_psolid, card_rbe2, card_rforce, card_tables1, &
+      element_cards
   use epcont_deck_case_control, only: subcase_control
   use epcont_deck_deck, only: deck_type
-  use epcont_element_element_kind, only: element_kind
-  use epcont_element_element_kinds, only: element_kinds
   use epcont_model_arrays, only: scene_type
   use epcont_model_finding, only: and_more, of_body, of_body_load, of_couple, of_element, of_line, &
       of_node, of_pair, of_paper_ratio, of_scene, of_section, of_theory
@@ -44,28 +43,25 @@ contains
     type(diagnostics), intent(inout) :: faults   !! of the deck; more are added
     type(load_cases), intent(out), optional :: all_cases   !! of the deck
     integer, intent(in), optional :: of_pattern  !! of supports and contacts; default: that of the first case
-    type(element_kind), allocatable :: kinds(:)
     type(load_cases) :: cases
     type(scene_type) :: data
     integer :: case, pattern   ! first case of the pattern, and value of of_pattern
 
     pattern = 1
     if (present(of_pattern)) pattern = of_pattern
-    kinds = element_kinds()
-    call check_ids(deck, kinds, faults)
-    call read_data(deck, kinds, pattern, data, cases, faults)
-    call take_ids(deck, kinds, data, model)
+    call check_ids(deck, faults)
+    call read_data(deck, pattern, data, cases, faults)
+    call take_ids(deck, data, model)
     case = findloc(cases%case%pattern, pattern, dim=1)
     call complete_model(data, cases, case, model, faults)
-    call note_without_effect(deck, kinds, cases, faults)
+    call note_without_effect(deck, cases, faults)
     if (present(all_cases)) all_cases = cases
     call tell(deck, faults)
   end subroutine build_model
 
   !> Check that ids are unique.
-  subroutine check_ids(deck, kinds, faults)
+  subroutine check_ids(deck, faults)
     type(deck_type), intent(in) :: deck
-    type(element_kind), intent(in) :: kinds(:)
     type(diagnostics), intent(inout) :: faults
     integer :: k
 
@@ -74,14 +70,12 @@ contains
     end do
     call check_unique(deck, [card_pshell, card_psolid], [1], faults)
     call check_unique(deck, [card_pelas], [1, 5], faults)
-    call check_unique(deck, [element_cards(deck, kinds), card_rbe2, card_cgap, card_celas1, card_celas2], &
-                      [1], faults)
+    call check_unique(deck, [element_cards, card_rbe2, card_cgap, card_celas1, card_celas2], [1], faults)
   end subroutine check_ids
 
   !> Read the model data from the cards.
-  subroutine read_data(deck, kinds, pattern, data, cases, faults)
+  subroutine read_data(deck, pattern, data, cases, faults)
     type(deck_type), intent(in) :: deck
-    type(element_kind), intent(in) :: kinds(:)
     integer, intent(in) :: pattern
     type(scene_type), intent(out) :: data
     type(load_cases), intent(out) :: cases
@@ -90,10 +84,10 @@ contains
     logical, allocatable :: idle(:, :)   ! DOFs that are fixed, but not in all patterns [angle, nodes]
 
     nodes = index_of(deck, card_grid)
-    call read_mesh(deck, nodes, kinds, data, faults)
+    call read_mesh(deck, nodes, data, faults)
     data%controls = read_controls(deck)
     call check_once(deck, data%controls%original, faults)
-    call read_cases(deck, nodes, kinds, data, cases, faults)
+    call read_cases(deck, nodes, data, cases, faults)
     call read_temperatures(deck, nodes, data, cases, faults)
     call read_supports(deck, nodes, pattern, data, cases, idle, faults)
     call read_ties(deck, nodes, data, faults)
@@ -105,16 +99,15 @@ contains
   end subroutine read_data
 
   !> Note the cards that no other card or no load case uses.
-  subroutine note_without_effect(deck, kinds, cases, faults)
+  subroutine note_without_effect(deck, cases, faults)
     type(deck_type), intent(in) :: deck
-    type(element_kind), intent(in) :: kinds(:)
     type(load_cases), intent(in) :: cases
     type(diagnostics), intent(inout) :: faults
     integer, allocatable :: sections(:)
     integer :: c
 
-    associate (elements => element_cards(deck, kinds), cid => deck%card(card_cgap)%column('CID'))
-      sections = [(ids(elements(c), 2), c=1, size(elements))]
+    associate (cid => deck%card(card_cgap)%column('CID'))
+      sections = [(ids(element_cards(c), 2), c=1, size(element_cards))]
       call note_unnamed(deck, [card_pshell, card_psolid], [1], sections, 'element', faults)
       call note_unnamed(deck, [card_mat1], [1], [ids(card_pshell, 2), ids(card_psolid, 2)], &
                         'PSHELL or PSOLID', faults)
@@ -146,10 +139,8 @@ contains
     type(deck_type), intent(in) :: deck          !! its cards
     type(diagnostics), intent(inout) :: faults   !! of the deck, and findings of its model
     integer, intent(in), optional :: case        !! first case with the supports of the model
-    integer, allocatable :: elements(:)   ! element tables
     integer :: i
 
-    elements = element_cards(deck, element_kinds())
     do i = 1, faults%count
       if (faults%list(i)%of /= of_scene) call name_card(faults%list(i))
     end do
@@ -179,8 +170,8 @@ contains
       case (of_node, of_body)
         card(1) = card_grid
       case (of_element)
-        do c = 1, size(elements)
-          card(1) = elements(c)
+        do c = 1, size(element_cards)
+          card(1) = element_cards(c)
           if (card(2) <= deck%card(card(1))%count) exit
           card(2) = card(2) - deck%card(card(1))%count
         end do

@@ -6,16 +6,14 @@ module epcont_build_cases
   use epcont_base_sorting, only: new_id_index
   use epcont_base_text, only: short_real
   use epcont_build_mass_loads, only: read_mass_loads
-  use epcont_build_mesh_cards, only: element_cards
   use epcont_build_reference, only: card_index, check_choices, check_combinations, chosen_sets, &
       named_node, nodes_of_fields, note_unnamed, resolve
   use epcont_deck_card_kinds, only: card_bconp, card_bfric, card_force, card_grav, card_load, card_mats1, &
       card_moment, card_nlparm, card_param, card_pgap, card_ploadx1, card_rforce, card_spc, card_spc1, &
-      card_spcd
+      card_spcd, element_cards, ring_cards
   use epcont_deck_deck, only: deck_type
   use epcont_deck_entry, only: farthest, least_cause
   use epcont_build_tie_cards, only: check_directions, digit, dof_node, find_moments, find_platens, names
-  use epcont_element_element_kind, only: element_kind
   use epcont_model_arrays, only: angle, scene_type, side_pressure
   use epcont_model_finding, only: and_more, findings, of_pressure
   use epcont_model_load_cases, only: load_case, load_cases, set_displacement, set_pressure
@@ -31,17 +29,15 @@ module epcont_build_cases
 contains
 
   !> Read the load cases of a deck, and the contents of their sets.
-  subroutine read_cases(deck, nodes, kinds, data, cases, found)
+  subroutine read_cases(deck, nodes, data, cases, found)
     type(deck_type), intent(in) :: deck        !! its cards
     type(card_index), intent(in) :: nodes      !! ids of GRID
-    type(element_kind), intent(in) :: kinds(:) !! of elements
     type(scene_type), intent(inout) :: data    !! elements and sections; gets the rotating RBE2 master nodes
     type(load_cases), intent(out) :: cases     !! of the model
     type(findings), intent(inout) :: found     !! errors are added
     integer, dimension(size(deck%subcase)) :: loads, supports
     integer, allocatable :: used(:)            ! sets of loads
     integer :: k
-    logical :: rings
 
     call chosen_sets(deck, support_cards, deck%subcase%spc, 'SPC', found, supports)
     call note_unnamed(deck, support_cards, [1], supports, 'load case', found)
@@ -69,10 +65,8 @@ contains
     call find_platens(deck, nodes, supports, used, data, found)
     call find_moments(deck, nodes, used, data, cases%moment, found)
     call add_forces(deck, nodes, used, cases, found)
-    call add_pressures(deck, nodes, kinds, used, cases, found)
-    rings = .false.
-    if (size(data%block) > 0) rings = any(kinds%ring_card == data%block(1)%name)
-    call read_mass_loads(deck, nodes, rings, data%x, used, cases%body, found)
+    call add_pressures(deck, nodes, used, cases, found)
+    call read_mass_loads(deck, nodes, any(deck%card(ring_cards)%count > 0), data%x, used, cases%body, found)
     call add_displacements(deck, nodes, data, used, cases%moved, found)
 
   contains
@@ -206,10 +200,9 @@ contains
   end subroutine add_forces
 
   !> Read PLOADX1.
-  subroutine add_pressures(deck, nodes, kinds, used, cases, found)
+  subroutine add_pressures(deck, nodes, used, cases, found)
     type(deck_type), intent(in) :: deck
     type(card_index), intent(in) :: nodes
-    type(element_kind), intent(in) :: kinds(:)
     integer, intent(in) :: used(:)
     type(load_cases), intent(inout) :: cases
     type(findings), intent(inout) :: found
@@ -217,9 +210,9 @@ contains
     integer :: c, ga, i, last
     type(card_index) :: elements
 
-    associate (cards => element_cards(deck, kinds), pressure => deck%card(card_ploadx1))
-      elements = card_index(new_id_index([(int(deck%card(cards(c))%value(1, :)), c=1, size(cards))]), &
-                            'element', found%errors == 0)
+    associate (pressure => deck%card(card_ploadx1))
+      elements = card_index(new_id_index([(int(deck%card(element_cards(c))%value(1, :)), &
+                                           c=1, size(element_cards))]), 'element', found%errors == 0)
       ga = pressure%column('GA')
       call resolve(deck, card_ploadx1, 2, elements, found, element)
       call resolve(deck, card_ploadx1, ga, nodes, found, a)

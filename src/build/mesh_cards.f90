@@ -4,9 +4,8 @@ module epcont_build_mesh_cards
   use epcont_base_text, only: short_real
   use epcont_build_reference, only: card_index, index_of, resolve
   use epcont_deck_card_kinds, only: card_cgap, card_grid, card_mat1, card_mats1, card_param, card_pshell, &
-      card_psolid, card_tables1
+      card_psolid, card_tables1, element_cards, ring_cards
   use epcont_deck_deck, only: deck_type
-  use epcont_element_element_kind, only: element_kind
   use epcont_element_kinematics, only: axisymmetric, plane_strain, plane_stress
   use epcont_model_arrays, only: add_elements, new_scene, scene_type, set_sections
   use epcont_model_controls, only: uniaxial_curve
@@ -15,7 +14,7 @@ module epcont_build_mesh_cards
   use epcont_model_yield_curve, only: bilinear_curve, curve_fault, straighten
   implicit none
   private
-  public :: element_cards, read_mesh, take_ids
+  public :: read_mesh, take_ids
 
   real(wp), parameter :: &
     !> LIMIT1 and the table's yield stress may differ by this fraction.
@@ -36,14 +35,12 @@ module epcont_build_mesh_cards
 contains
 
   !> Read nodes, materials, sections and elements.
-  subroutine read_mesh(deck, nodes, kinds, data, found)
+  subroutine read_mesh(deck, nodes, data, found)
     type(deck_type), intent(in) :: deck           !! its cards
     type(card_index), intent(in) :: nodes         !! ids of GRID
-    type(element_kind), intent(in) :: kinds(:)    !! of elements
     type(scene_type), intent(out) :: data         !! gets nodes, sections and elements
     type(findings), intent(inout) :: found        !! errors are added
     type(material_card), allocatable :: material(:)   ! for each MAT1
-    integer, allocatable :: cards(:)                  ! element tables
     integer :: i
 
     associate (grid => deck%card(card_grid))
@@ -51,9 +48,8 @@ contains
     end associate
     call read_materials(deck, found, material)
     call read_sections(deck, material, data, found)
-    cards = element_cards(deck, kinds)
-    do i = 1, size(cards)
-      call read_elements(cards(i))
+    do i = 1, size(element_cards)
+      call read_elements(element_cards(i))
     end do
 
   contains
@@ -66,7 +62,7 @@ contains
       logical :: ring
 
       associate (table => deck%card(card))
-        ring = any(kinds%ring_card == table%entry%name)
+        ring = any(ring_cards == card)
         n = size(table%entry%field) - 2   ! without id and section
         allocate (node(n, table%count), section(table%count))
         call resolve(deck, card, 2, index_of(deck, merge(card_psolid, card_pshell, ring)), found, section)
@@ -82,17 +78,14 @@ contains
   end subroutine read_mesh
 
   !> Take the ids of nodes, elements, sections and pairs from their cards.
-  subroutine take_ids(deck, kinds, data, model)
+  subroutine take_ids(deck, data, model)
     type(deck_type), intent(in) :: deck          !! its cards
-    type(element_kind), intent(in) :: kinds(:)   !! of elements
     type(scene_type), intent(inout) :: data      !! gets the ids of sections
     type(model_type), intent(inout) :: model     !! gets the other ids
-    integer, allocatable :: cards(:)
     integer :: i
 
-    cards = element_cards(deck, kinds)
     model%mesh%node_id = int(deck%card(card_grid)%value(1, :))
-    model%mesh%element_id = [(int(deck%card(cards(i))%value(1, :)), i=1, size(cards))]
+    model%mesh%element_id = [(int(deck%card(element_cards(i))%value(1, :)), i=1, size(element_cards))]
     associate (shell => deck%card(card_pshell), solid => deck%card(card_psolid))
       data%property_id = nint([shell%value(1, :), solid%value(1, :)])
       data%material_id = nint([shell%value(shell%column('MID1'), :), &
@@ -314,17 +307,4 @@ contains
       end if
     end associate
   end subroutine choose_kinematics
-
-  !> Tables of element cards in the order of reading: those in the table of element types.
-  pure function element_cards(deck, kinds) result(cards)
-    type(deck_type), intent(in) :: deck         !! its cards
-    type(element_kind), intent(in) :: kinds(:)  !! of elements
-    integer, allocatable :: cards(:)
-    character(len=8) :: name(size(deck%card))
-    integer :: c
-
-    name = deck%card%entry%name
-    cards = pack([(c, c=1, size(name))], &
-                 [(any(kinds%plane_card == name(c) .or. kinds%ring_card == name(c)), c=1, size(name))])
-  end function element_cards
 end module epcont_build_mesh_cards

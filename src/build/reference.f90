@@ -8,7 +8,6 @@ module epcont_build_reference
   use epcont_deck_deck, only: deck_type
   use epcont_deck_table, only: list_item
   use epcont_model_finding, only: findings
-  use epcont_system_threads, only: threads_over
   implicit none
   private
   public :: card_index, index_of, check_combinations, check_unique, resolve, chosen_sets
@@ -98,15 +97,10 @@ contains
     type(card_index), intent(in) :: index    !! ids that may be named
     type(findings), intent(inout) :: found   !! errors are added
     integer, intent(out) :: position(:)      !! [cards]
-    integer :: i
 
     associate (table => deck%card(card))
-      !$omp parallel do num_threads(threads_over(table%count))
-      do i = 1, table%count
-        position(i) = 0
-        if (table%given(column, i)) position(i) = index%find(int(table%value(column, i)))
-      end do
-      !$omp end parallel do
+      position = 0
+      where (table%given(column, :)) position = index%find(int(table%value(column, :)))
     end associate
     if (index%whole .and. any(position == 0)) &
       call report_missing(deck, card, column, index%noun, position == 0, found)

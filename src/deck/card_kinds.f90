@@ -12,4 +12,7 @@ module epcont_deck_card_kinds
     card_tempd = 29, card_grav = 30, card_rforce = 31, card_moment = 32, card_mpc = 33, card_mpcadd = 34, &
     card_celas1 = 35, card_celas2 = 36, card_pelas = 37, card_nlparm = 38, card_bfric = 39, &
     card_kinds = 39   !! number of cards
+  !> Axisymmetric elements, and all elements, which are numbered in this order.
+  integer, parameter, public :: ring_cards(*) = [card_ctrax3, card_ctrax6], &
+    element_cards(*) = [card_ctria3, card_ctria6, card_cquad4, ring_cards, card_cquad8]
 end module epcont_deck_card_kinds

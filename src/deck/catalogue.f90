@@ -240,9 +240,7 @@ module epcont_deck_catalogue
     '  MB; any ignored; of superelements', &
     '  IDRF; system only_zero; elements: all', &
     'MOMENT: moment M*N3 about z at the master node of an RBE2, which rotates', &
-    '  SID; id; set', &
-    '  G; id; node', &
-    '  CID; system only_zero; system of N1 to N3: the basic one', &
+    '  like 3 FORCE', &
     '  M; real needed cause; factor [force*length]', &
     '  N1; real only_zero; direction x | models are in the x-y plane', &
     '  N2; real only_zero; direction y | models are in the x-y plane', &

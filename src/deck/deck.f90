@@ -6,8 +6,8 @@ module epcont_deck_deck
   use epcont_base_text, only: upper
   use epcont_deck_bulk, only: read_bulk
   use epcont_deck_card, only: card_fields, gather
-  use epcont_deck_card_kinds, only: card_cbar, card_celas1, card_celas2, card_cgap, card_cquad4, &
-      card_cquad8, card_ctrax3, card_ctrax6, card_ctria3, card_ctria6, card_grid, card_param
+  use epcont_deck_card_kinds, only: card_cbar, card_celas1, card_celas2, card_cgap, card_grid, card_param, &
+      element_cards
   use epcont_deck_case_control, only: case_control, read_case_control
   use epcont_deck_source, only: read_source, source
   use epcont_deck_table, only: card_table
@@ -53,8 +53,7 @@ contains
   subroutine check_end(deck, faults)
     type(deck_type), intent(inout) :: deck       !! marked as incomplete if it looks cut off
     type(diagnostics), intent(inout) :: faults   !! an error or a note is added
-    integer, parameter :: elements(*) = [card_ctria3, card_ctria6, card_cquad4, card_cquad8, card_ctrax3, &
-                                         card_ctrax6, card_cbar, card_cgap, card_celas1, card_celas2]
+    integer, parameter :: elements(*) = [element_cards, card_cbar, card_cgap, card_celas1, card_celas2]
     integer :: counts(2)
     type(place_type) :: place
 
@@ -81,7 +80,7 @@ contains
 
     counts = -1
     do line = 1, lines%count
-      text = upper(lines%whole_line(line, 1, longest))
+      text = upper(lines%whole_line(line, longest))
       if (index(text, '$PYNASTRAN:') /= 1) cycle
       do k = 1, size(key)
         at = index(text, trim(key(k)))

@@ -116,16 +116,15 @@ contains
 
   contains
 
-    !> The line of the deck, and carets under the value (under the whole field if that is blank). From a long
-    !! line, the part with these columns is taken.
+    !> The line of the deck, and carets under the value (under the whole field if that is blank). A long line
+    !! is cut.
     pure function excerpt() result(text)
       character(len=:), allocatable :: line, text
-      integer :: first, last, left
+      integer :: first, last
 
-      left = max(0, min(fault%place%first - 1, fault%place%last - width))
-      line = printable(lines%whole_line(fault%place%line, left + 1, width))
-      first = fault%place%first - left
-      last = min(fault%place%last - left, width)
+      line = printable(lines%whole_line(fault%place%line, width))
+      first = min(fault%place%first, width)
+      last = min(fault%place%last, width)
       associate (field => line(first:min(last, len(line))))
         if (len_trim(field) > 0) then
           last = first - 1 + len_trim(field)

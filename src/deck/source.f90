@@ -267,20 +267,19 @@ contains
     end do
   end function text_of_line
 
-  !> Text of a line in the file, with its comment, from column `from`, at most `most` characters.
-  pure function whole_line(self, line, from, most) result(text)
+  !> Text of a line in the file, with its comment, at most `most` characters.
+  pure function whole_line(self, line, most) result(text)
     class(source), intent(in) :: self
     integer, intent(in) :: line   !! in deck order
-    integer, intent(in) :: from   !! first column
     integer, intent(in) :: most   !! largest number of columns
     character(len=:), allocatable :: text
     integer :: first, last
 
     first = self%line(line)%first
     do last = first, self%used
-      if (last - first - from + 1 == most .or. scan(self%text(last:last), newline//return) > 0) exit
+      if (last - first == most .or. scan(self%text(last:last), newline//return) > 0) exit
     end do
-    text = trim(self%text(first + from - 1:last - 1))
+    text = trim(self%text(first:last - 1))
   end function whole_line
 
   !> Is a line blank?

@@ -26,7 +26,7 @@ contains
     if (deck%echo_unsorted) then
       call file%heading('LINES OF THE DECK')
       do line = 1, deck%source%count
-        call list_line(line, deck%source%whole_line(line, 1, huge(1)))
+        call list_line(line, deck%source%whole_line(line, huge(1)))
       end do
     end if
     if (.not. deck%echo_sorted) return
