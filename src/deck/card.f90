@@ -38,7 +38,6 @@ module epcont_deck_card
     type(place_type), private :: name_place
   contains
     procedure :: filled
-    procedure :: is_large
     procedure :: place
   end type card_fields
 
@@ -290,14 +289,6 @@ contains
     filled = .false.
     if (slot <= self%count) filled = self%slot(slot)%last >= self%slot(slot)%first
   end function filled
-
-  !> Is a slot a large field of a fixed line, with 16 columns?
-  pure logical function is_large(self, slot)
-    class(card_fields), intent(in) :: self
-    integer, intent(in) :: slot
-
-    is_large = self%slot(slot)%place%last - self%slot(slot)%place%first == 2*width - 1
-  end function is_large
 
   !> Columns of a slot: those of the whole field; those of the name if the slot is 0 or the card has no line
   !! for it; those after the end of the line if the line ends before the slot.

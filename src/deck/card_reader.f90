@@ -134,9 +134,7 @@ contains
         call scan_word(card%text(first:last), value%word, value%outcome)
       end select
     end associate
-    if (value%outcome == scan_no_point .and. entry%point_optional) then
-      if (card%is_large(slot)) value%outcome = scan_sound
-    end if
+    if (value%outcome == scan_no_point .and. entry%point_optional) value%outcome = scan_sound
     if (value%outcome /= scan_sound) return
     associate (number => value%number)
       if (entry%kind == kind_word) then

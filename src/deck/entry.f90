@@ -36,7 +36,7 @@ module epcont_deck_entry
     real(wp) :: lowest = -huge(1.0_wp), highest = huge(1.0_wp)
     logical :: above_lowest = .false., below_highest = .false.  !! the limit itself is out of range
     real(wp) :: least = 0.0_wp           !! smallest magnitude, except zero, of a number that has an effect
-    logical :: point_optional = .false.  !! a large-field real may lack its decimal point
+    logical :: point_optional = .false.  !! the decimal point may be missing
     character(len=40) :: choices = ''    !! allowed words, separated by blanks; blank: any word
     character(len=60) :: reason = ''     !! why other values are out of range
     integer :: times = 1                 !! number of such fields in a row
