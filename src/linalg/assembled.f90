@@ -6,10 +6,7 @@
 !> cache. `factor` does the rest.
 module epcont_linalg_assembled
   use epcont_base_kinds, only: i8, wp
-  use epcont_base_sorting, only: sorted_order
-  use epcont_linalg_dense, only: cholesky_inverse
-  use epcont_linalg_lapack, only: dgemm, dgemv
-  use epcont_linalg_staircase, only: multiply_staircase, solve_staircase
+  use epcont_linalg_lapack, only: dgemm, dsyrk, dtrsm
   implicit none
   private
   public :: assembled_matrix, sparse_rows
@@ -146,56 +143,29 @@ contains
     x(:, 2) = x(:, 2)/sum(abs(x(:, 2)))
   end function probes
 
-  !> Compute N K^-1 N' from the trailing block L22 of the factor, from which all other equations have been
-  !! eliminated. If each row of N is a trailing equation in turn, this is the inverse (L22 L22')^-1, computed
-  !! in place. Otherwise it is X'X with X = L22^-1 N'.
+  !> Compute N K^-1 N' = X'X with X = L22^-1 N', from the trailing block L22 of the factor, from which all
+  !! other equations have been eliminated.
   pure subroutine find_compliance(self, rows, compliance)
     class(assembled_matrix), intent(in) :: self
     type(sparse_rows), intent(in) :: rows       !! N, of trailing equations
     real(wp), allocatable, intent(out) :: compliance(:, :)   !! lower triangle [rows, rows]
     real(wp), allocatable :: factor(:, :), x(:, :)
-    integer :: at(size(rows%equation)), begins(size(rows%start) - 1), column(size(rows%equation)), &
-        order(size(rows%start) - 1)
     integer :: i, k
 
-    at = rows%equation - (self%order - self%trailing)
-    if (size(at) == self%trailing .and. size(order) == self%trailing) then
-      if (all(at == [(k, k=1, size(at))]) .and. all(rows%start == [(k, k=1, size(rows%start))])) then
-        call get_trailing_factor(self, compliance)
-        call cholesky_inverse(compliance)
-        do k = 1, size(order)
-          compliance(k:, k) = rows%weight(k)*rows%weight(k:)*compliance(k:, k)
+    associate (n => size(rows%start) - 1, last => self%trailing, before => self%order - self%trailing)
+      allocate (x(last, n), compliance(n, n), source=0.0_wp)
+      do k = 1, n
+        do i = rows%start(k), rows%start(k + 1) - 1
+          associate (entry => x(rows%equation(i) - before, k))
+            entry = entry + rows%weight(i)
+          end associate
         end do
-        return
-      end if
-    end if
-    call order_rows(sparse_rows(rows%start, at, rows%weight), order, column, begins)
-    allocate (x(self%trailing, size(order)), source=0.0_wp)
-    do i = 1, size(at)
-      x(at(i), column(i)) = x(at(i), column(i)) + rows%weight(i)
-    end do
-    call get_trailing_factor(self, factor)
-    call solve_staircase(self%trailing, factor, begins, x)
-    deallocate (factor)
-    allocate (compliance(size(order), size(order)))
-    call multiply_staircase(self%trailing, x, begins, order, compliance)
+      end do
+      call get_trailing_factor(self, factor)
+      call dtrsm('L', 'L', 'N', 'N', last, n, 1.0_wp, factor, last, x, last)
+      call dsyrk('L', 'T', n, last, 1.0_wp, x, last, 0.0_wp, compliance, n)
+    end associate
   end subroutine find_compliance
-
-  !> Order rows by their first equations, and find the position of each entry's row in that order.
-  pure subroutine order_rows(rows, order, column, begins)
-    type(sparse_rows), intent(in) :: rows
-    integer, intent(out) :: order(:)        !! [rows]
-    integer, intent(out) :: column(:)       !! [entries]
-    integer, intent(out) :: begins(:)       !! first equation of each row in that order
-    integer :: k
-
-    begins = [(minval(rows%equation(rows%start(k):rows%start(k + 1) - 1)), k=1, size(order))]
-    order = sorted_order(begins)
-    begins = begins(order)
-    do k = 1, size(order)
-      column(rows%start(order(k)):rows%start(order(k) + 1) - 1) = k
-    end do
-  end subroutine order_rows
 
   !> Begin a matrix of zeros, or set `lacks_memory`. (A function would return a copy of the whole matrix.)
   subroutine begin_blocks(self, first, height, trailing)
@@ -252,34 +222,17 @@ contains
     diagonal = [(k(j, j), j=1, columns)]
   end function diagonal
 
-  !> Forward substitution with full columns of a factor, and subtraction from the rows below. A few columns at
-  !! a time are solved with loops, which are faster than `trsm` for each column.
+  !> Forward substitution with full columns of a factor, and subtraction from the rows below.
   pure subroutine forward(height, columns, l, sides, leading, y)
     integer, intent(in) :: height, columns
     real(wp), intent(in) :: l(height, columns)
     integer, intent(in) :: sides                      !! right-hand sides
     integer, intent(in) :: leading                    !! dimension of y
     real(wp), intent(inout) :: y(leading, sides)      !! [height, sides]
-    integer, parameter :: few = 16
-    integer :: first, i, k, last
 
-    do first = 1, columns, few
-      last = min(first + few - 1, columns)
-      do i = first, last
-        do k = 1, sides   ! interleaved: the steps of one side depend on each other
-          y(i, k) = y(i, k)/l(i, i)
-          y(i + 1:last, k) = y(i + 1:last, k) - l(i + 1:last, i)*y(i, k)
-        end do
-      end do
-      if (last == height) return
-      if (sides == 1) then
-        call dgemv('N', height - last, last - first + 1, -1.0_wp, l(last + 1, first), height, y(first, 1), &
-                  1, 1.0_wp, y(last + 1, 1), 1)
-      else
-        call dgemm('N', 'N', height - last, sides, last - first + 1, -1.0_wp, l(last + 1, first), height, &
-                  y(first, 1), leading, 1.0_wp, y(last + 1, 1), leading)
-      end if
-    end do
+    call dtrsm('L', 'L', 'N', 'N', columns, sides, 1.0_wp, l, height, y, leading)
+    if (height > columns) call dgemm('N', 'N', height - columns, sides, columns, -1.0_wp, l(columns + 1, 1), &
+                                     height, y, leading, 1.0_wp, y(columns + 1, 1), leading)
   end subroutine forward
 
   !> Backward substitution, with the transpose.
@@ -287,25 +240,9 @@ contains
     integer, intent(in) :: height, columns, sides, leading
     real(wp), intent(in) :: l(height, columns)
     real(wp), intent(inout) :: y(leading, sides)
-    integer, parameter :: few = 16
-    integer :: first, i, k, last
 
-    do first = 1 + (columns - 1)/few*few, 1, -few
-      last = min(first + few - 1, columns)
-      if (last < height .and. sides == 1) then
-        call dgemv('T', height - last, last - first + 1, -1.0_wp, l(last + 1, first), height, &
-                  y(last + 1, 1), 1, 1.0_wp, y(first, 1), 1)
-      else if (last < height) then
-        call dgemm('T', 'N', last - first + 1, sides, height - last, -1.0_wp, l(last + 1, first), height, &
-                  y(last + 1, 1), leading, 1.0_wp, y(first, 1), leading)
-      end if
-      ! Row by row: the steps of a dot product depend on each other.
-      do i = last, first, -1
-        do k = 1, sides
-          y(i, k) = y(i, k)/l(i, i)
-          y(first:i - 1, k) = y(first:i - 1, k) - l(i, first:i - 1)*y(i, k)
-        end do
-      end do
-    end do
+    if (height > columns) call dgemm('T', 'N', columns, sides, height - columns, -1.0_wp, l(columns + 1, 1), &
+                                     height, y(columns + 1, 1), leading, 1.0_wp, y, leading)
+    call dtrsm('L', 'L', 'T', 'N', columns, sides, 1.0_wp, l, height, y, leading)
   end subroutine backward
 end module epcont_linalg_assembled

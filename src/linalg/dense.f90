@@ -4,10 +4,10 @@
 !> matrix is an error.
 module epcont_linalg_dense
   use epcont_base_kinds, only: wp
-  use epcont_linalg_lapack, only: dgemm, dgesvd, dgetrf, dgetrs, dpotrf, dpotri, dpotrs, dpstrf, dsyrk, dtrsm
+  use epcont_linalg_lapack, only: dgemm, dgesvd, dgetrf, dgetrs, dpotrf, dpotrs, dpstrf, dsyrk, dtrsm
   implicit none
   private
-  public :: cholesky_factor, cholesky_inverse, cholesky_solve
+  public :: cholesky_factor, cholesky_solve
   public :: factor_saddle, solve_saddle
   public :: lu_factor, lu_substitute, lu_solve, pivoted_cholesky, add_inner_products, add_product, null_space
 
@@ -31,14 +31,6 @@ contains
 
     if (size(b) > 0) call dpotrs('L', size(b, 1), size(b, 2), factor, size(factor, 1), b, size(b, 1), info)
   end subroutine cholesky_solve
-
-  !> Replace a Cholesky factor L by the inverse of LL'.
-  pure subroutine cholesky_inverse(a)
-    real(wp), contiguous, intent(inout) :: a(:, :)   !! lower triangle: L, then the inverse [n, n]
-    integer :: info
-
-    if (size(a) > 0) call dpotri('L', size(a, 1), a, size(a, 1), info)
-  end subroutine cholesky_inverse
 
   !> Cholesky factor of a semidefinite matrix, largest pivot first: a(order, order) = LL' to rounding.
   pure subroutine pivoted_cholesky(a, tolerance, order, rank)

@@ -6,8 +6,8 @@ module epcont_linalg_lapack
   use epcont_base_kinds, only: wp
   implicit none
   private
-  public :: dgemm, dgemv, dsyrk, dtrsm
-  public :: dpotrf, dpotrs, dpotri, dpstrf, dgetrf, dgetrs, dgesvd
+  public :: dgemm, dsyrk, dtrsm
+  public :: dpotrf, dpotrs, dpstrf, dgetrf, dgetrs, dgesvd
 
   ! Products, and solution with a triangle
   interface
@@ -19,15 +19,6 @@ module epcont_linalg_lapack
       real(wp), intent(in) :: alpha, beta, a(lda, *), b(ldb, *)
       real(wp), intent(inout) :: c(ldc, *)
     end subroutine dgemm
-
-    !> y = alpha op(A) x + beta y
-    pure subroutine dgemv(trans, m, n, alpha, a, lda, x, incx, beta, y, incy)
-      import :: wp
-      character, intent(in) :: trans
-      integer, intent(in) :: m, n, lda, incx, incy
-      real(wp), intent(in) :: alpha, beta, a(lda, *), x(*)
-      real(wp), intent(inout) :: y(*)
-    end subroutine dgemv
 
     !> C = alpha A A' + beta C (or A'A), one triangle of C
     pure subroutine dsyrk(uplo, trans, n, k, alpha, a, lda, beta, c, ldc)
@@ -68,15 +59,6 @@ module epcont_linalg_lapack
       real(wp), intent(inout) :: b(ldb, *)
       integer, intent(out) :: info
     end subroutine dpotrs
-
-    !> Inverse from the factor of dpotrf
-    pure subroutine dpotri(uplo, n, a, lda, info)
-      import :: wp
-      character, intent(in) :: uplo
-      integer, intent(in) :: n, lda
-      real(wp), intent(inout) :: a(lda, *)
-      integer, intent(out) :: info
-    end subroutine dpotri
 
     !> Cholesky factor of a semidefinite matrix with complete pivoting, P'AP = LL'
     pure subroutine dpstrf(uplo, n, a, lda, piv, rank, tol, work, info)

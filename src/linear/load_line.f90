@@ -2,11 +2,13 @@
 !> their states are on one line, and two of them give the next.
 module epcont_linear_load_line
   use epcont_base_kinds, only: wp
-  use epcont_linear_multiple, only: multiple_of
   use epcont_linear_solved_state, only: solved_state
   implicit none
   private
-  public :: load_line
+  public :: load_line, multiple_of
+
+  !> Rounding by the factors of load cases.
+  real(wp), parameter :: rounding = 4.0_wp*epsilon(1.0_wp)
 
   type :: load_line
     type(solved_state), allocatable :: last     !! last solution
@@ -61,4 +63,16 @@ contains
     state%contact%force = state%contact%force + share*(state%contact%force - self%force)
     state%contact%approach = state%contact%approach + share*(state%contact%approach - self%approach)
   end function next
+
+  !> Factor between two fields of forces; 0 if they are not multiples.
+  pure real(wp) function multiple_of(force, of) result(times)
+    real(wp), intent(in) :: force(:, :), of(:, :)   !! [force] [directions, nodes]
+    integer :: at(2)
+
+    times = 0.0_wp
+    at = maxloc(abs(of))
+    if (of(at(1), at(2)) == 0.0_wp) return
+    times = force(at(1), at(2))/of(at(1), at(2))
+    if (any(abs(force - times*of) > rounding*abs(force(at(1), at(2))))) times = 0.0_wp
+  end function multiple_of
 end module epcont_linear_load_line

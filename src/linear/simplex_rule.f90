@@ -9,7 +9,6 @@ module epcont_linear_simplex_rule
   use epcont_contact_solver, only: solve_contact
   use epcont_flexibility_flexibility, only: gap_opening, pair_forces
   use epcont_flexibility_motion_matrix, only: dense_motions
-  use epcont_linear_borne_loads, only: borne_loads
   use epcont_linear_contact_rule, only: contact_loads, contact_rule, contact_sensitivity
   use epcont_linear_simplex_response, only: find_sensitivity, load_pairs
   use epcont_linear_solved_state, only: solved_state
@@ -29,7 +28,6 @@ module epcont_linear_simplex_rule
     !> Contribution of elastic bodies, if others can yield [length/force] [pairs, pairs]
     real(wp), allocatable, private :: lasting_flexibility(:, :)
     type(contact_basis), private :: basis      !! of the last contact with this flexibility
-    type(borne_loads), private :: borne        !! of an earlier load case
   contains
     procedure :: take_case
     procedure :: factor
@@ -132,7 +130,7 @@ contains
     logical, allocatable, intent(in) :: start(:)
     type(solved_state), intent(inout) :: state
     class(stopwatch), intent(inout) :: watch
-    real(wp), allocatable :: force(:, :), opening(:)
+    real(wp), allocatable :: force(:, :)
     type(half_solved_body), allocatable :: half(:)
 
     force = scene%model%loads%load
@@ -142,10 +140,10 @@ contains
     else if (any(bodies%law%initial_stress /= 0.0_wp)) then
       force = force - bodies%operator%nodal_forces(scene%model, bodies%law%initial_stress)
     end if
-    self%borne%keeps = self%keeps
-    call self%borne%bear(scene, bodies, force, half, opening)
+    call bodies%add_forces(scene, force, .true., half)
     if (allocated(self%problem%known_gap)) deallocate (self%problem%known_force, self%problem%known_gap)
-    self%problem%load_gap = opening + self%travel_gap
+    self%problem%load_gap = self%travel_gap + &
+                            gap_opening(scene%model, bodies%finish(scene, half, .true., at_contact=.true.))
     call watch%lap(stage_displacements)
     call self%find_contact(start, state%contact)
     call watch%lap(stage_contact)

@@ -158,7 +158,7 @@ contains
     end do
   end subroutine warn_of_forces
 
-  !> Warn of elements that are too stiff, strained too far, or unloaded.
+  !> Warn of elements that are too stiff, or strained too far.
   subroutine warn_of_material(run, found)
     class(solution_type), intent(in) :: run
     type(findings), intent(inout) :: found
@@ -173,24 +173,11 @@ contains
                 ' of the equivalent stress. Use six-node elements or CQUAD4')
     if (any(run%answer%beyond)) &
       call warn(found, 'strained beyond the last point of the table; its last slope is used: '// &
-                elements_text(count(run%answer%beyond), findloc(run%answer%beyond, .true., dim=1)))
+                'element '//text_of(run%model%mesh%element_id(findloc(run%answer%beyond, .true., dim=1)))// &
+                when(count(run%answer%beyond) > 1, ' and '//text_of(count(run%answer%beyond) - 1)//' more'))
     if (run%answer%shortfall > 0.0_wp) &
       call warn(found, 'formula (2-4) (MUP PAPER) is an approximation: stresses beyond yield are up to '// &
                 percent(run%answer%shortfall, 1.0_wp)//' below the curve; the certificate does not see it')
-    if (run%answer%unloaded > 0) &
-      call warn(found, 'unloaded after yielding along the curve, not along the elastic line: '// &
-                elements_text(run%answer%unloaded, run%answer%first_unloaded))
-
-  contains
-
-    !> Name the first of some elements, and count the others.
-    pure function elements_text(count, first) result(text)
-      integer, intent(in) :: count, first
-      character(len=:), allocatable :: text
-
-      text = 'element '//text_of(run%model%mesh%element_id(first))// &
-             when(count > 1, ' and '//text_of(count - 1)//' more')
-    end function elements_text
   end subroutine warn_of_material
 
   !> Type of the largest pressure of a zone, or of all zones; empty if unknown. If no pair is in contact, the

@@ -158,10 +158,9 @@ contains
         end if
         passing = max(passing, updates)
         entries = entries + factor - updates
-        ! Right-hand sides on the trailing block, then the part of F; or the part alone, if each pair has one
-        ! equation.
+        ! Right-hand sides on the trailing block, this block, and the part of F
         last = body%contact_equations
-        flexibility = max(flexibility, merge(own**2, last*own + max(last, own)**2, last == own))
+        flexibility = max(flexibility, last*own + last**2 + own**2)
         unit_loads = max(unit_loads, min(int(min(motions%count, loads_at_once), i8), own)* &
                          (load_of_node*size(body%node) + load_of_element*size(body%element)))
         expected%operations = expected%operations + body%operations

@@ -12,7 +12,6 @@ module epcont_plasticity_load_path
   use epcont_plasticity_equilibrium_iteration, only: equilibrium_iteration
   use epcont_plasticity_observer, only: iteration_record, observer
   use epcont_plasticity_path_end, only: path_end
-  use epcont_plasticity_unloading, only: find_unloaded
   use epcont_system_stopwatch, only: stage_yielding
   implicit none
   private
@@ -41,9 +40,6 @@ module epcont_plasticity_load_path
     real(wp), private :: largest_force = 0.0_wp         !! largest sum of the contact forces on the path
     real(wp), allocatable :: elastic_stress(:, :)       !! of elastic bodies under the loads of the first load
                                                         !! step [stress] [components, points]
-    integer :: unloaded = 0                !! elements whose strain decreased after yielding, while the load
-                                           !! grew
-    integer :: first_unloaded = 0          !! one of them
   contains
     procedure :: begin_at
     procedure, private :: keep_step
@@ -54,8 +50,6 @@ module epcont_plasticity_load_path
     type(equilibrium_iteration) :: iteration
     integer :: place = 0                     !! part of the path that is done
     integer :: stride = parts                !! of the next load step
-    !> e of points that yielded in the last load step, else 0 [points]
-    real(wp), allocatable :: strained(:)
   contains
     procedure :: begin
     procedure :: advance
@@ -85,7 +79,6 @@ contains
     call move_alloc(virgin, self%iteration%virgin)
     call self%iteration%begin(scene, from)
     call move_alloc(self%iteration%linear, linear)
-    allocate (self%strained(scene%model%mesh%points), source=0.0_wp)
   end subroutine begin
 
   !> Make the next load step. The model gets the loads of the state found.
@@ -111,9 +104,6 @@ contains
       if (iteration%converged) then
         self%place = self%place + self%stride
         if (mod(self%place, 2*self%stride) == 0) self%stride = min(parts, 2*self%stride)
-        if (iteration%plan%load_steps > 1 .and. .not. flow) &
-          call find_unloaded(scene%model, answer%point, iteration%plan%tolerance, self%strained, &
-                             answer%unloaded, answer%first_unloaded)
       end if
       call move_alloc(iteration%linear, linear)
     end associate
