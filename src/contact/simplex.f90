@@ -5,12 +5,13 @@
 !>
 !> On smooth, badly conditioned flexibilities (1e10), pairs close and open many times while the load
 !> grows: the path takes some n**2/20 pivots, and the tableau's entries, which grow to the condition number
-!> and fall again, lose as many digits. Such a path is abandoned: block pivoting decides, which
-!> solves each set with its own factor.
+!> and fall again, lose as many digits. Such a path is abandoned: block pivoting decides, which solves each
+!> set with its own factor (Kostreva 1978; Judice and Pires 1994).
 module epcont_contact_simplex
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: cancelled, negligible, null_component, solved_to
-  use epcont_contact_block_pivoting, only: exchange_blocks
+  use epcont_contact_friction_attempts, only: exchange
+  use epcont_contact_friction_state, only: friction_bounds, friction_problem, friction_state, pair_states
   use epcont_contact_loading, only: follow_load
   use epcont_contact_problem, only: contact_overlap, contact_solution, contact_solved, contact_stalled
   use epcont_contact_scaling, only: gaps_by_forces, scaled_problem
@@ -91,15 +92,20 @@ contains
     subroutine exchange_afresh(found)
       logical, intent(out) :: found
       type(contact_state) :: better
-      integer :: exchanged
+      type(friction_problem) :: smooth
+      type(friction_bounds) :: without
+      type(friction_state) :: trial
+      integer, dimension(size(scaled%gap)) :: none
+      integer :: sets
 
-      exchanged = solution%pivots
-      closed = scaled%first
-      call exchange_blocks(scaled, closed, exchanged)
-      call renew_state(better, scaled, closed .or. scaled%first)
+      none = 0
+      sets = 0
+      smooth = friction_problem(scaled, size(none), tangent=none, mu=0.0_wp*none, inert=none)
+      without = friction_bounds(coulomb=.false., given=0.0_wp*none)
+      call exchange(smooth, without, pair_states(scaled%first, none), trial, sets, found)
+      call renew_state(better, scaled, trial%states%closed .or. scaled%first)
       found = has_right_signs(scaled, better, solved_to)
       if (.not. found) return
-      solution%pivots = exchanged
       solution%state = contact_solved
       state = better
     end subroutine exchange_afresh

@@ -16,7 +16,7 @@ module epcont_linear_simplex_rule
   use epcont_model_controls, only: solver_frontal
   use epcont_model_springs, only: spring_forces
   use epcont_plan_planned_model, only: planned_model
-  use epcont_plan_side_by_side, only: heaviest_first, threads_for
+  use epcont_plan_side_by_side, only: threads_for
   use epcont_system_stopwatch, only: stage_contact, stage_displacements, stage_factor, stage_flexibility, &
     stopwatch
   use epcont_system_threads, only: use_one_thread_each
@@ -86,7 +86,6 @@ contains
     integer :: i, many
 
     body = pack([(i, i=1, size(chosen))], chosen)
-    body = body(heaviest_first(scene%numbering%body(body)%operations))
     many = threads_for(scene%numbering%body(body)%operations, &
                        scene%numbering%body(body)%solver == solver_frontal, threads)
     !$omp parallel do num_threads(many) if (many > 1) schedule(dynamic)

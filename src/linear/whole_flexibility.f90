@@ -11,9 +11,6 @@ module epcont_linear_whole_flexibility
   private
   public :: add_flexibilities, add_part, complete_flexibility
 
-  !> Rows and columns that are transposed at once: both blocks fit into the nearest cache.
-  integer, parameter :: tile = 32
-
 contains
 
   !> Add the contributions of some bodies to the flexibility, each computed separately, in their order, so
@@ -60,15 +57,10 @@ contains
   !> Copy the lower triangle to the upper one, after all parts have been added.
   pure subroutine complete_flexibility(f)
     real(wp), intent(inout) :: f(:, :)   !! [pairs, pairs]
-    integer :: i, j, k, n
+    integer :: k
 
-    n = size(f, 1)
-    do k = 1, n, tile
-      do i = k, n, tile
-        do j = k, min(k + tile - 1, n)
-          f(j, max(i, j + 1):min(i + tile - 1, n)) = f(max(i, j + 1):min(i + tile - 1, n), j)
-        end do
-      end do
+    do k = 1, size(f, 1)
+      f(k, k + 1:) = f(k + 1:, k)
     end do
   end subroutine complete_flexibility
 end module epcont_linear_whole_flexibility

@@ -2,14 +2,13 @@
 !> each is assembled and factored, and its flexibility computed, on its own.
 module epcont_plan_side_by_side
   use epcont_base_kinds, only: i8, wp
-  use epcont_base_sorting, only: sorted_order
   use epcont_model_controls, only: solver_frontal
   use epcont_plan_forecast, only: most_memory
   use epcont_plan_numbering, only: numbering_type
   use epcont_system_memory, only: has_memory, memory_of_thread
   implicit none
   private
-  public :: heaviest_first, plan_threads, threads_for
+  public :: plan_threads, threads_for
 
   !> Operations besides the largest task above which a second thread saves time.
   real(wp), parameter :: least_beside = 2.0e7_wp
@@ -40,13 +39,4 @@ contains
     largest = maxval([merge(least_beside, operations, shared), least_beside])
     if (all - largest >= least_beside) threads = min(granted, ceiling(all/largest))
   end function threads_for
-
-  !> Order in which threads take the bodies: the heaviest first, within a factor of two, so that no heavy body
-  !! is left for the end.
-  pure function heaviest_first(operations) result(order)
-    real(wp), intent(in) :: operations(:)   !! of each body
-    integer, allocatable :: order(:)
-
-    order = sorted_order(-exponent(operations))
-  end function heaviest_first
 end module epcont_plan_side_by_side
