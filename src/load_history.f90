@@ -63,7 +63,6 @@ module epcont_load_history
     procedure :: is_flow
     procedure, private :: end_of
     procedure, private :: add_increment
-    procedure :: renew_increment
     procedure, private :: make_room
   end type loaded_model
 
@@ -98,10 +97,8 @@ contains
         call rule%find_others(self%answer%contact)
         call watch%lap(stage_contact)
         if (self%unique) call self%evaluate(watch)
-        if (self%unique .and. self%is_flow() .and. complete) call self%add_increment(size(answer%history))
       end if
     end associate
-    call self%make_room(self%increments)
   end subroutine follow
 
   !> Follow the loads, until a load step does not converge. In flow theory each increment is committed.
@@ -255,15 +252,6 @@ contains
     end associate
   end subroutine add_increment
 
-  !> Replace the last increment by the answer, which has been refined.
-  pure subroutine renew_increment(self)
-    class(loaded_model), intent(inout) :: self
-
-    if (self%increments == 0) return
-    self%increments = self%increments - 1
-    call self%add_increment(self%increment(self%increments + 1)%iterations)
-  end subroutine renew_increment
-
   !> Change the length of the list. gfortran 12 leaks an array constructor of such a type.
   pure subroutine make_room(self, length)
     class(loaded_model), intent(inout) :: self
@@ -298,12 +286,15 @@ contains
     end if
   end subroutine begin_replay
 
-  !> End a load case: estimate the error of its increments, and keep its end for the next one of a sequence.
-  !! Elastic bodies without contact do not depend on the loads before, but friction in the next one does.
+  !> End a load case: add its last increment, estimate the error of the increments, and keep its end for the
+  !! next one of a sequence. Elastic bodies without contact do not depend on the loads before, but friction in
+  !! the next one does.
   subroutine end_case(self, valid)
     class(loaded_model), intent(inout) :: self
     logical, intent(in) :: valid   !! the answer is valid
 
+    if (valid .and. self%is_flow()) call self%add_increment(size(self%answer%history))
+    call self%make_room(self%increments)
     if (valid .and. self%is_flow() .and. allocated(self%other)) self%increment_error = self%errors()
     if (allocated(self%start)) deallocate (self%start)
     if (allocated(self%other_start)) deallocate (self%other_start)

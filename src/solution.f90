@@ -106,10 +106,7 @@ contains
 
     many = 0
     if (what == more_steps) many = times_the_steps*self%model%controls%load_steps
-    if (what == refinement) then
-      call self%refine(many, watch)
-      call self%renew_increment()
-    end if
+    if (what == refinement) call self%refine(many, watch)
     call self%attempts%add(what, why, many)
     select case (what)
     case (more_steps)

@@ -98,7 +98,7 @@ contains
                          columns_in(result_files(i)%suffix))
         end do
       case default
-        text = text//when(page(k)(1:1) == '.', trim(page(k))//newline, paragraph(page(k)))
+        text = text//when(page(k)(1:1) == '.', trim(page(k)), roff(trim(page(k))))//newline
       end select
     end do
 
@@ -108,27 +108,10 @@ contains
     subroutine add_entry(name, explanation, more)
       character(len=*), intent(in) :: name, explanation, more
 
-      text = text//'.TP'//newline//name//newline//paragraph(explanation)
-      if (more /= '') text = text//'.br'//newline//paragraph(more)
+      text = text//'.TP'//newline//name//newline//roff(trim(explanation))//newline
+      if (more /= '') text = text//'.br'//newline//roff(trim(more))//newline
     end subroutine add_entry
   end function man_page
-
-  !> Split text into source lines.
-  pure function paragraph(text)
-    character(len=*), intent(in) :: text
-    character(len=:), allocatable :: paragraph
-    integer, parameter :: width = 70
-    integer :: from, to
-
-    paragraph = ''
-    from = 1
-    do while (from <= len_trim(text))
-      to = len_trim(text)
-      if (to - from >= width) to = from + index(text(from:from + width), ' ', back=.true.) - 2
-      paragraph = paragraph//roff(text(from:to))//newline
-      from = to + 2
-    end do
-  end function paragraph
 
   !> Escape text for roff: hyphens as typed, and no requests.
   pure function roff(text) result(escaped)

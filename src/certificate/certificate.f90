@@ -12,7 +12,7 @@ module epcont_certificate_certificate
   use epcont_certificate_mass_force, only: given_load
   use epcont_certificate_scene, only: overlaps_type
   use epcont_certificate_tied, only: check_springs, check_ties, gather_ties, longest_arms
-  use epcont_certificate_unit_strains, only: find_slopes, largest_face, largest_of
+  use epcont_certificate_unit_strains, only: find_slopes, largest_face
   use epcont_certificate_yielding, only: replayed_history
   use epcont_element_element_kind, only: most_nodes, most_points
   use epcont_element_kinematics, only: directions
@@ -122,8 +122,7 @@ contains
     springs = total%stored
     given_force = max(maxval(abs(load)), maxval(total%element_force))
     face = largest_face(model)
-    largest_stress = max(largest_of(size(answer%point_stress), answer%point_stress), &
-                         part_of_held*held_stress(model), given_force/face)
+    largest_stress = max(maxval(abs(answer%point_stress)), part_of_held*held_stress(model), given_force/face)
     if (present(worked)) found%worked = worked
     call add_elements(model, answer, largest_stress, total, found)
     if (present(worked)) then
@@ -139,9 +138,6 @@ contains
     forces = sum(abs(load + answer%reaction)) + sum(abs(answer%contact%row_forces()))
     length = ratio(max(abs(total%stored), total%stored - total%expansion%work), forces)
     associate (u => answer%displacement, reaction => answer%reaction)
-      ! If supports take all loads, displacements are rounding errors of the indentation by these forces.
-      if (maxval(abs(u)) <= roundings*epsilon(1.0_wp)*least_indentation(model, &
-          answer)) length = least_indentation(model, answer)
       ! Bodies without forces do not deform: rigid-body displacements close the gaps.
       if (unstressed) length = maxval(abs(u))
       if (total%expansion%held_work > 0.0_wp) length = max(length, &
@@ -191,24 +187,6 @@ contains
     found%valid = all(within_limits(found))
     found%balanced = all(within_limits(found) .or. figure_name == off_the_curve)
   end subroutine certify
-
-  !> Find the largest contact force over the largest depth and modulus: a lower bound of the indentation.
-  pure real(wp) function least_indentation(model, answer) result(length)
-    type(model_type), intent(in) :: model        !! the model
-    type(answer_type), intent(in) :: answer      !! answer to check
-    real(wp) :: stiffest   ! [force/length]
-    integer :: e
-
-    stiffest = 0.0_wp
-    do e = 1, model%mesh%elements
-      associate (nodes => model%mesh%connectivity(:model%mesh%node_count(e), e))
-        stiffest = max(stiffest, model%sections%young(model%mesh%section(e))*model%depth(e, &
-          maxval(model%mesh%x(1, nodes))))
-      end associate
-    end do
-    length = 0.0_wp
-    if (stiffest > 0.0_wp) length = maxval([answer%contact%force, 0.0_wp])/stiffest
-  end function least_indentation
 
   !> Add the internal forces of elements and the work of their stresses. Put the largest stress error and the
   !! effects of rounding and rigid-body displacements into the certificate. Threads share the elements in

@@ -4,7 +4,7 @@ module epcont_certificate_element_checks
   use epcont_base_kinds, only: wp
   use epcont_certificate_free_expansion, only: expansion_type, free_strains
   use epcont_certificate_increment_work, only: point_energies
-  use epcont_certificate_unit_strains, only: largest_of, strain_by, unit_strains
+  use epcont_certificate_unit_strains, only: strain_by, unit_strains
   use epcont_certificate_yielding, only: replayed_history, return_to_curve, stress_on_curve, &
       von_mises_stress
   use epcont_element_element_kind, only: most_nodes, most_points
@@ -113,11 +113,11 @@ contains
       motion(:, k) = answer%displacement(:, node) - u(:, k)
     end do
     moves = any(motion(:, :n) /= 0.0_wp)
-    largest = largest_of(directions*n, u)
+    largest = maxval(abs(u(:, :n)))
     farthest = maxval(abs(motion(:, :n)) + abs(u(:, :n)))
     do p = 1, model%mesh%kinds(model%mesh%kind(e))%points
       ! Rounding error of a strain by unit displacements.
-      rounding = epsilon(1.0_wp)*largest_of(components*directions*n, points%unit(1, 1, 1, p))
+      rounding = epsilon(1.0_wp)*maxval(abs(points%unit(:, :, :n, p)))
       strain = strain_by(n, u, points%unit(1, 1, 1, p), ring)
       associate (point => model%mesh%first_point(e) + p - 1)
         part%work(point) = points%volume(p)*dot_product(answer%point_stress(:, point), strain)
@@ -125,23 +125,22 @@ contains
         strain(:3) = strain(:3) - points%free(p)
         reached = largest_stress
         associate (section => model%mesh%section(e))
-          if (allocated(part%history)) then
-            associate (history => part%history(point - lbound(part%work, 1) + 1))
+          if (.not. allocated(part%history)) then
+            on_curve = stress_on_curve(model, section, strain)
+          else
+            associate (history => part%history(point - lbound(part%work, 1) + 1), &
+                       curve => model%sections%curve(section))
               before = history
-              if (allocated(model%sections%curve(section)%strain) .and. &
-                  .not. model%sections%curve(section)%elastic) then
-                call return_to_curve(model, section, strain, history, on_curve)
-                if (history%hardened > 0.0_wp) &
-                  reached = max(reached, model%sections%curve(section)%stress(2))
-              else
+              if (.not. allocated(curve%strain) .or. curve%elastic) then
                 on_curve = stress_on_curve(model, section, strain)
+              else
+                call return_to_curve(model, section, strain, history, on_curve)
+                if (history%hardened > 0.0_wp) reached = max(reached, curve%stress(2))
               end if
               history%stress = on_curve
               history%free = points%free(p)
               call part%energy%add_point(model, section, points%volume(p), strain, before, history)
             end associate
-          else
-            on_curve = stress_on_curve(model, section, strain)
           end if
           call check_stress(model, reached, section, on_curve, answer%point_stress(:, point), &
                             rounding*largest, part)

@@ -5,7 +5,7 @@ module epcont_certificate_findings
   use epcont_element_kinematics, only: directions
   implicit none
   private
-  public :: overlap_place, beyond_place, overlaps_type, is_deeper, is_worse, rated
+  public :: overlap_place, beyond_place, overlaps_type, is_worse, rated
 
   !> Of places that differ by less than this part the first counts: rounding decides nothing.
   real(wp), parameter :: more = 1.0_wp + 1.0e-9_wp
@@ -38,10 +38,8 @@ module epcont_certificate_findings
   type :: overlaps_type
     logical :: looked_through = .false.
     type(overlap_place) :: inside          !! deepest in another body, by depth / allowed depth
-    type(overlap_place) :: deepest         !! deepest in another body
     type(overlap_place) :: itself          !! deepest in its own body
     type(overlap_place) :: apart           !! widest gap at a contact force, by depth / allowed depth
-    type(overlap_place) :: widest          !! widest gap at a contact force
     type(overlap_place) :: beside          !! depth: distance of a node in contact from the end of the other
                                            !! body
     type(overlap_place) :: slid            !! depth: relative tangential displacement in contact
@@ -72,13 +70,6 @@ contains
 
     is_worse = found%depth > more*found%allowed*than%ratio
   end function is_worse
-
-  !> Is a point deeper?
-  pure logical function is_deeper(found, than)
-    type(overlap_place), intent(in) :: found, than   !! the two points
-
-    is_deeper = found%depth > more*than%depth
-  end function is_deeper
 
   !> Complete a point by its ratio.
   elemental type(overlap_place) function rated(found)

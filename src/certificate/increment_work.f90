@@ -106,9 +106,8 @@ contains
     self%off_curve = numbers(2)
   end subroutine pass
 
-  !> Find the error of the energy balance of an increment, or the largest negative dissipation of a point or
-  !! pair if that is larger, over the sum of absolute energies. Errors of the stresses (`off_curve`) are
-  !! subtracted.
+  !> Find the relative energy error of an increment. It is the larger of the imbalance and the most negative
+  !! dissipation at a point or pair, over the sum of absolute energies. Stress errors explain a part of it.
   pure real(wp) function imbalance(self, before, points)
     class(work_state), intent(in) :: self
     type(work_state), intent(in) :: before

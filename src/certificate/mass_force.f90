@@ -10,12 +10,12 @@ module epcont_certificate_mass_force
   private
   public :: find_body_force, given_load
 
-  !> Lobatto points on a line, exact to degree 5 and 9, and their weights: from one end to the centre; the
-  !! other half is symmetric.
+  !> Lobatto points on a line, exact to degree 9, and their weights: from one end to the centre; the other
+  !! half is symmetric.
   real(wp), parameter :: root7 = sqrt(7.0_wp), &
-    four(2) = [1.0_wp, sqrt(0.2_wp)], of_four(2) = [1.0_wp, 5.0_wp]/6.0_wp, &
-    six(3) = [1.0_wp, sqrt((7.0_wp + 2.0_wp*root7)/21.0_wp), sqrt((7.0_wp - 2.0_wp*root7)/21.0_wp)], &
-    of_six(3) = [2.0_wp, 14.0_wp - root7, 14.0_wp + root7]/30.0_wp
+    half(3) = [1.0_wp, sqrt((7.0_wp + 2.0_wp*root7)/21.0_wp), sqrt((7.0_wp - 2.0_wp*root7)/21.0_wp)], &
+    of_half(3) = [2.0_wp, 14.0_wp - root7, 14.0_wp + root7]/30.0_wp, &
+    line(6) = [-half, half], part(6) = [of_half, of_half]
   integer, parameter :: most_places = 36
 
   !> Integration points of an element type.
@@ -48,17 +48,9 @@ contains
   pure subroutine set_places(kind, table)
     type(element_kind), intent(in) :: kind
     type(place_table), intent(out) :: table
-    real(wp), dimension(2*kind%degree + 2) :: line, part
     real(wp) :: at(directions), unused(directions, most_nodes)
     integer :: i, j
 
-    if (kind%degree == 1) then
-      line = [-four, four]
-      part = [of_four, of_four]
-    else
-      line = [-six, six]
-      part = [of_six, of_six]
-    end if
     do i = 1, size(line)
       do j = 1, size(line)
         at = [line(i), line(j)]

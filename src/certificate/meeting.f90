@@ -4,17 +4,15 @@ module epcont_certificate_meeting
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: same_place
   use epcont_certificate_allowance, only: allowance_type, meeting_type, new_allowance
-  use epcont_certificate_findings, only: is_deeper, is_worse, overlap_place, rated
+  use epcont_certificate_findings, only: is_worse, overlap_place, rated
   use epcont_contact_geometry_mates, only: find_mates, is_mate
   use epcont_element_kinematics, only: directions
-  use epcont_geometry_box_tree, only: box_query
   use epcont_geometry_outline_shape, only: near_place, new_outline_shape, outline_shape
-  use epcont_geometry_plane, only: extent_of, span_along
+  use epcont_geometry_plane, only: extent_of
   use epcont_model_model, only: model_type
   implicit none
   private
-  public :: point_type, search_type, new_search, point_on, sides_meeting, motion_at, &
-            part_along, meet, keep, insert
+  public :: point_type, search_type, new_search, point_on, part_along, meet, keep
 
   real(wp), parameter :: &
     !> Deeper penetration than this part of the largest displacement, or a wider gap at a contact force, gives
@@ -23,6 +21,9 @@ module epcont_certificate_meeting
     !> Near a corner, the gap may be measured to another edge than the nearest. The largest allowance of edges
     !! within this many depths is used.
     about = 1.5_wp, &
+    !> If an edge rotates [rad] or stretches by more than this, the path of its body is not straight and is
+    !! not checked.
+    shapeless = 1.0_wp, &
     !> Smallest allowance, beside `same_place`, in roundings of the coordinates.
     roundings = 16.0_wp
 
@@ -39,8 +40,7 @@ module epcont_certificate_meeting
   !> Data of the search.
   type :: search_type
     type(outline_shape) :: drawn, now      !! undeformed and displaced outlines
-    !> Displacements of start, end and mid-side node of each edge [length] [directions, 3, sides]
-    real(wp), allocatable :: motion(:, :, :)
+    type(outline_shape) :: motion          !! displacements of the outlines
     type(allowance_type) :: allowance
     type(point_type), allocatable :: middle(:)    !! a point inside each part [parts]
     !> Diameter of a circle with the length of the part's outline; it does not depend on the orientation
@@ -48,6 +48,7 @@ module epcont_certificate_meeting
     real(wp), allocatable :: width(:)
     real(wp), allocatable :: line_length(:)       !! undeformed edges of contact lines, 0 for others [length]
                                                   !! [sides]
+    logical, allocatable :: straight(:)    !! the path of displacement is checked [parts]
     integer, allocatable :: mate(:)        !! part with which pairs join each node [nodes]
     real(wp) :: least = 0.0_wp             !! allowance between any two edges [length]
     real(wp) :: moved = 0.0_wp             !! largest displacement [length]
@@ -60,20 +61,12 @@ contains
     type(model_type), intent(in) :: model        !! model
     real(wp), intent(in) :: displacement(:, :)   !! [length] [directions, nodes]
     type(search_type) :: search
-    integer :: k, side
+    integer :: k
 
     associate (outline => model%mesh%body_outline, x => model%mesh%x, own => model%mesh%around%members())
       search%drawn = new_outline_shape(outline, x)
       search%now = new_outline_shape(outline, x + displacement)
-      ! Edges without a mid-side node get the displacement of the first node, which is not used.
-      search%motion = reshape(displacement(:, [max(outline%node, 1)]), [directions, 3, outline%sides])
-      do k = 1, outline%parts
-        associate (first => outline%first(k), last => outline%first(k + 1) - 1)
-          call search%now%side_tree(k)%set_spans(reshape( &
-              [(span_along(search%motion(:, :, side), outline%node(3, side) > 0), side=first, last)], &
-              [directions, 2, last - first + 1]))
-        end associate
-      end do
+      search%motion = new_outline_shape(outline, displacement)
       search%allowance = new_allowance(model, search%drawn, search%now)
       search%mate = find_mates(model)
       search%moved = maxval(norm2(displacement(:, own), dim=1))
@@ -85,6 +78,8 @@ contains
       end do
       search%width = [(sum(search%allowance%length(outline%first(k):outline%first(k + 1) - 1)) &
                        /acos(-1.0_wp), k=1, outline%parts)]
+      search%straight = [(all(search%allowance%change(outline%first(k):outline%first(k + 1) - 1) <= &
+                              shapeless), k=1, outline%parts)]
       search%middle = [(middle_of(outline%first(k)), k=1, outline%parts)]
     end associate
 
@@ -111,34 +106,9 @@ contains
     integer, intent(in) :: side               !! number of the edge
     real(wp), intent(in) :: s                 !! along the edge, from 0 to 1
 
-    point = point_type(side, s, .false., search%drawn%at(side, s), motion_at(search, side, s), &
+    point = point_type(side, s, .false., search%drawn%at(side, s), search%motion%at(side, s), &
                        search%now%at(side, s))
   end function point_on
-
-  !> Find the edges of a part that a query of boxes returns.
-  pure function sides_meeting(shape, part, query) result(side)
-    type(outline_shape), intent(in) :: shape   !! undeformed or displaced outlines
-    integer, intent(in) :: part                !! of the outlines
-    class(box_query), intent(in) :: query      !! queried boxes
-    integer, allocatable :: side(:)
-
-    side = shape%side_tree(part)%meeting(query)
-    side = side + (shape%outline%first(part) - 1)
-  end function sides_meeting
-
-  !> Find the displacement at a point of an edge [length].
-  pure function motion_at(search, side, s) result(motion)
-    type(search_type), intent(in) :: search   !! the outlines
-    integer, intent(in) :: side               !! number of the edge
-    real(wp), intent(in) :: s                 !! along the edge, from 0 to 1
-    real(wp) :: motion(directions)
-
-    associate (own => search%motion(:, :, side))
-      motion = (1.0_wp - s)*own(:, 1) + s*own(:, 2)
-      if (search%now%outline%node(3, side) > 0) &
-        motion = motion + 4.0_wp*s*(1.0_wp - s)*(own(:, 3) - 0.5_wp*(own(:, 1) + own(:, 2)))
-    end associate
-  end function motion_at
 
   !> Find the component of a displacement along an edge, without sign [length].
   pure real(wp) function part_along(shape, side, s, motion) result(part)
@@ -163,7 +133,7 @@ contains
 
     found = overlap_place(depth=place%distance, distance=place%distance, x=point%x, drawn=point%drawn, &
                           side=point%side, other=place%side)
-    moved = motion_at(search, point%side, point%s) - motion_at(search, place%side, place%s)
+    moved = search%motion%at(point%side, point%s) - search%motion%at(place%side, place%s)
     own = sides_at(point%side, point%s)
     other = sides_at(place%side, place%s)
     longest = [maxval(search%line_length(own)), maxval(search%line_length(other))]
@@ -227,14 +197,14 @@ contains
     end associate
   end function is_paired
 
-  !> Keep a point if it is the worst by its allowance, the deepest, or the worst by the limit for a warning.
-  !! If it exceeds the allowance of its two edges, the allowance of edges around it is used. An initial
-  !! overlap that no pair closes is subtracted.
-  pure subroutine keep(search, found, worst, deepest, not_told)
+  !> Keep a point if it is the worst by its allowance, or by the limit for a warning. If it exceeds the
+  !! allowance of its two edges, the allowance of edges around it is used. An initial overlap that no pair
+  !! closes is subtracted.
+  pure subroutine keep(search, found, worst, not_told)
     type(search_type), intent(in) :: search                          !! the outlines
     type(overlap_place), intent(in) :: found                         !! from `meet`; its depth may have
                                                                      !! changed
-    type(overlap_place), intent(inout) :: worst, deepest, not_told   !! those kept so far
+    type(overlap_place), intent(inout) :: worst, not_told   !! those kept so far
     type(overlap_place) :: place, telling
 
     place = found
@@ -244,8 +214,7 @@ contains
                        > 0.5_wp*found%allowed
       telling%allowed = search%least + told*search%moved &
                         + allowance%of_drawing(a, meeting) + allowance%of_drawing(b, meeting)
-      if (.not. (is_worse(found, worst) .or. is_deeper(found, deepest) .or. &
-                 is_worse(telling, not_told))) return
+      if (.not. (is_worse(found, worst) .or. is_worse(telling, not_told))) return
       if (found%depth > found%allowed) place%allowed = search%least + allowance_about(a) + allowance_about(b)
       if (found%distance > min(place%allowed, telling%allowed)) then
         place%depth = found%depth - overlap_as_drawn()
@@ -253,7 +222,6 @@ contains
       end if
     end associate
     if (is_worse(place, worst)) worst = rated(place)
-    if (is_deeper(place, deepest)) deepest = rated(place)
     if (is_worse(telling, not_told)) not_told = rated(telling)
 
   contains
@@ -269,8 +237,8 @@ contains
 
       allowed = search%allowance%of(side, found%meeting)
       within = about*found%distance
-      others = sides_meeting(search%now, search%now%outline%part(side), &
-                             box_query(found%x - within, found%x + within))
+      others = search%now%sides_meeting(search%now%outline%part(side), &
+                                        found%x - within, found%x + within)
       do k = 1, size(others)
         near = search%now%near_side(others(k), found%x)
         if (near%distance <= within) allowed = max(allowed, search%allowance%of(others(k), found%meeting))
@@ -287,12 +255,4 @@ contains
       if (before%inside) overlap = before%distance
     end function overlap_as_drawn
   end subroutine keep
-
-  !> Insert a number into an ascending list.
-  pure subroutine insert(number, list)
-    real(wp), intent(in) :: number                    !! number to insert
-    real(wp), allocatable, intent(inout) :: list(:)   !! extended by one
-
-    list = [pack(list, list <= number), number, pack(list, list > number)]
-  end subroutine insert
 end module epcont_certificate_meeting

@@ -13,13 +13,12 @@ module epcont_certificate_scene
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: no_effect
   use epcont_certificate_findings, only: beyond_place, is_worse, overlap_place, rated, overlaps_type
-  use epcont_certificate_meeting, only: insert, keep, meet, motion_at, new_search, &
-      part_along, point_on, point_type, search_type, sides_meeting
+  use epcont_certificate_meeting, only: keep, meet, new_search, part_along, point_on, point_type, &
+      search_type
   use epcont_certificate_way, only: look_at_ways
   use epcont_element_kinematics, only: directions
-  use epcont_geometry_box_tree, only: box_query
-  use epcont_geometry_outline_shape, only: near_place, outline_shape
-  use epcont_geometry_plane, only: cross_product, crossing
+  use epcont_geometry_outline_shape, only: near_place
+  use epcont_geometry_plane, only: cross_product
   use epcont_model_model, only: model_type
   implicit none
   private
@@ -45,7 +44,6 @@ contains
     real(wp), intent(in) :: force(:)             !! contact forces [pairs]
     type(overlaps_type) :: scene
     type(search_type) :: search
-    integer :: near   ! edge nearest to the last point, where the search for the next one starts
     integer, allocatable :: others(:)
     integer :: b, part, side
 
@@ -53,15 +51,14 @@ contains
     if (model%mesh%body_outline%sides == 0) return
     search = new_search(model, displacement)
     scene%moved = search%moved
-    near = 1
     do side = 1, model%mesh%body_outline%sides
-      call look_at_side(search, scene, near, side)
+      call look_at_side(search, scene, side)
     end do
     ! if two bodies have the same outline, no point of it is inside
     do part = 1, model%mesh%body_outline%parts
-      others = search%now%part_tree%meeting(box_query(search%middle(part)%x, search%middle(part)%x))
+      others = search%now%part_tree%meeting(search%middle(part)%x, search%middle(part)%x)
       do b = 1, size(others)
-        if (others(b) /= part) call look_at_point(search, scene, near, search%middle(part), others(b))
+        if (others(b) /= part) call look_at_point(search, scene, search%middle(part), others(b))
       end do
     end do
     call look_at_pairs(model, force, search, scene)
@@ -72,10 +69,9 @@ contains
   end function look_through
 
   !> Check the points of an edge against the bodies whose boxes it meets.
-  subroutine look_at_side(search, scene, near, side)
+  subroutine look_at_side(search, scene, side)
     type(search_type), intent(in) :: search      !! outlines
     type(overlaps_type), intent(inout) :: scene     !! results are added
-    integer, intent(inout) :: near              !! edge nearest to the previous point
     integer, intent(in) :: side
     real(wp), allocatable :: crossing(:), s(:)
     integer, allocatable :: others(:), parts(:)
@@ -84,36 +80,33 @@ contains
 
     low = search%now%low(:, side)
     high = search%now%high(:, side)
-    parts = search%now%part_tree%meeting(box_query(low, high))
+    parts = search%now%part_tree%meeting(low, high)
     do b = 1, size(parts)
       if (parts(b) == search%now%outline%part(side)) cycle
-      crossing = crossings(search%now, side, parts(b))
+      crossing = search%now%crossings(parts(b), search%now%x(:, 1, side), search%now%chord(side))
       s = [quarters, 0.5_wp*(crossing(:size(crossing) - 1) + crossing(2:))]
       do k = 1, size(s)
-        call look_at_point(search, scene, near, point_on(search, side, s(k)), parts(b))
+        call look_at_point(search, scene, point_on(search, side, s(k)), parts(b))
       end do
     end do
     h = 0.5_wp*norm2(search%now%chord(side))
-    others = sides_meeting(search%now, search%now%outline%part(side), box_query(low - h, high + h))
+    others = search%now%sides_meeting(search%now%outline%part(side), low - h, high + h)
     do b = 1, size(others)
       call look_at_itself(search, scene, side, others(b))
     end do
   end subroutine look_at_side
 
   !> Check a point of a body against another body.
-  subroutine look_at_point(search, scene, near, point, part)
+  subroutine look_at_point(search, scene, point, part)
     type(search_type), intent(in) :: search      !! outlines
     type(overlaps_type), intent(inout) :: scene     !! results are added
-    integer, intent(inout) :: near              !! edge nearest to the previous point
     type(point_type), intent(in) :: point
     integer, intent(in) :: part
     type(near_place) :: place
 
     if (search%now%side_tree(part)%away(1, point%x) > 0.0_wp) return
-    place = search%now%nearest_place(part, point%x, near)
-    near = place%side
-    if (place%inside) &
-      call keep(search, meet(search, point, place), scene%inside, scene%deepest, scene%deep)
+    place = search%now%nearest_place(part, point%x)
+    if (place%inside) call keep(search, meet(search, point, place), scene%inside, scene%deep)
   end subroutine look_at_point
 
   !> Check the points of an edge against another edge of its own body that they were in front of.
@@ -184,7 +177,7 @@ contains
     found = meet(search, point, place)
     found%pair = pair
     slid = found
-    apart = point%motion - motion_at(search, place%side, place%s)
+    apart = point%motion - search%motion%at(place%side, place%s)
     ! At a corner the nearest edge may not be in contact: closing of a gap is not tangential.
     slid%depth = min(part_along(search%now, place%side, place%s, apart), &
                      abs(cross_product(model%contact%normal(:, pair), apart)))
@@ -195,7 +188,7 @@ contains
     found%depth = abs(dot_product(point%x - place%x, model%contact%normal(:, pair)))
     off = abs(cross_product(point%x - place%x, model%contact%normal(:, pair)))
     if (off <= found%depth) then
-      call keep(search, found, scene%apart, scene%widest, scene%wide)
+      call keep(search, found, scene%apart, scene%wide)
     else   ! the other body ends before the node
       found%depth = off
       found%allowed = found%allowed + slid%allowed
@@ -256,21 +249,4 @@ contains
       end associate
     end associate
   end function beyond_end
-
-  !> Find the crossings of the chord of an edge with those of another outline, in ascending order.
-  pure function crossings(now, side, other) result(place)
-    type(outline_shape), intent(in) :: now
-    integer, intent(in) :: side, other
-    real(wp), allocatable :: place(:)   !! along the edge
-    real(wp) :: part(2)   ! of both chords
-    integer, allocatable :: near(:)
-    integer :: k
-
-    allocate (place(0))
-    near = sides_meeting(now, other, box_query(now%low(:, side), now%high(:, side)))
-    do k = 1, size(near)
-      part = crossing(now%x(:, 1, side), now%chord(side), now%x(:, 1, near(k)), now%chord(near(k)))
-      if (all(part >= 0.0_wp .and. part <= 1.0_wp)) call insert(part(1), place)
-    end do
-  end function crossings
 end module epcont_certificate_scene

@@ -7,7 +7,7 @@ module epcont_certificate_unit_strains
   use epcont_model_model, only: model_type
   implicit none
   private
-  public :: find_slopes, largest_face, largest_of, slopes_at, strain_by, unit_strains
+  public :: find_slopes, largest_face, slopes_at, strain_by, unit_strains
 
   !> Half the step of the differences: exact for quadratic polynomials whatever its size.
   real(wp), parameter :: half_step = 0.5_wp
@@ -123,18 +123,6 @@ contains
       face = max(face, maxval(most - least)*model%depth(e, most(1)))
     end do
   end function largest_face
-
-  !> Find the largest absolute value.
-  pure real(wp) function largest_of(count, number) result(largest)
-    integer, intent(in) :: count
-    real(wp), intent(in) :: number(count)
-    integer :: k
-
-    largest = 0.0_wp
-    do k = 1, count
-      largest = max(largest, abs(number(k)))
-    end do
-  end function largest_of
 
   !> Find the strain at one point of an element. A translation (along y, and in plane models along x) is
   !! subtracted first, so that it leaves no rounding error.

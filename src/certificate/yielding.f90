@@ -232,17 +232,12 @@ contains
       (curve%strain(3) - curve%strain(2) - (curve%stress(3) - curve%stress(2))/young)
   end function hardening_of
 
-  !> Find the yield stress at an equivalent plastic strain; the last slope of the curve continues [stress].
+  !> Find the yield stress at an equivalent plastic strain [stress].
   pure real(wp) function stress_when_hardened(curve, young, hardened) result(stress)
     type(uniaxial_curve), intent(in) :: curve
     real(wp), intent(in) :: young, hardened
-    integer :: k
 
-    associate (plastic => curve%strain - curve%stress/young)
-      k = count(plastic(3:size(plastic) - 1) < hardened) + 3
-      stress = curve%stress(k - 1) + (curve%stress(k) - curve%stress(k - 1))/(plastic(k) - plastic(k - 1))* &
-               (hardened - plastic(k - 1))
-    end associate
+    stress = interpolated(curve%strain(2:) - curve%stress(2:)/young, curve%stress(2:), hardened)
   end function stress_when_hardened
 
   !> Find the equivalent stress (2-1), scaled by the largest component, since squares may overflow or
@@ -259,16 +254,22 @@ contains
         + (part(3) - part(1))**2) + 3.0_wp*part(4)**2)
   end function von_mises_stress
 
-  !> Find the stress at a total strain; the last slope continues. It is computed from the lower point, without
-  !! cancellation.
+  !> Find the stress at a total strain.
   pure real(wp) function stress_at(curve, total)
     type(uniaxial_curve), intent(in) :: curve
     real(wp), intent(in) :: total
+
+    stress_at = interpolated(curve%strain, curve%stress, total)
+  end function stress_at
+
+  !> Interpolate the stress; the last slope continues. It is computed from the lower point, without
+  !! cancellation.
+  pure real(wp) function interpolated(strain, stress, at)
+    real(wp), intent(in) :: strain(:), stress(:), at
     integer :: k
 
-    k = count(curve%strain(2:size(curve%strain) - 1) < total) + 2
-    associate (strain => curve%strain(k - 1:k), stress => curve%stress(k - 1:k))
-      stress_at = stress(1) + (stress(2) - stress(1))/(strain(2) - strain(1))*(total - strain(1))
-    end associate
-  end function stress_at
+    k = count(strain(2:size(strain) - 1) < at) + 2
+    interpolated = stress(k - 1) + (stress(k) - stress(k - 1))/(strain(k) - strain(k - 1))* &
+                   (at - strain(k - 1))
+  end function interpolated
 end module epcont_certificate_yielding

@@ -6,7 +6,6 @@ module epcont_contact_geometry_loose_nodes
   use epcont_base_text, only: short_real, text_of
   use epcont_base_tolerances, only: coincident
   use epcont_contact_geometry_mates, only: find_mates, is_mate
-  use epcont_geometry_box_tree, only: box_query
   use epcont_geometry_outline_shape, only: near_place, new_outline_shape, outline_shape
   use epcont_model_finding, only: and_more, findings, of_element, of_node
   use epcont_model_model, only: model_type
@@ -74,7 +73,7 @@ contains
         associate (node => drawn%outline%node(k, side), x => drawn%x(:, k, side), &
                    within => coincident*norm2(drawn%chord(side)))
           if (node == 0) cycle
-          part = drawn%part_tree%meeting(box_query(x - within, x + within))
+          part = drawn%part_tree%meeting(x - within, x + within)
           do i = 1, size(part)
             if (part(i) /= drawn%outline%part(side)) then
               call look_at_other_part(model, drawn, part(i), node, within, mate, loose)
@@ -121,7 +120,7 @@ contains
 
     if (model%constraints%is_tied([node])) return
     associate (outline => drawn%outline, x => model%mesh%x)
-      side = drawn%side_tree(outline%part(own))%meeting(box_query(x(:, node) - within, x(:, node) + within))
+      side = drawn%side_tree(outline%part(own))%meeting(x(:, node) - within, x(:, node) + within)
       side = side + (outline%first(outline%part(own)) - 1)
       do i = 1, size(side)
         associate (ends => outline%node(:2, side(i)), middle => outline%node(3, side(i)))

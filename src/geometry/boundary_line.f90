@@ -10,7 +10,7 @@
 module epcont_geometry_boundary_line
   use epcont_base_kinds, only: wp
   use epcont_base_sorting, only: sorted_order
-  use epcont_geometry_box_tree, only: box_query, box_tree, new_box_tree
+  use epcont_geometry_box_tree, only: box_tree, new_box_tree
   use epcont_geometry_plane, only: cross_product, right_of, unit
   implicit none
   private
@@ -90,7 +90,7 @@ contains
     real(wp), intent(in) :: low(2), high(2)   !! corners of the box [length]
     integer, allocatable :: sides(:)
 
-    sides = self%tree%meeting(box_query(low, high))
+    sides = self%tree%meeting(low, high)
     sides = sides(sorted_order(sides))   ! not in the order of the tree: of equal edges the first is used
   end function in_box
 

@@ -4,7 +4,7 @@ module epcont_geometry_outline_shape
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: least_difference
   use epcont_geometry_box_tree, only: box_tree, most_waiting, new_box_tree
-  use epcont_geometry_plane, only: right_of, span_along, unit
+  use epcont_geometry_plane, only: crossing, right_of, span_along, unit
   implicit none
   private
   public :: outline_type, outline_shape, near_place, new_outline_shape
@@ -44,6 +44,8 @@ module epcont_geometry_outline_shape
     procedure :: near_side
     procedure :: nearest_place
     procedure :: is_inside
+    procedure :: crossings
+    procedure :: sides_meeting
   end type outline_shape
 
   !> Point of a part's outline that is nearest to a given point.
@@ -129,12 +131,11 @@ contains
       arch = self%x(:, 3, side) - 0.5_wp*(self%x(:, 1, side) + self%x(:, 2, side))
   end function arch
 
-  !> Nearest point of a part's outline: branch and bound in its tree. `guess` is an edge that may be near.
-  pure function nearest_place(self, part, point, guess) result(best)
+  !> Nearest point of a part's outline: branch and bound in its tree.
+  pure function nearest_place(self, part, point) result(best)
     class(outline_shape), intent(in) :: self
     integer, intent(in) :: part   !! number of the part
     real(wp), intent(in) :: point(2)   !! [length]
-    integer, intent(in), optional :: guess   !! edge that may be near
     type(near_place) :: best
     type(near_place) :: place
     real(wp) :: away(2), bound(most_waiting)
@@ -143,9 +144,6 @@ contains
     waiting(1) = 1
     bound(1) = 0.0_wp
     waits = 1
-    if (present(guess)) then
-      if (self%outline%part(guess) == part) best = self%near_side(guess, point)
-    end if
     associate (tree => self%side_tree(part))
       do while (waits > 0)
         i = waiting(waits)
@@ -242,4 +240,33 @@ contains
       normal = unit(right_of(self%tangent(side, s)))
     end function normal
   end function is_inside
+
+  !> Find the crossings of a straight line with the chords of a part, in ascending order.
+  pure function crossings(self, part, start, along) result(s)
+    class(outline_shape), intent(in) :: self
+    integer, intent(in) :: part                 !! number of the part
+    real(wp), intent(in) :: start(2), along(2)  !! start of the line, and vector to its end [length]
+    real(wp), allocatable :: s(:)               !! along the line, from 0 to 1
+    real(wp) :: at(2)   ! along the line and the chord
+    integer, allocatable :: near(:)
+    integer :: k
+
+    allocate (s(0))
+    near = self%sides_meeting(part, min(start, start + along), max(start, start + along))
+    do k = 1, size(near)
+      at = crossing(start, along, self%x(:, 1, near(k)), self%chord(near(k)))
+      if (all(at >= 0.0_wp .and. at <= 1.0_wp)) s = [pack(s, s <= at(1)), at(1), pack(s, s > at(1))]
+    end do
+  end function crossings
+
+  !> Find the edges of a part that meet a box.
+  pure function sides_meeting(self, part, low, high) result(side)
+    class(outline_shape), intent(in) :: self
+    integer, intent(in) :: part             !! number of the part
+    real(wp), intent(in) :: low(2), high(2)   !! of the box [length]
+    integer, allocatable :: side(:)
+
+    side = self%side_tree(part)%meeting(low, high)
+    side = side + (self%outline%first(part) - 1)
+  end function sides_meeting
 end module epcont_geometry_outline_shape

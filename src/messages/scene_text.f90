@@ -22,9 +22,6 @@ module epcont_messages_scene_text
     sides_slid = 6, &       !! sides slide too far along each other where they press
     scene_warnings = 6
 
-  !> Depths whose ratio is below this are treated as equal.
-  real(wp), parameter, public :: deeper = 1.1_wp
-
   character(len=*), parameter, public :: large_displacements = &
     'displacements too large for small-displacement theory: '
   character(len=*), parameter :: may_help = ' is allowed. Possible fix: '
@@ -122,11 +119,8 @@ contains
       text = 'pair '//text_of(model%contact%pair_id(place%pair))//' carries a force '
     select case (worst)
     case (1)
-      text = 'bodies pass through each other: '//word%penetration//'; '//word%allowed//' is allowed'
-      if (scene%deepest%depth > deeper*place%depth) &
-        text = text//' (deepest, '//short_real(scene%deepest%depth)//', they are at '// &
-               point_name(scene%deepest%x)//', where '//short_real(scene%deepest%allowed)//' is allowed)'
-      text = text//'. Possible fix: '//remedy(model, [place%side, place%other])
+      text = 'bodies pass through each other: '//word%penetration//'; '//word%allowed//may_help// &
+             remedy(model, [place%side, place%other])
     case (2)
       text = text//'across a gap: '//word%distance//'; '//word%allowed//may_help// &
              'give pairs of nodes, or lines, that face each other'

@@ -112,18 +112,12 @@ contains
     type(case_row), intent(in) :: row(:)       !! of all load cases
     real(wp), intent(in) :: wanted             !! PARAM ACCURACY, relative; 0 if not set
     type(table_type), intent(inout) :: listing
-    character(len=:), allocatable :: text
     integer :: worst
 
     if (wanted <= 0.0_wp) return
     worst = maxloc(relative_error(row), dim=1)
-    text = accuracy_text(row(worst), wanted)
-    if (relative_error(row(worst)) > wanted) then
-      text = 'worst in SUBCASE '//text_of(row(worst)%subcase)//': '//text
-    else if (row(worst)%pressure > 0.0_wp) then
-      text = 'reached in all'
-    end if
     call listing%line('')
-    call listing%say('wanted error of contact pressures '//short_real(wanted)//', '//text)
+    call listing%say('wanted error of contact pressures '//short_real(wanted)//', worst in SUBCASE '// &
+                     text_of(row(worst)%subcase)//': '//accuracy_text(row(worst), wanted))
   end subroutine put_worst_case
 end module epcont_report_case_table

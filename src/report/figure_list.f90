@@ -6,7 +6,7 @@ module epcont_report_figure_list
   use epcont_report_columns, only: estimate, full_number, known, listed_number, number, rounding
   implicit none
   private
-  public :: figure_list, figure_type, new_figure_list
+  public :: figure_list, figure_type
 
   integer, parameter :: room_at_first = 64   !! number of values
 
@@ -24,16 +24,11 @@ module epcont_report_figure_list
     type(figure_type), allocatable :: figure(:)   !! with free space
     integer :: count = 0
   contains
-    procedure :: put, put_relative, list_as, put_word, put_error, put_increment_error
+    procedure :: put, put_relative, list_as, put_word, put_error
     procedure, private :: append
   end type figure_list
 
 contains
-
-  !> Make an empty list.
-  pure type(figure_list) function new_figure_list() result(new)
-    allocate (new%figure(room_at_first))
-  end function new_figure_list
 
   !> Add a number; its kind defines its digits in the listing.
   subroutine put(self, key, unit, kind, value, name, note)
@@ -46,8 +41,8 @@ contains
 
     figure = figure_type(key, full_number(kind, value), unit)
     if (present(name)) figure%name = name
-    figure%listed = listed_number(kind, value, 0.0_wp)
     if (present(note)) figure%note = note
+    figure%listed = listed_number(kind, value, 0.0_wp)
     call self%append(figure)
   end subroutine put
 
@@ -86,6 +81,7 @@ contains
     type(figure_type), intent(in) :: figure
     type(figure_type), allocatable :: more(:)
 
+    if (.not. allocated(self%figure)) allocate (self%figure(room_at_first))
     if (self%count == size(self%figure)) then
       allocate (more(2*self%count))
       more(:self%count) = self%figure
@@ -95,28 +91,16 @@ contains
     self%figure(self%count) = figure
   end subroutine append
 
-  !> Add an error by the size of the increments; the listing shows it if it is known.
-  subroutine put_increment_error(self, key, unit, name, error, value)
-    class(figure_list), intent(inout) :: self
-    character(len=*), intent(in) :: key, unit, name   !! key and name are those of the value
-    real(wp), intent(in) :: error, value
-
-    call self%put('increment_error_'//key, unit, known, error, &
-                  when(error >= 0.0_wp, 'increments: '//name), '   '//percent(error, value))
-    call self%list_as(listed_number(estimate, error, value))
-  end subroutine put_increment_error
-
-  !> Add a mesh error; the listing shows it if it is known, otherwise the reason.
+  !> Add an error by the mesh or the increments; the listing shows it if it is known, otherwise the reason.
   subroutine put_error(self, key, unit, name, error, value, limit)
     class(figure_list), intent(inout) :: self
-    character(len=*), intent(in) :: key, unit, name   !! key and name are those of the value
+    character(len=*), intent(in) :: key, unit, name
     real(wp), intent(in) :: error, value
     character(len=*), intent(in) :: limit             !! of the value: `bounded`, `singular` ...
     character(len=:), allocatable :: reason
 
     reason = reason_of(limit)
-    call self%put('mesh_error_'//key, unit, known, error, &
-                  when(reason /= '' .or. error >= 0.0_wp, 'mesh: '//name), &
+    call self%put(key, unit, known, error, when(reason /= '' .or. error >= 0.0_wp, name), &
                   when(reason == '', '   '//percent(error, value)))
     call self%list_as(when(reason == '', listed_number(estimate, error, value), reason))
   end subroutine put_error

@@ -1,4 +1,4 @@
-!> Texts by lines, in memory or as files. A file appears whole or not at all: it is written under a temporary
+!> Texts by lines, and files of them. A file appears whole or not at all: it is written under a temporary
 !> name, then renamed. A lock gives one run the right to write the files of one name.
 !>
 !> Files are written by C streams, which report whether all data has reached the disk; Fortran's `close` does
@@ -7,18 +7,17 @@ module epcont_report_file
   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_f_pointer, c_int, c_null_char, c_null_ptr, &
       c_ptr, c_size_t
   use epcont_base_error, only: error_type, raise, status_usage
+  use epcont_base_kinds, only: i8
   use epcont_base_text, only: newline
   implicit none
   private
-  public :: text_file, new_text_file, make_directory, remove_file, file_lock, lock_files, unlock_files
+  public :: text_file, make_directory, remove_file, file_lock, lock_files, unlock_files
 
-  !> Between `new_text_file` and `finish`, stop signals wait, so that no partial file remains.
+  !> A text in memory, to which lines are added.
   type :: text_file
-    character(len=:), allocatable :: text   !! of a text in memory, with free space
-    integer, private :: used = 0            !! characters in use
+    character(len=:), allocatable, private :: text   !! with free space
+    integer(i8), private :: used = 0        !! characters in use
     character(len=40) :: mark = ''          !! follows each heading; empty if the answer is valid
-    type(c_ptr), private :: stream = c_null_ptr
-    character(len=:), allocatable, private :: path
   contains
     procedure :: characters => put
     procedure :: line
@@ -27,7 +26,7 @@ module epcont_report_file
     procedure :: add
     procedure :: is_empty
     procedure :: lines
-    procedure :: finish
+    procedure :: write_to
   end type text_file
 
   integer(c_int), parameter :: no_file = -1
@@ -53,10 +52,6 @@ module epcont_report_file
       integer(c_size_t), value :: size, count
       type(c_ptr), value :: stream
     end function c_fwrite
-    integer(c_int) function c_ferror(stream) bind(c, name='ferror')
-      import
-      type(c_ptr), value :: stream
-    end function c_ferror
     integer(c_int) function c_fclose(stream) bind(c, name='fclose')
       import
       type(c_ptr), value :: stream
@@ -177,22 +172,7 @@ contains
     call close_lock(lock)
   end subroutine unlock_files
 
-  !> Begin a file.
-  subroutine new_text_file(path, file, error)
-    character(len=*), intent(in) :: path                  !! of the file, once it is finished
-    class(text_file), intent(out) :: file                 !! open, without a line
-    type(error_type), allocatable, intent(out) :: error   !! the file cannot be written
-
-    file%path = path
-    call hold_signals(.true.)
-    file%stream = c_fopen(path//'.part'//c_null_char, 'w'//c_null_char)
-    if (c_associated(file%stream)) return
-    call hold_signals(.false.)
-    call raise(error, status_usage, path// &
-               ': cannot be written: the directory does not exist or is not writable')
-  end subroutine new_text_file
-
-  !> Append a line, without trailing blanks. `finish` reports write errors.
+  !> Append a line, without trailing blanks.
   subroutine line(self, text)
     class(text_file), intent(inout) :: self
     character(len=*), intent(in) :: text   !! of the line
@@ -214,41 +194,41 @@ contains
     class(text_file), intent(inout) :: self
     character(len=*), intent(in) :: text
     character(len=:), allocatable :: longer
-    integer(c_size_t) :: ignored
+    integer(i8) :: needed
 
-    if (.not. allocated(self%text)) then
-      ignored = c_fwrite(text, 1_c_size_t, len(text, kind=c_size_t), self%stream)
-      return
-    end if
-    if (self%used + len(text) > len(self%text)) then   ! double the space
-      allocate (character(len=2*(self%used + len(text))) :: longer)
+    needed = self%used + len(text, i8)
+    if (.not. allocated(self%text)) self%text = ''
+    if (needed > len(self%text, i8)) then   ! double the space
+      allocate (character(len=2*needed) :: longer)
       longer(:self%used) = self%text(:self%used)
       call move_alloc(longer, self%text)
     end if
-    self%text(self%used + 1:self%used + len(text)) = text
-    self%used = self%used + len(text)
+    self%text(self%used + 1:needed) = text
+    self%used = needed
   end subroutine put
 
-  !> Append the text that another object holds in memory.
+  !> Append the text of another object, which is empty afterwards.
   subroutine add(self, other, without_head)
     class(text_file), intent(inout) :: self
-    class(text_file), intent(in) :: other
+    class(text_file), intent(inout) :: other
     logical, intent(in) :: without_head   !! leave out its first line
-    integer :: first
+    integer(i8) :: first
 
     first = 1
-    if (without_head) first = index(other%text(:other%used), newline) + 1
+    if (without_head) first = index(other%text(:other%used), newline, kind=i8) + 1
     call put(self, other%text(first:other%used))
+    deallocate (other%text)
+    other%used = 0
   end subroutine add
 
-  !> Is no text in memory?
+  !> Is there no text?
   pure logical function is_empty(self)
     class(text_file), intent(in) :: self
 
     is_empty = self%used == 0
   end function is_empty
 
-  !> Return the lines in memory.
+  !> Return all lines.
   pure function lines(self) result(text)
     class(text_file), intent(in) :: self
     character(len=:), allocatable :: text
@@ -265,22 +245,31 @@ contains
     call self%line(text//self%mark)
   end subroutine heading
 
-  !> Close the file and rename it.
-  subroutine finish(self, error)
-    class(text_file), intent(inout) :: self
+  !> Write the text to a file. Meanwhile stop signals wait, so that no partial file remains.
+  subroutine write_to(self, path, error)
+    class(text_file), intent(in) :: self                  !! not empty
+    character(len=*), intent(in) :: path                  !! of the file
     type(error_type), allocatable, intent(out) :: error   !! the file cannot be written
+    type(c_ptr) :: stream
     logical :: whole
 
-    whole = c_ferror(self%stream) == 0
-    whole = c_fclose(self%stream) == 0 .and. whole
-    if (.not. whole) then
-      call raise(error, status_usage, self%path//': cannot be written: is the disk full?')
-    else if (c_rename(self%path//'.part'//c_null_char, self%path//c_null_char) /= 0) then
-      call raise(error, status_usage, self%path//': cannot be written: is there a directory of that name?')
+    call hold_signals(.true.)
+    stream = c_fopen(path//'.part'//c_null_char, 'w'//c_null_char)
+    if (c_associated(stream)) then
+      whole = c_fwrite(self%text, 1_c_size_t, self%used, stream) == self%used
+      whole = c_fclose(stream) == 0 .and. whole
+      if (.not. whole) then
+        call raise(error, status_usage, path//': cannot be written: is the disk full?')
+      else if (c_rename(path//'.part'//c_null_char, path//c_null_char) /= 0) then
+        call raise(error, status_usage, path//': cannot be written: is there a directory of that name?')
+      end if
+      if (allocated(error)) call remove_file(path//'.part')
+    else
+      call raise(error, status_usage, path// &
+                 ': cannot be written: the directory does not exist or is not writable')
     end if
-    if (allocated(error)) call remove_file(self%path//'.part')
     call hold_signals(.false.)
-  end subroutine finish
+  end subroutine write_to
 
   !> Delay stop signals, or deliver them: then a delayed signal stops the program.
   subroutine hold_signals(hold)

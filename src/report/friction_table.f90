@@ -1,13 +1,13 @@
 !> Table of the friction of pairs: forces, tractions and slip.
 module epcont_report_friction_table
   use epcont_base_kinds, only: wp
-  use epcont_report_columns, only: column, force, known, length, number, state, stress, table_type, &
+  use epcont_report_columns, only: column, force, length, number, state, stress, table_type, &
       unknown, whole
   use epcont_report_run, only: run_results
   use epcont_result_answer, only: pair_open, pair_slips
   implicit none
   private
-  public :: friction_columns, put_friction, put_stick_zones
+  public :: friction_columns, put_friction
 
   type(column), parameter :: friction_columns(*) = [ &
     column(whole, 'pair', '', 'id, as in the table of pairs', width=10), &
@@ -22,11 +22,6 @@ module epcont_report_friction_table
     column(number, 'slip', length, 'of B relative to A in this increment, along the tangent'), &
     column(number, 'slid', length, 'the same since the start of the loads', width=0), &
     column(state, 'state', '', 'sticks, slips or open', width=7)]
-
-  type(column), parameter :: stick_columns(*) = [ &
-    column(whole, head='zone', width=8), column(whole, head='first pair', width=11), &
-    column(whole, head='last pair', width=11), column(number, head='friction force', width=15), &
-    column(number, head='to last sticking', width=17), column(known, head='half-width')]
 
 contains
 
@@ -55,20 +50,4 @@ contains
       end do
     end associate
   end subroutine put_friction
-
-  !> Write a row for each run of pairs that stick.
-  subroutine put_stick_zones(run, table)
-    type(run_results), intent(in) :: run
-    type(table_type), intent(inout) :: table
-    integer :: k
-
-    call table%begin('STICK ZONES  (half-width: up to full slip)', stick_columns, &
-                     [sum(run%answer%contact%force), 0.0_wp, 0.0_wp])
-    do k = 1, size(run%answer%stick_zones)
-      associate (zone => run%answer%stick_zones(k))
-        call table%row([k, run%model%contact%pair_id([zone%first, zone%last])], &
-                       [zone%force, zone%half_width_pairs, zone%half_width])
-      end associate
-    end do
-  end subroutine put_stick_zones
 end module epcont_report_friction_table

@@ -19,18 +19,16 @@ module epcont_report_increment_table
     column(whole, 'pairs_in_contact', '', 'their number', 'in contact', 12), &
     column(whole, 'plastic_elements', '', 'elements that have yielded', 'yielded', 10), &
     column(whole, 'iterations', '', 'solves from the start of the load case', 'solves', 9), &
-    column(number, 'friction_force', force, 'sum of the magnitudes; empty without friction', width=0), &
-    column(whole, 'pairs_sticking', '', 'numbers of pairs with friction; empty without', width=0), &
-    column(whole, 'pairs_slipping', width=0), &
-    column(number, 'friction_work', energy, 'of friction in the increment, by trapezoids', width=0), &
-    column(number, 'dissipated', energy, 'since the start of the load case, also by yielding', width=0)]
+    column(number, 'friction_force', force, 'sum of the magnitudes; empty without friction', &
+           'friction force', 15), &
+    column(whole, 'pairs_sticking', '', 'numbers of pairs with friction; empty without', 'stick', 8), &
+    column(whole, 'pairs_slipping', '', '', 'slip', 8), &
+    column(number, 'friction_work', energy, 'of friction in the increment, by trapezoids', &
+           'friction work', 15), &
+    column(number, 'dissipated', energy, 'since the start of the load case, also by yielding', width=15)]
 
-  !> Friction of the increments, in the listing.
-  type(column), parameter :: friction_columns(*) = [ &
-    column(whole, head='increment', width=10), column(number, head='load factor'), &
-    column(number, head='friction force', width=15), column(whole, head='stick', width=8), &
-    column(whole, head='slip', width=8), column(number, head='friction work', width=15), &
-    column(number, head='dissipated', width=15)]
+  !> Columns without friction, and first column of friction.
+  integer, parameter :: plain(*) = [3, 4, 5, 6, 7, 8, 9], from_friction = 10
 
 contains
 
@@ -38,13 +36,33 @@ contains
   subroutine put_increments(run, table)
     type(run_results), intent(in) :: run
     type(table_type), intent(inout) :: table
+    type(column) :: columns(size(increment_columns))
+
+    columns = increment_columns
+    columns(from_friction:)%width = 0
+    call put_rows('INCREMENTS', columns, run, table)
+    if (.not. (table%listed .and. run%model%contact%has_friction())) return
+    columns = increment_columns
+    columns(plain)%width = 0
+    call put_rows('FRICTION OF THE INCREMENTS  (work: in each, by trapezoids; dissipated: since the '// &
+                  'first, also by yielding)', columns, run, table)
+  end subroutine put_increments
+
+  !> Write a row for each increment.
+  subroutine put_rows(title, columns, run, table)
+    character(len=*), intent(in) :: title
+    type(column), intent(in) :: columns(:)   !! those that the listing leaves out have no width
+    type(run_results), intent(in) :: run
+    type(table_type), intent(inout) :: table
     real(wp) :: approach, rubbing(2)
     real(wp) :: most   ! friction [force]
     integer :: k
 
-    call table%begin('INCREMENTS', increment_columns, &
+    most = maxval(run%increment%force)*maxval([run%model%contact%friction, 0.0_wp])
+    call table%begin(title, columns, &
                      [1.0_wp, maxval(run%increment%pressure), maxval(run%increment%half_width), &
-                      maxval([abs(run%answer%contact%approach), 0.0_wp]), maxval(run%increment%force)])
+                      maxval([abs(run%answer%contact%approach), 0.0_wp]), maxval(run%increment%force), &
+                      most, spread(most*maxval(abs(run%answer%displacement)), 1, 2)])
     do k = 1, size(run%increment)
       associate (now => run%increment(k))
         approach = unknown
@@ -56,16 +74,5 @@ contains
                         rubbing, now%dissipated])
       end associate
     end do
-    if (.not. (table%listed .and. run%model%contact%has_friction())) return
-    most = maxval(run%increment%force)*maxval(run%model%contact%friction)
-    call table%begin('FRICTION OF THE INCREMENTS  (work: in each, by trapezoids; dissipated: since the '// &
-                     'first, also by yielding)', friction_columns, &
-                     [1.0_wp, most, spread(most*maxval(abs(run%answer%displacement)), 1, 2)])
-    do k = 1, size(run%increment)
-      associate (now => run%increment(k))
-        call table%row([k, now%sticking, now%slipping], [now%load_factor, now%friction_force, &
-                                                         now%friction_work, now%dissipated])
-      end associate
-    end do
-  end subroutine put_increments
+  end subroutine put_rows
 end module epcont_report_increment_table

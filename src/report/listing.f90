@@ -13,9 +13,7 @@ module epcont_report_listing
   use epcont_messages_names, only: centre_name, joined, percent, point_name, when
   use epcont_messages_outcome, only: remark_lines
   use epcont_messages_sentences, only: most_pairs
-  use epcont_report_friction_table, only: put_stick_zones
   use epcont_report_run, only: run_results
-  use epcont_messages_scene_text, only: deeper
   use epcont_report_summary, only: figure_type
   use epcont_report_tables, only: put_table
   use epcont_result_answer, only: pair_slips, pair_sticks
@@ -104,11 +102,9 @@ contains
     end if
     if (.not. run%outcome%has_answer) return
     if (run%iteration%follows) call list_iterations(listing, run)
-    if (run%model%contact%pairs > 0) call list_contact(listing, run)
-    if (run%wants_nodes(all_tables)) call put_table(run, 'nodes', listing)
-    if (run%wants_elements(all_tables)) call put_table(run, 'elements', listing)
-    if (run%wants_elements(all_tables) .and. allocated(run%answer%plastic_strain)) &
-      call put_table(run, 'plastic', listing)
+    if (run%model%contact%pairs > 0) call list_tables([character(len=8) :: 'contact', 'friction', 'zones', &
+                                                      'sticks', 'lines', 'bodies'])
+    call list_tables([character(len=8) :: 'nodes', 'elements', 'plastic'])
     call list_summary()
     if (run%certificate%scene%looked_through) call list_scene_found(listing, run)
     call listing%heading('ACCURACY')
@@ -117,6 +113,16 @@ contains
     if (run%model%controls%accuracy > 0.0_wp) call list_wanted(listing, run)
 
   contains
+
+    !> List the tables that the model has and that are requested.
+    subroutine list_tables(names)
+      character(len=*), intent(in) :: names(:)
+      integer :: k
+
+      do k = 1, size(names)
+        if (run%wants_table(names(k), all_tables)) call put_table(run, names(k), listing)
+      end do
+    end subroutine list_tables
 
     !> List summary and certificate.
     subroutine list_summary()
@@ -199,33 +205,16 @@ contains
     end associate
   end subroutine list_iterations
 
-  !> Pairs, contact zones, contact lines, and contact forces on bodies.
-  subroutine list_contact(listing, run)
-    type(table_type), intent(inout) :: listing
-    type(run_results), intent(in) :: run
-
-    call put_table(run, 'contact', listing)
-    if (run%model%contact%has_friction()) call put_table(run, 'friction', listing)
-    call put_table(run, 'zones', listing)
-    if (run%model%contact%has_friction()) call put_stick_zones(run, listing)
-    if (size(run%answer%lines) > 0) call put_table(run, 'lines', listing)
-    call put_table(run, 'bodies', listing)
-  end subroutine list_contact
-
-  !> List penetrations and gaps under pressure: the worst, and the largest if it is another one.
+  !> List penetrations and gaps under pressure: the worst of each.
   subroutine list_scene_found(listing, run)
     type(table_type), intent(inout) :: listing
     type(run_results), intent(in) :: run
 
     associate (scene => run%certificate%scene)
       call list_place('penetration anywhere / tolerance', scene%inside)
-      if (scene%deepest%ratio >= little .and. scene%deepest%depth > deeper*scene%inside%depth) &
-        call list_place('  where it is deepest / tolerance', scene%deepest)
       if (scene%passed%side > 0) call list_place('  of bodies that passed through each other', scene%passed)
       if (run%model%contact%pairs == 0) return
       call list_place('gap at a loaded pair / tolerance', scene%apart)
-      if (scene%widest%ratio >= little .and. scene%widest%depth > deeper*scene%apart%depth) &
-        call list_place('  where it is widest / tolerance', scene%widest)
       if (scene%beside%ratio >= little) call list_place('  at a pair beside the other body', scene%beside)
     end associate
 

@@ -44,7 +44,6 @@ contains
 
     deformable = .false.
     deformable(scene%model%mesh%body(scene%model%mesh%connectivity(1, :))) = .true.
-    plan%text = ''
     if (present(of)) call plan%heading('PLAN  ('//of//')')
     if (.not. present(of)) call plan%heading('PLAN')
     call plan%say(plural(scene%model%mesh%nodes, 'node')//', '// &
@@ -139,6 +138,8 @@ contains
     type(table_type), intent(inout) :: plan
     type(planned_model), intent(in) :: scene
     logical, intent(in) :: several             !! the plan is for several load cases
+    logical, allocatable :: yields(:)          ! [bodies]
+    integer :: e
 
     if (scene%model%contact%has_friction()) call plan%say('friction at '// &
       plural(size(scene%model%contact%sliding), 'pair')//': the answer depends on the path of the loads')
@@ -153,8 +154,12 @@ contains
         call plan%say('a sequence of load cases: without plastic strain, each is independent of those before')
       return
     end if
-    call plan%say(theory_text(scene%model)//'; bodies that can yield: '// &
-                  text_of(count(yielding_bodies(scene%model))))
+    associate (mesh => scene%model%mesh)
+      allocate (yields(mesh%bodies), source=.false.)
+      yields(pack(mesh%body(mesh%connectivity(1, :)), &
+                  scene%model%can_yield([(e, e=1, mesh%elements)]))) = .true.
+    end associate
+    call plan%say(theory_text(scene%model)//'; bodies that can yield: '//text_of(count(yields)))
     associate (method => scene%iteration%method)
       call plan%say('plasticity iteration '//trim(method_name(method))//': '//method_text(method))
     end associate
@@ -250,18 +255,6 @@ contains
           joined(scene%model%mesh%node_id(node), ', ', most_corners))
     end subroutine say_corners
   end subroutine say_contact
-
-  !> Has a body elements that can yield? [bodies]
-  pure function yielding_bodies(model) result(yields)
-    type(model_type), intent(in) :: model
-    logical :: yields(model%mesh%bodies)
-    integer :: e
-
-    yields = .false.
-    do e = 1, model%mesh%elements
-      if (model%can_yield(e)) yields(model%mesh%body(model%mesh%connectivity(1, e))) = .true.
-    end do
-  end function yielding_bodies
 
   !> Write an amount of memory, rounded up.
   pure function megabytes(bytes) result(text)

@@ -8,15 +8,15 @@ module epcont_report_restart
   use epcont_base_kinds, only: i8, wp
   use epcont_base_text, only: shown
   use epcont_model_marks, only: marks_of, part_name
-  use epcont_report_file, only: new_text_file, text_file
+  use epcont_report_file, only: text_file
   use epcont_report_run, only: run_results
   implicit none
   private
   public :: restore_end, save_end
 
-  !> Head of the file: the bytes `epcontRS`, version of the format, number of values, checksum of the values.
-  integer, parameter :: head = 4
-  real(wp), parameter :: magic = transfer('epcontRS', 1.0_wp), version = 2.0_wp
+  !> Head of the file: the bytes `epcontRS`, version of the format, checksum of the values.
+  integer, parameter :: head = 3
+  real(wp), parameter :: magic = transfer('epcontRS', 1.0_wp), version = 3.0_wp
 
 contains
 
@@ -38,19 +38,16 @@ contains
     call saved%pass(values)
     call run%pass_ends(saved)
     associate (all => saved%value(:saved%used))
-      values = [magic, version, real(size(all), wp), checksum(all), all]
+      values = [magic, version, checksum(all), all]
     end associate
-    call new_text_file(path, file, error)
-    if (allocated(error)) return
     call file%characters(transfer(values, repeat(' ', 8*size(values))))
-    call file%finish(error)
+    call file%write_to(path, error)
   end subroutine save_end
 
   !> Let the first load case start from the saved end that the deck names. An error is added to its faults.
   subroutine restore_end(run)
     type(run_results), intent(inout) :: run   !! before its first load case
-    character(len=*), parameter :: again = 'run the deck that has saved it again', &
-      file = 'give the DECK.restart that PARAM SAVE YES writes'
+    character(len=*), parameter :: file = 'give the DECK.restart that PARAM SAVE YES writes'
     character(len=:), allocatable :: path
     type(archive) :: saved
     real(wp), allocatable :: values(:)
@@ -65,14 +62,10 @@ contains
       call refuse(' cannot be read', file//', relative to the folder of this deck')
     else if (size(values) < head) then
       call refuse(' is not a restart file', file)
-    else if (values(1) /= magic) then
-      call refuse(' is not a restart file', file)
-    else if (values(2) /= version) then
-      call refuse(' was saved by another version of epcont', again)
-    else if (values(3) /= size(values) - head) then
-      call refuse(' is incomplete', again)
-    else if (values(4) /= checksum(values(head + 1:))) then
-      call refuse(' is damaged', again)
+    else if (any(values(:2) /= [magic, version])) then
+      call refuse(' is not a restart file of this version of epcont', file)
+    else if (values(3) /= checksum(values(head + 1:))) then
+      call refuse(' is incomplete or damaged', 'run the deck that has saved it again')
     else
       saved%value = values(head + 1:)
       saved%reading = .true.

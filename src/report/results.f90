@@ -1,12 +1,12 @@
 !> All files of a run: the listing (ASCII, at most 132 columns, without data that varies from run to run) and
-!> the tables. Several load cases are added one by one, and written after the last.
+!> the tables. Load cases are added one by one, and written after the last.
 module epcont_report_results
   use epcont_base_error, only: error_type, status_valid
   use epcont_base_kinds, only: wp
   use epcont_report_case_table, only: case_row, put_cases, put_worst_case, row_of_case
   use epcont_base_text, only: text_of
   use epcont_report_columns, only: column, table_type, word
-  use epcont_report_file, only: new_text_file, remove_file
+  use epcont_report_file, only: remove_file
   use epcont_report_listing, only: list_case, list_scene
   use epcont_messages_names, only: joined
   use epcont_report_plan_text, only: plan_text
@@ -47,14 +47,14 @@ module epcont_report_results
   !> The first files are the listing, the summary, and tables with rows of each load case.
   integer, parameter :: listing = 1, summary = 2, of_each_case = 12
 
-  !> Results of one load case. If there are several, its part of each file is held in memory.
+  !> Results of one load case: its part of each file.
   type :: case_results
     type(case_row) :: row
     type(table_type) :: part(of_each_case)
     type(drawing), allocatable :: drawing(:)   !! for ParaView
   end type case_results
 
-  !> Output of a run; results of several load cases are kept in memory.
+  !> Output of a run.
   type :: results_type
     character(len=:), allocatable :: stem             !! path of the files, without their suffixes
     !> Command line: always write tables of nodes and elements; only the listing and the summary; files for
@@ -102,7 +102,7 @@ contains
     end if
   end subroutine add_plan
 
-  !> Add the results of a load case. If there is only one, they are written.
+  !> Add the results of a load case. Files for ParaView are written.
   subroutine add_case(self, run, error)
     class(results_type), intent(inout) :: self
     type(run_results), intent(in) :: run                  !! with the results of this load case
@@ -117,9 +117,8 @@ contains
                                          k=1, size(run%deck%subcase))], error)
     figures = summarise(run)
     self%case(run%case)%row = row_of_case(run)
-    do k = 1, of_each_case
-      if (.not. allocated(error) .and. is_wanted(self, run, trim(result_files(k)%suffix))) &
-        call put_part(self, run, figures, k, self%case(run%case)%part(k), error)
+    do k = 1, merge(of_each_case, summary, run%outcome%has_answer .and. .not. self%brief)
+      call put_part(self, run, figures, k, self%case(run%case)%part(k))
     end do
     if (self%vtk .and. run%outcome%has_answer .and. .not. allocated(error)) &
       call put_drawings(self%stem, run, self%case(run%case)%drawing, error)
@@ -149,64 +148,29 @@ contains
     call write_vtk(run%model, run%answer, run%outcome%status, stem//run%case_suffix(), error)
   end subroutine put_drawings
 
-  !> Has the load case this file, and is it requested?
-  pure logical function is_wanted(self, run, suffix)
-    class(results_type), intent(in) :: self
-    type(run_results), intent(in) :: run
-    character(len=*), intent(in) :: suffix
-
-    is_wanted = run%outcome%has_answer .and. .not. self%brief
-    select case (suffix)
-    case ('.lst', '.summary.csv')
-      is_wanted = .true.
-    case ('.bodies.csv')
-      is_wanted = is_wanted .and. run%model%contact%pairs > 0
-    case ('.friction.csv')
-      is_wanted = is_wanted .and. run%model%contact%has_friction()
-    case ('.increments.csv')
-      is_wanted = is_wanted .and. run%is_flow()
-    case ('.pivots.csv')
-      is_wanted = is_wanted .and. self%all_tables
-      if (is_wanted) is_wanted = size(run%answer%pivot) > 0
-    case ('.nodes.csv')
-      is_wanted = is_wanted .and. run%wants_nodes(self%all_tables)
-    case ('.plastic.csv')
-      is_wanted = is_wanted .and. allocated(run%answer%plastic_strain) .and. &
-                  run%wants_elements(self%all_tables)
-    case ('.elements.csv')
-      is_wanted = is_wanted .and. run%wants_elements(self%all_tables)
-    end select
-  end function is_wanted
-
-  !> Write the part of a load case to a file. If there is only one load case, the file is complete.
-  subroutine put_part(self, run, figures, k, part, error)
+  !> Write the part of a load case.
+  subroutine put_part(self, run, figures, k, part)
     class(results_type), intent(in) :: self
     type(run_results), intent(in) :: run
     type(figure_type), intent(in) :: figures(:)           !! of the summary
     integer, intent(in) :: k                              !! number of the file
     type(table_type), intent(inout) :: part
-    type(error_type), allocatable, intent(out) :: error
+    character(len=:), allocatable :: name   ! of a table
 
-    if (run%has_cases()) then
-      part = table_type(text='', subcase=merge(0, run%deck%subcase(run%case)%id, k == listing))
-    else
-      call new_text_file(self%stem//trim(result_files(k)%suffix), part, error)
-      if (allocated(error)) return
-    end if
+    if (run%has_cases() .and. k /= listing) part%subcase = run%deck%subcase(run%case)%id
     part%listed = k == listing
     select case (k)
     case (listing)
-      if (.not. run%has_cases()) call list_scene(run, plan_text(run%planned_model), part)
       call list_case(run, figures, self%all_tables, part)
     case (summary)
       call put_summary(figures, part)
     case default
-      call put_table(run, result_files(k)%suffix(2:index(result_files(k)%suffix, '.csv') - 1), part)
+      name = result_files(k)%suffix(2:index(result_files(k)%suffix, '.csv') - 1)
+      if (run%wants_table(name, self%all_tables)) call put_table(run, name, part)
     end select
-    if (.not. run%has_cases()) call part%finish(error)
   end subroutine put_part
 
-  !> Write the results of several load cases, and the index of files for ParaView.
+  !> Write the results, and the index of files for ParaView.
   subroutine finish(self, run, error)
     class(results_type), intent(inout) :: self
     type(run_results), intent(in) :: run                  !! of the last load case
@@ -214,7 +178,7 @@ contains
     type(drawing), allocatable :: drawings(:)
     integer :: c
 
-    if (run%has_cases()) call put_tables(self, run, error)
+    call put_tables(self, run, error)
     if (.not. self%vtk .or. allocated(error)) return
     allocate (drawings(0))
     do c = 1, size(self%case)
@@ -223,7 +187,7 @@ contains
     if (run%has_cases() .or. size(drawings) > 1) call write_collection(self%stem, drawings, error)
   end subroutine finish
 
-  !> Write the tables of several load cases.
+  !> Write the listing and the tables.
   subroutine put_tables(self, run, error)
     class(results_type), intent(inout) :: self
     type(run_results), intent(in) :: run
@@ -235,25 +199,23 @@ contains
     do k = 1, of_each_case
       empty = [(self%case(c)%part(k)%is_empty(), c=1, size(empty))]
       if (all(empty)) cycle
-      call new_text_file(self%stem//trim(result_files(k)%suffix), file, error)
-      if (allocated(error)) return
+      file = table_type()
       if (k == listing) call list_scene(run, self%plan, file)
       do c = 1, size(empty)
         if (.not. empty(c)) call file%add(self%case(c)%part(k), &   ! one head for all
                                           without_head=k /= listing .and. .not. all(empty(:c - 1)))
       end do
-      if (k == listing) call put_cases(self%case%row, file)
-      if (k == listing) call put_worst_case(self%case%row, run%model%controls%accuracy, file)
-      call file%finish(error)
+      if (k == listing .and. run%has_cases()) then
+        call put_cases(self%case%row, file)
+        call put_worst_case(self%case%row, run%model%controls%accuracy, file)
+      end if
+      call file%write_to(self%stem//trim(result_files(k)%suffix), error)
       if (allocated(error)) return
     end do
-    if (.not. self%brief) then
-      call new_text_file(self%stem//'.cases.csv', file, error)
-      if (allocated(error)) return
-      file%listed = .false.
-      call put_cases(self%case%row, file)
-      call file%finish(error)
-    end if
+    if (self%brief .or. .not. run%has_cases()) return
+    file = table_type(listed=.false.)
+    call put_cases(self%case%row, file)
+    call file%write_to(self%stem//'.cases.csv', error)
   end subroutine put_tables
 
   !> Write the summary in full digits.

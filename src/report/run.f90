@@ -22,8 +22,7 @@ module epcont_report_run
   contains
     procedure :: has_cases
     procedure :: case_suffix
-    procedure :: wants_nodes
-    procedure :: wants_elements
+    procedure :: wants_table
   end type run_results
 
 contains
@@ -45,20 +44,17 @@ contains
     if (self%has_cases()) suffix = '.case'//text_of(self%deck%subcase(self%case)%id)
   end function case_suffix
 
-  !> Is the table of nodes requested?
-  pure logical function wants_nodes(self, all_tables)
+  !> Is a table requested, if the model has it?
+  pure logical function wants_table(self, name, all_tables)
     class(run_results), intent(in) :: self
-    logical, intent(in) :: all_tables   !! on the command line
+    character(len=*), intent(in) :: name   !! of the table
+    logical, intent(in) :: all_tables      !! on the command line
 
-    wants_nodes = all_tables .or. self%deck%subcase(self%case)%displacement .or. &
-                  self%deck%subcase(self%case)%spcforces
-  end function wants_nodes
-
-  !> Is the table of elements requested?
-  pure logical function wants_elements(self, all_tables)
-    class(run_results), intent(in) :: self
-    logical, intent(in) :: all_tables   !! on the command line
-
-    wants_elements = all_tables .or. self%deck%subcase(self%case)%stress
-  end function wants_elements
+    associate (case => self%deck%subcase(self%case))
+      wants_table = .true.
+      if (name == 'nodes') wants_table = all_tables .or. case%displacement .or. case%spcforces
+      if (name == 'elements' .or. name == 'plastic') wants_table = all_tables .or. case%stress
+      if (name == 'pivots') wants_table = all_tables
+    end associate
+  end function wants_table
 end module epcont_report_run

@@ -13,7 +13,7 @@ module epcont_report_summary
   use epcont_model_springs, only: spring_stretch
   use epcont_messages_names, only: direction_of, motion_name, point_name, when
   use epcont_messages_outcome, only: limit_of_pressure, reason_of, unbounded
-  use epcont_report_figure_list, only: figure_list, figure_type, new_figure_list
+  use epcont_report_figure_list, only: figure_list, figure_type
   use epcont_report_run, only: run_results
   use epcont_result_answer, only: pair_slips, pair_sticks
   use epcont_result_stresses, only: first_largest, place_of_point
@@ -31,7 +31,6 @@ contains
     type(figure_type), allocatable :: figures(:)
     type(figure_list) :: list
 
-    list = new_figure_list()
     call list%put_word('status', run%outcome%word, 'status')
     call list%put_word('warnings', text_of(run%faults%warnings + run%outcome%found%warnings), '')
     call list%put_word('notes', text_of(run%faults%notes + run%outcome%found%notes), '')
@@ -215,23 +214,22 @@ contains
                             '  tolerance, with rounding of displacements'))
       call figures%put('energy_balance', none, rounding, c%energy, 'energy balance')
       if (.not. c%scene%looked_through) return
-      call put_places(figures, 'penetration', c%scene%deepest, c%scene%inside)
-      call put_places(figures, 'pressed_gap', c%scene%widest, c%scene%apart)
+      call put_place(figures, 'penetration', c%scene%inside)
+      call put_place(figures, 'pressed_gap', c%scene%apart)
     end associate
   end subroutine put_certificate
 
-  !> Add the largest depth, and the worst by its tolerance with this tolerance; 0 if the depth is so small
-  !! that rounding chooses the point.
-  subroutine put_places(figures, name, largest, worst)
+  !> Add the depth that is worst by its tolerance, and this tolerance; 0 if the depth is so small that
+  !! rounding chooses the point.
+  subroutine put_place(figures, name, worst)
     type(figure_list), intent(inout) :: figures
     character(len=*), intent(in) :: name
-    type(overlap_place), intent(in) :: largest, worst
+    type(overlap_place), intent(in) :: worst
 
-    call figures%put('largest_'//name, length, number, merge(largest%depth, 0.0_wp, largest%ratio >= little))
     call figures%put('worst_'//name, length, number, merge(worst%depth, 0.0_wp, worst%ratio >= little))
     call figures%put('allowed_worst_'//name, length, number, &
                      merge(worst%allowed, 0.0_wp, worst%ratio >= little))
-  end subroutine put_places
+  end subroutine put_place
 
   !> Add iteration error, condition number and rounding.
   subroutine put_iteration(run, figures)
@@ -268,28 +266,30 @@ contains
       call figures%put('mesh_error_max_pressure', stress, known, run%accuracy%max_pressure)
     end if
     do k = 1, size(run%accuracy%zone)
-      call figures%put_error('pressure_zone_'//text_of(k), stress, 'largest pressure of zone '//text_of(k), &
+      call figures%put_error('mesh_error_pressure_zone_'//text_of(k), stress, &
+                             'mesh: largest pressure of zone '//text_of(k), &
                              run%accuracy%zone(k)%pressure, run%answer%zones(k)%max_pressure, &
                              limit_of_pressure(run, k))
-      call figures%put_error('half_width_zone_'//text_of(k), length, 'half-width of zone '//text_of(k), &
+      call figures%put_error('mesh_error_half_width_zone_'//text_of(k), length, &
+                             'mesh: half-width of zone '//text_of(k), &
                              run%accuracy%zone(k)%half_width, run%answer%zones(k)%half_width, '')
     end do
     do k = 1, size(run%accuracy%zone)
       if (run%accuracy%zone(k)%largest_shear <= 0.0_wp) cycle   ! without friction
       associate (zone => run%accuracy%zone(k))
-        call figures%put_error('shear_zone_'//text_of(k), stress, &
-                               'largest shear traction of zone '//text_of(k), zone%shear, &
+        call figures%put_error('mesh_error_shear_zone_'//text_of(k), stress, &
+                               'mesh: largest shear traction of zone '//text_of(k), zone%shear, &
                                zone%largest_shear, limit_of_pressure(run, k))
       end associate
     end do
     do k = 1, run%motions%count
-      call figures%put_error('approach_'//motion_key(run, k), motion_unit(run, k), &
-                             'approach of '//motion_name(run, k), &
+      call figures%put_error('mesh_error_approach_'//motion_key(run, k), motion_unit(run, k), &
+                             'mesh: approach of '//motion_name(run, k), &
                      merge(-1.0_wp, run%accuracy%approach(k), run%accuracy%approach_unbounded(k)), &
                      abs(run%answer%contact%approach(k)), when(run%accuracy%approach_unbounded(k), unbounded))
     end do
-    if (run%model%contact%pairs > 0) call figures%put_error('total_contact_force', force, &
-                                                            'total contact force', &
+    if (run%model%contact%pairs > 0) call figures%put_error('mesh_error_total_contact_force', force, &
+                                                            'mesh: total contact force', &
         run%accuracy%total_force, sum(run%answer%contact%force), '')
   end subroutine put_mesh_errors
 
@@ -304,27 +304,30 @@ contains
     if (.not. allocated(run%increment_error)) return
     associate (error => run%increment_error, found => run%increment(size(run%increment)))
       if (run%model%contact%pairs > 0) then
-        call figures%put_increment_error('max_pressure', stress, 'largest pressure', error%pressure, &
-                                         found%pressure)
-        call figures%put_increment_error('half_width', length, 'half-width of its zone', &
-                                         error%half_width, found%half_width)
+        call put('max_pressure', stress, 'largest pressure', error%pressure, found%pressure)
+        call put('half_width', length, 'half-width of its zone', error%half_width, found%half_width)
       end if
       do k = 1, run%motions%count
-        call figures%put_increment_error('approach_'//motion_key(run, k), motion_unit(run, k), &
-          motion_name(run, k), beyond_rounding(error%approach(k)), abs(found%approach(k)))
+        call put('approach_'//motion_key(run, k), motion_unit(run, k), motion_name(run, k), &
+                 beyond_rounding(error%approach(k)), abs(found%approach(k)))
       end do
       if (run%model%contact%has_friction()) then
-        call figures%put_increment_error('friction_force', force, 'friction forces of pairs', &
-                                         error%friction, maxval(run%model%contact%friction* &
-                                                                run%answer%contact%force))
-        call figures%put_increment_error('stick_half_width', length, 'half-width that sticks', &
-                                         error%sticks, found%sticks)
+        call put('friction_force', force, 'friction forces of pairs', error%friction, &
+                 maxval(run%model%contact%friction*run%answer%contact%force))
+        call put('stick_half_width', length, 'half-width that sticks', error%sticks, found%sticks)
       end if
-      call figures%put_increment_error('stress', stress, 'stresses of elements', error%stress, &
-                                       maxval(run%answer%equivalent_stress))
+      call put('stress', stress, 'stresses of elements', error%stress, maxval(run%answer%equivalent_stress))
     end associate
 
   contains
+
+    !> Add one error.
+    subroutine put(key, unit, name, error, value)
+      character(len=*), intent(in) :: key, unit, name
+      real(wp), intent(in) :: error, value
+
+      call figures%put_error('increment_error_'//key, unit, 'increments: '//name, error, value, '')
+    end subroutine put
 
     !> An error of a displacement; 0 if it is rounding of the largest displacement.
     real(wp) function beyond_rounding(error)

@@ -12,6 +12,7 @@ module epcont_report_tables
   use epcont_report_increment_table, only: increment_columns, put_increments
   use epcont_report_run, only: run_results
   use epcont_result_stresses, only: place_of_point
+  use epcont_result_zones, only: contact_zone
   implicit none
   private
   public :: columns_in, put_table
@@ -134,10 +135,10 @@ contains
     if (allocated(columns)) text = 'Columns: '//columns_text(columns)//'.'
   end function columns_in
 
-  !> Write a table.
+  !> Write a table, if the model has it.
   subroutine put_table(run, name, table)
     type(run_results), intent(in) :: run       !! run and its results
-    character(len=*), intent(in) :: name       !! of the table: that of its file, or lines or pivots
+    character(len=*), intent(in) :: name       !! of the table: that of its file, or lines or sticks
     type(table_type), intent(inout) :: table   !! the listing, or a file
     integer :: k
 
@@ -145,25 +146,29 @@ contains
     case ('contact')
       call put_contact()
     case ('friction')
-      call put_friction(run, table)
+      if (run%model%contact%has_friction()) call put_friction(run, table)
     case ('zones')
-      call put_zones()
+      call put_zones('CONTACT ZONES  (half-width: of the full zone, mirrored at symmetry lines; '// &
+                     'force: of the listed pairs only)', run%answer%zones, zone_columns)
+    case ('sticks')
+      if (run%model%contact%has_friction()) call put_zones('STICK ZONES  (half-width: up to full slip)', &
+                                                           run%answer%stick_zones, stick_columns())
     case ('lines')
-      call put_lines()
+      if (size(run%answer%lines) > 0) call put_lines()
     case ('bodies')
-      call put_bodies()
+      if (run%model%contact%pairs > 0) call put_bodies()
     case ('nodes')
       call put_nodes()
     case ('elements')
       call put_elements(run, table)
     case ('plastic')
-      call put_plastic(run, table)
+      if (allocated(run%answer%plastic_strain)) call put_plastic(run, table)
     case ('history')
-      call put_history()
+      call put_history(run, table)
     case ('increments')
-      call put_increments(run, table)
+      if (run%is_flow()) call put_increments(run, table)
     case ('pivots')
-      call put_pivots(run, table)
+      if (size(run%answer%pivot) > 0) call put_pivots(run, table)
     end select
 
   contains
@@ -185,15 +190,17 @@ contains
       end associate
     end subroutine put_contact
 
-    !> Runs of pairs in contact: one row for each zone.
-    subroutine put_zones()
+    !> Runs of pairs that are in contact or stick: one row for each zone.
+    subroutine put_zones(title, zones, columns)
+      character(len=*), intent(in) :: title
+      type(contact_zone), intent(in) :: zones(:)
+      type(column), intent(in) :: columns(:)
       character(len=16) :: limit
 
-      call table%begin('CONTACT ZONES  (half-width: of the full zone, mirrored at symmetry lines; '// &
-                       'force: of the listed pairs only)', zone_columns)
-      do k = 1, size(run%answer%zones)
+      call table%begin(title, columns, [sum(run%answer%contact%force), 0.0_wp, 0.0_wp, 0.0_wp])
+      do k = 1, size(zones)
         limit = limit_of_pressure(run, k)
-        associate (zone => run%answer%zones(k))
+        associate (zone => zones(k))
           call table%row([k, run%model%contact%pair_id([zone%first, zone%last])], &
                          [zone%force, zone%max_pressure, zone%half_width_pairs, zone%half_width], [limit])
         end associate
@@ -242,18 +249,22 @@ contains
                        [run%model%mesh%x(:, k), run%answer%displacement(:, k), run%answer%reaction(:, k)])
       end do
     end subroutine put_nodes
-
-    !> Equilibrium iteration: one row for each solve.
-    subroutine put_history()
-      call table%begin('ITERATIONS', history_columns, [1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp])
-      do k = 1, size(run%answer%history)
-        associate (now => run%answer%history(k))
-          call table%row([k, now%iteration, now%touching, now%yielded, now%pivots], &
-                         [now%load_factor, now%change, now%residual, now%load_factor])
-        end associate
-      end do
-    end subroutine put_history
   end subroutine put_table
+
+  !> Equilibrium iteration: one row for each solve.
+  subroutine put_history(run, table)
+    type(run_results), intent(in) :: run
+    type(table_type), intent(inout) :: table
+    integer :: k
+
+    call table%begin('ITERATIONS', history_columns, [1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp])
+    do k = 1, size(run%answer%history)
+      associate (now => run%answer%history(k))
+        call table%row([k, now%iteration, now%touching, now%yielded, now%pivots], &
+                       [now%load_factor, now%change, now%residual, now%load_factor])
+      end associate
+    end do
+  end subroutine put_history
 
   !> Plastic strains of flow theory: one row for each element.
   subroutine put_plastic(run, table)
@@ -340,6 +351,15 @@ contains
       end associate
     end function nearest_grid
   end subroutine put_elements
+
+  !> Columns of the zones that stick, which are in the listing only.
+  pure function stick_columns() result(columns)
+    type(column) :: columns(size(zone_columns))
+
+    columns = zone_columns
+    columns(4:6)%head = [character(len=16) :: 'friction force', '', 'to last sticking']
+    columns(4:6)%width = [15, 0, 17]
+  end function stick_columns
 
   !> Write the first of some ids, and `+` if there are more. The plan lists all.
   pure function first_of(id) result(text)

@@ -13,7 +13,7 @@ module epcont_report_vtk
   use epcont_element_kinematics, only: directions
   use epcont_flexibility_flexibility, only: pair_forces
   use epcont_model_model, only: model_type
-  use epcont_report_file, only: new_text_file, remove_file, text_file
+  use epcont_report_file, only: remove_file, text_file
   use epcont_messages_names, only: when
   use epcont_result_answer, only: answer_type, pair_sticks
   use epcont_result_contact_line, only: contact_line, find_contact_line
@@ -78,10 +78,9 @@ contains
     do i = 2, size(last)
       last(i) = last(i - 1) + last(i)
     end do
-    call file%begin(stem//'.vtu', status, model%mesh%x(:, node), &
-               vtk_cells(model%mesh%kinds(model%mesh%kind)%vtk, last, &
-                         point(pack(model%mesh%connectivity, model%mesh%connectivity > 0))), error)
-    if (allocated(error)) return
+    call file%begin(status, model%mesh%x(:, node), &
+                    vtk_cells(model%mesh%kinds(model%mesh%kind)%vtk, last, &
+                              point(pack(model%mesh%connectivity, model%mesh%connectivity > 0))))
     call file%line('<PointData Vectors="displacement">')
     call file%put('node_id', model%mesh%node_id(node))
     call file%put('displacement', answer%displacement(:, node))
@@ -103,7 +102,7 @@ contains
       call file%put('plastic_strain', answer%plastic_strain(:4, :))
       call file%put('accumulated_plastic_strain', answer%plastic_strain(5, :))
     end if
-    call file%end_grid(error)
+    call file%end_grid(stem//'.vtu', error)
   end subroutine write_bodies
 
   !> Write the contact: points are pairs, at their boundary nodes, in the order of the deck; cells are lines
@@ -125,8 +124,7 @@ contains
 
     line = find_contact_line(model)
     cells = cells_along(line)
-    call file%begin(stem//'.contact.vtu', status, model%mesh%x(:, line%node), cells, error)
-    if (allocated(error)) return
+    call file%begin(status, model%mesh%x(:, line%node), cells)
     do k = 1, model%contact%pairs
       force(:, k) = answer%contact%force(k)*model%contact%normal(:, k)
       if (line%node(k) /= model%contact%pair_node(2, k)) force(:, k) = -force(:, k)
@@ -169,20 +167,16 @@ contains
     call file%put('zone', zone)
     call file%line('</PointData>'//newline//'<CellData Scalars="bconp">')
     call file%put('bconp', bconp(cells%point(cells%last)))
-    call file%end_grid(error)
+    call file%end_grid(stem//'.contact.vtu', error)
   end subroutine write_contact
 
   !> Begin a file with the points and the cells; arrays of the points come next.
-  subroutine begin(self, path, status, x, cells, error)
+  subroutine begin(self, status, x, cells)
     class(vtk_file), intent(inout) :: self
-    character(len=*), intent(in) :: path    !! of the file
     integer, intent(in) :: status           !! exit status of the run
     real(wp), intent(in) :: x(:, :)         !! of the points [length] [2, points]
     type(vtk_cells), intent(in) :: cells    !! the cells
-    type(error_type), allocatable, intent(out) :: error
 
-    call new_text_file(path, self%text_file, error)
-    if (allocated(error)) return
     call self%line('<?xml version="1.0"?>'//newline// &
                    '<VTKFile type="UnstructuredGrid" version="1.0" byte_order="'// &
                    when(transfer(1, 0_int8) == 1_int8, 'LittleEndian', 'BigEndian')// &
@@ -198,13 +192,14 @@ contains
     call self%line('</Cells>')
   end subroutine begin
 
-  !> Close the file and rename it.
-  subroutine end_grid(self, error)
+  !> End the grid and write the file.
+  subroutine end_grid(self, path, error)
     class(vtk_file), intent(inout) :: self
+    character(len=*), intent(in) :: path    !! of the file
     type(error_type), allocatable, intent(out) :: error
 
     call self%line('</CellData>'//newline//'</Piece>'//newline//'</UnstructuredGrid>'//newline//'</VTKFile>')
-    call self%finish(error)
+    call self%write_to(path, error)
   end subroutine end_grid
 
   !> Write one integer for each point or cell.
@@ -291,8 +286,6 @@ contains
     type(text_file) :: file
     integer :: k
 
-    call new_text_file(stem//'.pvd', file, error)
-    if (allocated(error)) return
     call file%line('<?xml version="1.0"?>')
     call file%line('<VTKFile type="Collection" version="1.0">')
     call file%line('<Collection>')
@@ -302,7 +295,7 @@ contains
     end do
     call file%line('</Collection>')
     call file%line('</VTKFile>')
-    call file%finish(error)
+    call file%write_to(stem//'.pvd', error)
   end subroutine write_collection
 
   !> Write a time: `2` or `1.25000000E+00`.

@@ -119,12 +119,13 @@ class Refused(Decks):
         path = self.folder / "first.restart"
         for data, fault, remedy in (
                 (b"", "is not a restart file", "give the DECK.restart that PARAM SAVE YES writes"),
-                (self.first.encode(), "is not a restart file", "give the DECK.restart that PARAM SAVE YES writes"),
-                (self.saved[:-8], "is incomplete", again),
-                (self.saved[:40], "is incomplete", again),
-                (self.saved + self.saved, "is incomplete", again),
-                (self.saved[:100] + bytes([self.saved[100] ^ 1]) + self.saved[101:], "is damaged", again),
-                (self.saved[:8] + self.saved[24:32] + self.saved[16:], "was saved by another version of epcont", again)):
+                (self.first.encode(), "is not a restart file of this version of epcont", "give the DECK.restart that PARAM SAVE YES writes"),
+                (self.saved[:-8], "is incomplete or damaged", again),
+                (self.saved[:32], "is incomplete or damaged", again),
+                (self.saved + self.saved, "is incomplete or damaged", again),
+                (self.saved[:100] + bytes([self.saved[100] ^ 1]) + self.saved[101:], "is incomplete or damaged", again),
+                (self.saved[:8] + self.saved[16:24] + self.saved[16:], "is not a restart file of this version of epcont",
+                 "give the DECK.restart that PARAM SAVE YES writes")):
             path.write_bytes(data)
             self.check(fault, remedy)
         path.unlink()
