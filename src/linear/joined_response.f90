@@ -3,7 +3,6 @@
 module epcont_linear_joined_response
   use epcont_assembly_bodies, only: factored_bodies, force_fields, half_solved_body
   use epcont_base_kinds, only: wp
-  use epcont_base_tolerances, only: solved_to
   use epcont_contact_problem, only: contact_problem
   use epcont_element_kinematics, only: directions
   use epcont_flexibility_flexibility, only: gap_opening, pair_forces, terms_of_openings
@@ -22,8 +21,6 @@ module epcont_linear_joined_response
   !> Gap openings that modes explain up to this fraction cause no forces: springs of SUPORT
   !! DOFs leave this much.
   real(wp), parameter :: as_motions = 1.0e-5_wp
-  !> Number of modes up to which all of them are used for this.
-  integer, parameter :: few_motions = 40
 
   !> Response of joined bodies to some loads, with fixed active set.
   type :: frozen_response
@@ -194,34 +191,15 @@ contains
     end associate
   end function found
 
-  !> Do modes open the gaps of the pressed pairs in the same way? Then there are no forces. If there are many
-  !! modes, only those of the solve are used; if few, their part is removed by Gram-Schmidt, twice
-  !! because of rounding.
-  logical function gives_way(motion, pressed, opening, q)
+  !> Do the modes of a solve open the gaps of the pressed pairs in the same way? Then there are no forces.
+  pure logical function gives_way(motion, pressed, opening, q)
     type(motion_matrix), intent(in) :: motion          !! A
     integer, intent(in) :: pressed(:)                  !! pairs
     real(wp), intent(in) :: opening(:), q(:)           !! [pairs], [motions]
-    real(wp), allocatable :: closing(:, :), rest(:)
-    real(wp) :: all_pairs(size(opening)), length
-    integer :: i, k, turn
+    real(wp) :: rest(size(opening))
 
-    all_pairs = opening - motion%times(q)
-    rest = all_pairs(pressed)
-    gives_way = norm2(rest) <= as_motions*norm2(opening(pressed))
-    if (size(q) > few_motions) return
-    closing = motion%rows(pressed)
-    do k = 1, size(closing, 2)
-      length = norm2(closing(:, k))
-      do turn = 1, 2
-        do i = 1, k - 1
-          closing(:, k) = closing(:, k) - dot_product(closing(:, i), closing(:, k))*closing(:, i)
-        end do
-      end do
-      if (norm2(closing(:, k)) <= solved_to*length) closing(:, k) = 0.0_wp
-      if (any(closing(:, k) /= 0.0_wp)) closing(:, k) = closing(:, k)/norm2(closing(:, k))
-      rest = rest - dot_product(closing(:, k), rest)*closing(:, k)
-    end do
-    gives_way = norm2(rest) <= solved_to*norm2(opening(pressed))
+    rest = opening - motion%times(q)
+    gives_way = norm2(rest(pressed)) <= as_motions*norm2(opening(pressed))
   end function gives_way
 
   !> Are the contact forces unique? Forces that open no gaps remain after a solve for arbitrary forces; two

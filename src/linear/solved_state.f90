@@ -17,24 +17,9 @@ module epcont_linear_solved_state
     !> Material states at this strain, if one yields [points]; not allocated: not computed yet
     type(point_state), allocatable :: point(:)
     type(contact_solution) :: contact
-  contains
-    procedure :: take
   end type solved_state
 
 contains
-
-  !> Move another state here; that is empty afterwards.
-  pure subroutine take(self, from)
-    class(solved_state), intent(inout) :: self
-    type(solved_state), intent(inout) :: from   !! empty afterwards
-
-    call move_alloc(from%displacement, self%displacement)
-    call move_alloc(from%deformation, self%deformation)
-    call move_alloc(from%strain, self%strain)
-    call move_alloc(from%point_stress, self%point_stress)
-    call move_alloc(from%point, self%point)
-    self%contact = from%contact
-  end subroutine take
 
   !> Largest change of a displacement, over the largest.
   pure real(wp) function relative_change(before, after, of) result(change)

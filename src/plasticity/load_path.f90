@@ -202,7 +202,7 @@ contains
         return
       end if
     end associate
-    call self%take(iteration%state)
+    self%solved_state = iteration%state
     if (self%contact%state /= contact_solved) return
     self%load_factor = iteration%load_factor
     self%weakest = iteration%linear%weakest()
