@@ -148,7 +148,7 @@ contains
     subroutine check_patterns()
       type(planned_model) :: other
       type(diagnostics) :: faults
-      integer :: i, p
+      integer :: i, k, p
 
       do p = 2, run%cases%patterns
         faults = diagnostics()
@@ -156,7 +156,8 @@ contains
         if (faults%errors == 0) call other%find_motions(faults)
         call tell(run%deck, faults, findloc(run%cases%case%pattern, p, dim=1))
         do i = 1, faults%count
-          if (.not. run%faults%has(faults%list(i))) call run%faults%add(faults%list(i))
+          if (all([(run%faults%list(k)%what /= faults%list(i)%what, k=1, run%faults%count)])) &
+            call run%faults%add(faults%list(i))
         end do
       end do
     end subroutine check_patterns

@@ -48,7 +48,6 @@ module epcont_base_diagnostic
     procedure :: add
     procedure :: add_origin
     procedure :: origin_of
-    procedure :: has
     procedure :: in_deck_order
   end type diagnostics
 
@@ -159,19 +158,4 @@ contains
     order = sorted_order(self%list(:self%count)%place%first)
     order = order(sorted_order(line(order)))
   end function in_deck_order
-
-  !> Is a finding with the same text and columns in the list?
-  pure logical function has(self, fault)
-    class(diagnostics), intent(in) :: self
-    type(diagnostic), intent(in) :: fault   !! with its columns in a deck
-    integer :: i
-
-    has = .false.
-    do i = 1, self%count
-      associate (one => self%list(i))
-        has = has .or. one%place%line == fault%place%line .and. one%place%first == fault%place%first .and. &
-              one%what == fault%what
-      end associate
-    end do
-  end function has
 end module epcont_base_diagnostic

@@ -65,7 +65,7 @@ contains
     type(diagnostics) :: of_pattern
     type(load_cases) :: cases
     type(planned_model) :: scene
-    integer :: i, p
+    integer :: i, k, p
 
     call read_lines(cards//'ENDDATA|', deck, faults)
     call build_model(deck, scene%model, faults, cases)
@@ -77,7 +77,7 @@ contains
       if (of_pattern%errors == 0) call scene%find_motions(of_pattern)
       call tell(deck, of_pattern, findloc(cases%case%pattern, p, dim=1))
       do i = 1, of_pattern%count
-        if (.not. faults%has(of_pattern%list(i))) call faults%add(of_pattern%list(i))
+        if (all([(faults%list(k)%what /= of_pattern%list(i)%what, k=1, faults%count)])) call faults%add(of_pattern%list(i))
       end do
     end do
   end subroutine check_deck
