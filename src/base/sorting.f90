@@ -3,7 +3,7 @@ module epcont_base_sorting
   use epcont_base_kinds, only: wp
   implicit none
   private
-  public :: sorted_order, halve, id_index, new_id_index
+  public :: sorted_order, halve, id_index, is_first, new_id_index
 
   !> Index that finds the position of an id in a list.
   type :: id_index
@@ -16,6 +16,19 @@ module epcont_base_sorting
   end type id_index
 
 contains
+
+  !> Which entries occur for the first time in a list?
+  pure function is_first(number) result(first)
+    integer, intent(in) :: number(:)   !! in a range that is not much larger than the list
+    logical :: first(size(number)), met(minval(number):maxval(number))
+    integer :: k
+
+    met = .false.
+    do k = 1, size(number)
+      first(k) = .not. met(number(k))
+      met(number(k)) = .true.
+    end do
+  end function is_first
 
   !> Permutation that sorts `key`; equal keys keep their order (merge sort).
   pure function sorted_order(key) result(order)

@@ -3,6 +3,7 @@
 module epcont_contact_geometry_line_contacts
   use epcont_base_kinds, only: wp
   use epcont_base_partition, only: new_partition, partition
+  use epcont_base_sorting, only: is_first
   use epcont_base_text, only: text_of
   use epcont_contact_geometry_balance, only: balance_pairs
   use epcont_contact_geometry_faces, only: faces_type
@@ -201,28 +202,18 @@ contains
     call warn_of_contact(model, contact, faces, found)
   end subroutine find_pairs
 
-  !> Have two lists a positive number in common?
+  !> Have two lists a number in common?
   pure logical function have_common(a, b)
     integer, intent(in) :: a(:), b(:)
-    logical, allocatable :: in_a(:)
 
-    allocate (in_a(minval([a, b]):maxval([a, b])), source=.false.)
-    in_a(a) = .true.
-    have_common = any(in_a(b))
+    have_common = .not. all(is_first([once(a), once(b)]))
   end function have_common
 
   !> Remove repeated numbers; the order stays.
   pure function once(numbers)
     integer, intent(in) :: numbers(:)
     integer, allocatable :: once(:)
-    logical :: first(size(numbers)), met(minval(numbers):maxval(numbers))
-    integer :: k
 
-    met = .false.
-    do k = 1, size(numbers)
-      first(k) = .not. met(numbers(k))
-      met(numbers(k)) = .true.
-    end do
-    once = pack(numbers, first)
+    once = pack(numbers, is_first(numbers))
   end function once
 end module epcont_contact_geometry_line_contacts

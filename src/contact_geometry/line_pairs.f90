@@ -4,6 +4,7 @@
 !> epcont_contact_geometry_mortar.
 module epcont_contact_geometry_line_pairs
   use epcont_base_kinds, only: wp
+  use epcont_base_sorting, only: is_first
   use epcont_contact_geometry_faces, only: faces_type, find_faces, has_face, node_face
   use epcont_contact_geometry_mortar, only: find_mortar_rows, mortar_row
   use epcont_geometry_boundary_line, only: beyond, facing_type
@@ -44,8 +45,8 @@ contains
     call append_pairs(tips, rows_of_tips(), model)
     contact%last = model%contact%pairs
     associate (side => contact%left_out(1, :), which => contact%left_out(2, :))
-      contact%nodes_left_out = count_others([(contact%slave%segment(which(k), side(k)), k=1, size(side))], &
-                                            faces%row%node)
+      contact%nodes_left_out = count(is_first([faces%row%node, (contact%slave%segment(which(k), side(k)), &
+                                               k=1, size(side))])) - count(is_first(faces%row%node))
     end associate
 
   contains
@@ -158,17 +159,6 @@ contains
     end do
     model%contact%pairs = pairs
   end subroutine append_pairs
-
-  !> Number of nodes of a list that are not in another.
-  pure integer function count_others(node, known) result(many)
-    integer, intent(in) :: node(:), known(:)   !! may repeat nodes
-    logical :: counts(minval([node, known]):maxval([node, known]))
-
-    counts = .false.
-    counts(node) = .true.
-    counts(known) = .false.
-    many = count(counts)
-  end function count_others
 
   !> Cut unused space after the last pair.
   subroutine end_pairs(model)

@@ -2,6 +2,7 @@
 !> boundary of all bodies for contact: these edges with normals and corners.
 module epcont_contact_geometry_line_sides
   use epcont_base_kinds, only: wp
+  use epcont_base_sorting, only: is_first
   use epcont_base_text, only: text_of
   use epcont_geometry_boundary_line, only: boundary_line
   use epcont_geometry_corners, only: find_normals
@@ -109,14 +110,9 @@ contains
   !! node.
   pure integer function first_passed_twice(node) result(k)
     integer, intent(in) :: node(:)
-    logical :: met(minval(node):maxval(node))
 
-    met = .false.
-    do k = 1, size(node)
-      if (met(node(k)) .and. .not. (k == size(node) .and. node(k) == node(1) .and. k > 3)) return
-      met(node(k)) = .true.
-    end do
-    k = 0
+    k = findloc(is_first(node), .false., dim=1)
+    if (k == size(node) .and. k > 3) k = merge(0, k, node(k) == node(1))
   end function first_passed_twice
 
   !> Report that there is no edge, or no free edge, between the k-th and the next node of a line.

@@ -164,14 +164,10 @@ contains
     class(element_kind), intent(inout) :: self
     real(wp), intent(in) :: place(:, :)        !! local coordinates [directions, places]
     real(wp), intent(in) :: p(:, :), v(:, :)   !! as in the type [points, places]
-    real(wp) :: slope(directions, most_nodes)   !! unused
-    integer :: k
 
     self%places = size(place, 2)
     self%sees_points = self%points == 1
-    do k = 1, self%places
-      call self%shape(place(:, k), self%n(:, k), slope)
-    end do
+    self%n(:, :self%places) = values_at(self, place)
     self%p(:self%points, :self%places) = p
     self%v(:self%points, :self%places) = v
   end subroutine compare_at
@@ -181,13 +177,21 @@ contains
     class(element_kind), intent(inout) :: self
     real(wp), intent(in) :: place(:, :)        !! local coordinates [directions, samples]
     real(wp), intent(in) :: sample_of(:, :)    !! as in the type [points, samples]
-    real(wp) :: slope(directions, most_nodes)   !! unused
-    integer :: k
 
     self%samples = size(place, 2)
-    do k = 1, self%samples
-      call self%shape(place(:, k), self%sample_values(:, k), slope)
-    end do
+    self%sample_values(:, :self%samples) = values_at(self, place)
     self%sample_of(:self%points, :self%samples) = sample_of
   end subroutine sample_at
+
+  !> Find the shape functions at some points.
+  pure function values_at(self, place) result(values)
+    class(element_kind), intent(in) :: self
+    real(wp), intent(in) :: place(:, :)   !! local coordinates [directions, points]
+    real(wp) :: values(most_nodes, size(place, 2)), unused(directions, most_nodes)
+    integer :: k
+
+    do k = 1, size(place, 2)
+      call self%shape(place(:, k), values(:, k), unused)
+    end do
+  end function values_at
 end module epcont_element_element_kind

@@ -4,6 +4,7 @@
 !> of the deck are for output only.
 module epcont_model_model
   use epcont_base_kinds, only: wp
+  use epcont_base_sorting, only: is_first
   use epcont_base_text, only: text_of
   use epcont_element_kinematics, only: axisymmetric
   use epcont_model_constraints, only: constraints_type
@@ -76,24 +77,19 @@ contains
   pure function bodies_of_rows(self) result(body)
     class(model_type), intent(in) :: self
     integer, allocatable :: body(:, :)
-    integer :: found(maxval([self%contact%row_start(2:) - self%contact%row_start(:self%contact%rows()), 0]), &
-                     self%contact%rows())
-    integer :: i, k, last, most
+    integer, allocatable :: own(:)
+    integer :: k, most
 
-    found = 0
+    body = self%contact%nodes_of_rows()
     most = 0
-    do k = 1, self%contact%rows()
-      last = 0
-      do i = self%contact%row_start(k), self%contact%row_start(k + 1) - 1
-        associate (b => self%mesh%body(self%contact%row_node(i)))
-          if (any(found(:last, k) == b)) cycle
-          last = last + 1
-          found(last, k) = b
-        end associate
-      end do
-      most = max(most, last)
+    do k = 1, size(body, 2)
+      own = self%mesh%body(pack(body(:, k), body(:, k) > 0))
+      own = pack(own, is_first(own))
+      body(:, k) = 0
+      body(:size(own), k) = own
+      most = max(most, size(own))
     end do
-    body = found(:most, :)
+    body = body(:most, :)
   end function bodies_of_rows
 
   !> Name of a part of the model in messages: `GRID 17`, `CTRIA3 5`.
