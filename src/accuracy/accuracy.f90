@@ -5,7 +5,7 @@ module epcont_accuracy_accuracy
   use epcont_accuracy_error_fields, only: body_fields, compare_fields, error_fields
   use epcont_accuracy_error_sums, only: shift_errors, sum_errors, with_waves
   use epcont_accuracy_narrow_zone, only: find_turned, shifted_loads, too_near
-  use epcont_accuracy_shear_error, only: add_shear_error
+  use epcont_accuracy_shear_error, only: add_shear_errors
   use epcont_accuracy_patches, only: new_patch_table, patch_table, wide_patch
   use epcont_accuracy_surface_line, only: first_element, new_surface_line, smooth_pressures, surface_line
   use epcont_accuracy_unit_loads, only: find_unit_loads, unit_loads
@@ -81,7 +81,7 @@ contains
     type(error_fields) :: field
     logical :: carried, pressed
     logical :: same   ! adjoint loads as before
-    integer :: motions, z
+    integer :: motions
 
     pressed = any(answer%contact%force > 0.0_wp)
     ! Otherwise the load is not carried, or the stiffness is unknown.
@@ -107,14 +107,8 @@ contains
     if (answer%condition < huge(1.0_wp)) call linear%estimate_condition(answer%condition)
     if (pressed) call accuracy%assess_zones(scene, linear, line, kept, answer, field)
     if (carried) call accuracy%assess_sums(scene, linear, line, kept, answer, field)
-    if (pressed .and. scene%model%contact%has_friction()) then
-      do z = 1, size(accuracy%zone)
-        associate (zone => accuracy%zone(z))
-          call add_shear_error(scene%model, kept%surface, answer, answer%zones(z), zone%pressure, &
-                               zone%largest_shear, zone%shear)
-        end associate
-      end do
-    end if
+    if (pressed .and. scene%model%contact%has_friction()) &
+      call add_shear_errors(scene%model, kept%surface, answer, accuracy%zone)
     accuracy%leading = leading_zone(answer%zones%max_pressure, accuracy%zone)
     if (accuracy%leading > 0) accuracy%max_pressure = accuracy%zone(accuracy%leading)%pressure
   end subroutine assess

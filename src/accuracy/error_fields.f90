@@ -1,13 +1,10 @@
-!> Errors of strains of the answer and of adjoint fields: differences from recovered strains, their energies
-!> (Zienkiewicz and Zhu 1987), and their products. The comparison runs body by body, since only few loads
-!> differ on one body (`body_loads.f90`).
+!> Errors of strains of the answer: differences from recovered strains, their energies (Zienkiewicz and Zhu
+!> 1987), and their products with the errors of adjoint fields, body by body.
 module epcont_accuracy_error_fields
-  use epcont_accuracy_body_loads, only: body_loads, choose_fields, find_displacements, load_batch, &
-    new_body_loads
-  use epcont_accuracy_element_errors, only: element_errors, new_element_errors
-  use epcont_accuracy_field_sums, only: field_sums, new_field_sums
+  use epcont_accuracy_element_errors, only: element_errors
   use epcont_accuracy_patches, only: patch_table
-  use epcont_accuracy_recovery, only: body_samples, place_samples, recover
+  use epcont_accuracy_recovery, only: recover
+  use epcont_assembly_bodies, only: force_fields
   use epcont_base_incidence, only: incidence, new_incidence
   use epcont_base_kinds, only: wp
   use epcont_element_element_kind, only: most_nodes, most_points
@@ -15,8 +12,10 @@ module epcont_accuracy_error_fields
   use epcont_linear_contact_rule, only: contact_loads
   use epcont_linear_linear_problem, only: linear_problem
   use epcont_linear_solved_state, only: solved_state
+  use epcont_model_model, only: model_type
+  use epcont_plan_forecast, only: loads_at_once
   use epcont_plan_planned_model, only: planned_model
-  use epcont_system_threads, only: threads_over, use_one_thread_each
+  use epcont_system_threads, only: threads_over
   implicit none
   private
   public :: body_fields, compare_fields, error_fields
@@ -28,17 +27,10 @@ module epcont_accuracy_error_fields
   real(wp), parameter :: part_of_memory = 0.1_wp
   integer, parameter :: real_bytes = 8
 
-  !> Adjoint fields of a batch of loads on a body. If the batch represents all loads, they are kept for the
-  !! next load case.
+  !> Adjoint fields on a body; kept for the next load case if they are all of its fields.
   type :: body_fields
-    type(load_batch) :: batch
-    real(wp), allocatable :: u(:, :, :)   !! displacements under them [length] [directions, fields, places]
-    !> Strains of the answer and of all fields at the sampling points, and recovered strains; not allocated if
-    !! unknown [components, 0:fields, samples], [components, 0:fields, places]
-    real(wp), allocatable :: sample(:, :, :), smooth(:, :, :)
-    real(wp), allocatable :: energy(:, :)   !! of each load, as in `field_sums` [energy] [2, loads]
-  contains
-    procedure :: hand_over
+    real(wp), allocatable :: u(:, :, :)       !! displacements [length] [directions, fields, places]
+    real(wp), allocatable :: smooth(:, :, :)  !! recovered strains [components, fields, places]
   end type body_fields
 
   !> Errors are strains minus recovered strains: their energies, and their products with errors of adjoint
@@ -50,24 +42,19 @@ module epcont_accuracy_error_fields
     real(wp) :: energy = 0.0_wp             !! of the answer
     real(wp), allocatable :: along(:, :)    !! sum over elements: with signs, of absolute values [energy] [2,
                                             !! loads]
-    real(wp), allocatable :: missing(:)     !! error energy, as a part of the energy of each adjoint load
-                                            !! [loads]
   end type error_fields
 
-  !> State of the comparison, body by body.
-  type :: comparison
+  !> A body whose errors are found.
+  type :: compared_body
     type(planned_model), pointer :: scene => null()
-    type(linear_problem), pointer :: linear => null()          !! of its last solve
+    type(linear_problem), pointer :: linear => null()   !! of its last solve
     class(solved_state), pointer :: answer => null()
-    type(patch_table), pointer :: table => null()              !! of its elements
-    type(contact_loads), pointer :: unit_loads => null()       !! contact forces under adjoint loads
-    integer :: b = 0                         !! the body
-    integer, allocatable :: element(:)       !! its elements
-    type(body_loads) :: loads
-    type(body_fields) :: now                 !! of these loads
-    type(body_samples) :: samples            !! of its strains
-    real(wp), allocatable :: total(:, :)     !! sums of `field_sums` over all bodies [4, loads]
-  end type comparison
+    type(patch_table), pointer :: table => null()       !! of its elements
+    integer :: b = 0                                    !! the body
+    integer, allocatable :: element(:), place(:)        !! its elements and recovery points
+    !> Recovered strains of the answer [components, places]
+    real(wp), allocatable :: smooth(:, :)
+  end type compared_body
 
 contains
 
@@ -77,49 +64,46 @@ contains
     type(linear_problem), target, intent(inout) :: linear   !! of the last solve
     class(solved_state), target, intent(in) :: answer     !! solution of the model
     type(patch_table), target, intent(in) :: table       !! of its elements
-    type(contact_loads), target, intent(in) :: unit_loads   !! contact forces under adjoint loads
+    type(contact_loads), intent(in) :: unit_loads        !! contact forces under adjoint loads
     type(body_fields), intent(inout) :: known(:) !! in: of the previous load case, if its loads are the same;
                                                  !! out: of this one [bodies]
     type(error_fields), intent(out) :: field     !! errors
-    type(incidence) :: elements, pairs           ! of each body
-    type(comparison) :: work
+    type(compared_body) :: body
+    type(incidence) :: elements, rows            ! of each body
+    integer, allocatable :: load(:)              ! adjoint loads that act on the body
     real(wp) :: kept                             ! memory for the next load case [bytes]
-    integer :: b, k, p
+    integer :: first, j, p
 
-    work%scene => scene
-    work%linear => linear
-    work%answer => answer
-    work%table => table
-    work%unit_loads => unit_loads
+    body%scene => scene
+    body%linear => linear
+    body%answer => answer
+    body%table => table
     allocate (field%smooth(components, table%places), field%element(scene%model%mesh%elements), &
-              field%missing(size(unit_loads%unit)), source=0.0_wp)
-    pairs = new_incidence(scene%model%bodies_of_rows(), scene%model%mesh%bodies)
-    allocate (work%total(4, size(unit_loads%unit)), source=0.0_wp)
-    kept = 0.0_wp
+              field%along(2, size(unit_loads%unit)), source=0.0_wp)
+    rows = new_incidence(scene%model%bodies_of_rows(), scene%model%mesh%bodies)
     elements = scene%model%mesh%elements_of_bodies()
-    do b = 1, scene%model%mesh%bodies
-      work%b = b
-      work%element = elements%of(b)
-      if (size(work%element) == 0) cycle
-      if (allocated(known(b)%smooth)) then
-        call known(b)%hand_over(work%now)
-        call compare_on_body(work, field, table%of_body%of(b))
-      else
-        work%loads = new_body_loads(pairs%of(b), unit_loads)
-        do k = 1, size(unit_loads%unit) + 1
-          call find_fields(work, table%of_body%of(b))
-          call compare_on_body(work, field, table%of_body%of(b))
-          if (size(work%loads%load) == 0) exit
+    kept = 0.0_wp
+    do while (body%b < scene%model%mesh%bodies)
+      body%b = body%b + 1
+      body%element = elements%of(body%b)
+      if (size(body%element) == 0) cycle
+      body%place = table%of_body%of(body%b)
+      load = pack([(j, j=1, size(unit_loads%unit))], unit_loads%unit > 0.0_wp .and. &
+                  any(unit_loads%force(rows%of(body%b), :) /= 0.0_wp, dim=1))
+      associate (fields => known(body%b))
+        do first = 1, max(1, size(load)), loads_at_once
+          associate (batch => load(first:min(first + loads_at_once - 1, size(load))))
+            if (.not. allocated(fields%u)) &
+              call find_displacements(body, unit_loads, batch, rows%of(body%b), fields%u)
+            call recover_strains(body, fields)
+            call add_products(body, fields, batch, field)
+          end associate
+          kept = kept + real_bytes*(size(fields%u) + size(fields%smooth))
+          if (size(load) > loads_at_once .or. .not. linear%rule%keeps .or. &
+              kept > part_of_memory*scene%expected%bytes) deallocate (fields%u, fields%smooth)
         end do
-        if (k > 1) cycle
-      end if
-      kept = kept + real_bytes*(size(work%now%u) + size(work%now%sample) + size(work%now%smooth))
-      if (linear%rule%keeps .and. kept <= part_of_memory*scene%expected%bytes) &
-        call work%now%hand_over(known(b))
+      end associate
     end do
-    work%total = work%total*spread(unit_loads%unit, 1, 4)**spread([1, 1, 2, 2], 2, size(unit_loads%unit))
-    field%along = work%total(:2, :)
-    where (work%total(3, :) > 0.0_wp) field%missing = work%total(3, :)/(work%total(3, :) + work%total(4, :))
     field%energy = sum(linear%operator%volume*sum(answer%strain*answer%point_stress, dim=1))
     ! Residual stresses do no work in the total strains.
     if (scene%model%controls%by_increments) field%energy = max(field%energy, sum([( &
@@ -128,183 +112,177 @@ contains
       p=1, scene%model%mesh%points)]))
   end subroutine compare_fields
 
-  !> Choose the next batch of loads, and find displacements under its fields, if they are unknown.
-  subroutine find_fields(work, place)
-    type(comparison), intent(inout) :: work
-    integer, intent(in) :: place(:)   !! of the body
-    integer :: f
+  !> Find the displacements of a body under some adjoint loads.
+  subroutine find_displacements(body, unit_loads, load, rows, u)
+    type(compared_body), intent(in) :: body
+    type(contact_loads), intent(in) :: unit_loads      !! contact forces under all adjoint loads
+    integer, intent(in) :: load(:)                     !! numbers of these loads
+    integer, intent(in) :: rows(:)                     !! gap rows of the body
+    real(wp), allocatable, intent(out) :: u(:, :, :)   !! [length] [directions, loads, its places]
 
-    if (allocated(work%now%smooth)) deallocate (work%now%sample, work%now%smooth)   ! of the previous batch
-    call choose_fields(work%loads, work%now%batch)
-    if (.not. allocated(work%unit_loads%displacement)) then
-      call find_displacements(work%scene, work%linear, work%b, work%loads%pair, work%now%batch, &
-          work%table%node(place), work%now%u)
-      return
-    end if
-    if (size(work%now%batch%field) == 0) then   ! the solver needs at least one load
-      work%now%u = reshape([real(wp) ::], [directions, 0, size(place)])
-      return
-    end if
-    work%now%u = work%unit_loads%displacement(:, work%now%batch%field, work%table%node(place))
-    do f = 1, size(work%now%u, 2)
-      work%now%u(:, f, :) = work%now%u(:, f, :)/work%unit_loads%unit(work%now%batch%field(f))
+    associate (node => body%table%node(body%place))
+      allocate (u(directions, size(load), size(node)))
+      if (size(u) == 0) return
+      if (allocated(unit_loads%displacement)) then
+        u = unit_loads%displacement(:, load, node)
+      else
+        call body%linear%body_displacements(body%scene, body%b, &
+          forces_on(body%scene%model, body%b, rows, unit_loads%force(:, load)), node, u)
+      end if
+    end associate
+  end subroutine find_displacements
+
+  !> Forces of gap rows on the nodes of a body, one entry of the rows after the other.
+  pure type(force_fields) function forces_on(model, b, rows, force) result(loads)
+    type(model_type), intent(in) :: model
+    integer, intent(in) :: b, rows(:)        !! the body, its gap rows
+    real(wp), intent(in) :: force(:, :)      !! [force] [rows of the model, fields]
+    integer :: c, i, k, n
+
+    n = sum(model%contact%row_start(rows + 1) - model%contact%row_start(rows))
+    allocate (loads%node(n), loads%force(directions, size(force, 2), n))
+    n = 0
+    do k = 1, size(rows)
+      if (all(force(rows(k), :) == 0.0_wp)) cycle
+      do i = model%contact%row_start(rows(k)), model%contact%row_start(rows(k) + 1) - 1
+        if (model%mesh%body(model%contact%row_node(i)) /= b) cycle
+        n = n + 1
+        loads%node(n) = model%contact%row_node(i)
+        do c = 1, directions
+          loads%force(c, :, n) = &
+            model%contact%row_weight(i)*model%contact%normal(c, rows(k))*force(rows(k), :)
+        end do
+      end do
     end do
-  end subroutine find_fields
+    loads%node = loads%node(:n)   ! drop unused entries
+  end function forces_on
 
-  !> Add the contribution of a body's elements under a batch of loads. Threads share the elements in fixed
-  !! parts, whose sums are added in order, so that results do not depend on the number of threads.
-  subroutine compare_on_body(work, field, place)
-    type(comparison), intent(inout) :: work
-    type(error_fields), intent(inout) :: field      !! errors are added
-    integer, intent(in) :: place(:)   !! those of the body
-    type(field_sums) :: part, sums
-    integer :: fields, first, width
-    logical :: told   ! all fields are known, except the answer
+  !> Recover the strains of the answer in a body, and those of adjoint fields unless they are known.
+  subroutine recover_strains(body, fields)
+    type(compared_body), intent(inout) :: body
+    type(body_fields), intent(inout) :: fields
+    real(wp), allocatable :: sample(:, :, :), smooth(:, :, :)   ! at sampling points and places; 0: the answer
+    integer :: i, last
 
-    fields = size(work%now%u, 2)
-    width = components*(1 + fields)
-    told = allocated(work%now%smooth)
-    sums = new_field_sums(work%now%batch%share, 0)
-    call place_samples(work%scene%model, work%element, work%samples)
-    if (.not. told) allocate (work%now%sample(components, 0:fields, size(work%samples%x, 2)), &
-                              work%now%smooth(components, 0:fields, size(place)))
-    if (told) fields = 0
-    !$omp parallel do num_threads(threads_over(size(work%element)))
-    do first = 1, size(work%element), at_once
-      call sample_elements(work, work%element(first:min(first + at_once - 1, size(work%element))), &
-          fields, width, &
-                           work%now%sample)
-    end do
-    !$omp end parallel do
-    call recover(work%scene%model, work%table, work%b, work%samples, fields, work%now%sample, work%now%smooth)
-    !$omp parallel do num_threads(threads_over(size(work%element))) schedule(dynamic) ordered private(part)
-    do first = 1, size(work%element), at_once
-      call use_one_thread_each()
-      part = new_field_sums(work%now%batch%share, min(at_once, size(work%element) - first + 1))
-      part%finds_energies = .not. told
-      call compare_elements(work, field, work%element(first:min(first + at_once - 1, &
-          size(work%element))), width, work%now%sample, &
-                            work%now%smooth, part)
-      !$omp ordered
-      call sums%include(part)
-      !$omp end ordered
+    last = merge(0, size(fields%u, 2), allocated(fields%smooth))
+    allocate (sample(components, 0:last, size(body%table%points_of(body%b), 2)), &
+              smooth(components, 0:last, size(body%place)))
+    !$omp parallel do num_threads(threads_over(size(body%element)))
+    do i = 1, size(body%element)
+      call sample_element(body, body%element(i), fields%u, sample)
     end do
     !$omp end parallel do
-    field%smooth(:, place) = work%now%smooth(:, 0, :)
-    if (width == components) return
-    call sums%finish()
-    if (.not. told) work%now%energy = sums%energy
-    work%total(:2, work%now%batch%load) = work%total(:2, work%now%batch%load) + sums%along
-    work%total(3:, work%now%batch%load) = work%total(3:, work%now%batch%load) + work%now%energy
-  end subroutine compare_on_body
+    call recover(body%scene%model, body%table, body%b, components*(1 + last), sample, smooth)
+    body%smooth = smooth(:, 0, :)
+    if (.not. allocated(fields%smooth)) fields%smooth = smooth(:, 1:, :)
+  end subroutine recover_strains
 
-  !> Find the strains of some elements at their sampling points: of the answer, then of the fields.
-  subroutine sample_elements(work, element, fields, width, sample)
-    type(comparison), intent(in) :: work
-    integer, intent(in) :: element(:)   !! numbers of the elements
-    integer, intent(in) :: fields       !! number of fields: zero or all; strains of other fields are kept
-    integer, intent(in) :: width        !! components of all fields
-    real(wp), intent(inout) :: sample(width, *)   !! of the body
-    real(wp) :: strain(width, most_points)
-    integer :: i
+  !> Find the strains of an element at its sampling points.
+  subroutine sample_element(body, e, u, sample)
+    type(compared_body), intent(in) :: body
+    integer, intent(in) :: e
+    real(wp), contiguous, intent(in) :: u(:, :, :)            !! displacements of the fields
+    !> Of the body: of the answer, then of the fields if they are requested [components, 0:fields or 0, any]
+    real(wp), contiguous, intent(inout) :: sample(:, 0:, :)
+    real(wp) :: weight(most_points)                           ! of the integration points
+    integer :: k, p, place(most_nodes), points, s
 
-    do i = 1, size(element)
-      associate (e => element(i), kind => work%scene%model%mesh%kinds(work%scene%model%mesh%kind(element(i))))
-        if (kind%points == 1) then
-          call find_strains(work, e, fields, sample(1, work%samples%before(e) + 1))
-        else if (kind%degree == 1) then
-          call find_means(work, e, fields, sample(1, work%samples%before(e) + 1))
-        else
-          call find_strains(work, e, size(work%now%u, 2), strain)
-          call work%samples%take(kind, e, width, strain, sample)
+    associate (kind => body%scene%model%mesh%kinds(body%scene%model%mesh%kind(e)), &
+               first => body%scene%model%mesh%first_point(e), operator => body%linear%operator)
+      points = kind%points
+      if (ubound(sample, 2) > 0) place = places_of(body, e)
+      do k = 1, kind%samples
+        weight(:points) = 1.0_wp
+        if (kind%degree > 1) then
+          weight(:points) = kind%sample_of(:points, k)
+        else if (points > 1) then
+          weight(:points) = operator%volume(first:first + points - 1)
+          weight(:points) = weight(:points)/sum(weight(:points))
         end if
-      end associate
-    end do
-  end subroutine sample_elements
+        s = body%table%before(e) + k
+        sample(:, 0, s) = 0.0_wp
+        do p = 1, points
+          sample(:, 0, s) = sample(:, 0, s) + weight(p)*body%answer%strain(:, first + p - 1)
+        end do
+        if (ubound(sample, 2) > 0) &
+          call operator%weigh_strains(first, kind%nodes, weight(:points), place, u, sample(:, 1:, s))
+      end do
+    end associate
+  end subroutine sample_element
 
-  !> Find the errors of some elements. The strains are computed again; if they were stored for all points,
-  !! they would be the largest array.
-  subroutine compare_elements(work, field, element, width, sample, smooth, sums)
-    type(comparison), intent(in) :: work
-    type(error_fields), intent(inout) :: field      !! errors are added
-    integer, intent(in) :: element(:)            !! numbers of the elements
-    integer, intent(in) :: width                 !! components of all fields
-    real(wp), intent(in) :: sample(width, *), smooth(width, *)   !! of the body
-    type(field_sums), intent(inout) :: sums      !! sums, to which their errors are added
+  !> Find the errors of the answer in a body, and add their products with the errors of adjoint fields.
+  !! Threads share the elements in fixed parts, whose sums are added in order, so that results do not depend
+  !! on the number of threads.
+  subroutine add_products(body, fields, load, field)
+    type(compared_body), intent(in) :: body
+    type(body_fields), intent(in) :: fields
+    integer, intent(in) :: load(:)               !! the load of each field
+    type(error_fields), intent(inout) :: field
+    real(wp), allocatable :: part(:, :, :)       ! of `along`, by the elements of each part
+    integer :: k
+
+    associate (n => size(body%element))
+      allocate (part(2, size(load), (n - 1)/at_once + 1), source=0.0_wp)
+      !$omp parallel do num_threads(threads_over(n)) schedule(dynamic)
+      do k = 1, size(part, 3)
+        call compare_elements(body, fields, body%element(at_once*(k - 1) + 1:min(at_once*k, n)), &
+                              field%element, part(:, :, k))
+      end do
+      !$omp end parallel do
+    end associate
+    field%smooth(:, body%place) = body%smooth
+    do k = 1, size(part, 3)
+      field%along(:, load) = field%along(:, load) + part(:, :, k)
+    end do
+  end subroutine add_products
+
+  !> Find the errors of some elements, and the sums of their products with those of adjoint fields.
+  subroutine compare_elements(body, fields, element, energy, along)
+    type(compared_body), intent(in) :: body
+    type(body_fields), intent(in) :: fields
+    integer, intent(in) :: element(:)              !! numbers of the elements
+    real(wp), intent(inout) :: energy(:)           !! errors of the answer [energy] [elements]
+    real(wp), intent(inout) :: along(:, :)         !! sums [energy] [2, fields]
     type(element_errors) :: errors
-    real(wp) :: strain(width, most_points)
-    integer :: i
+    real(wp) :: product(size(along, 2))
+    integer :: e, f, i, k, place(most_nodes)
 
-    errors = new_element_errors(size(work%now%u, 2))
     do i = 1, size(element)
-      associate (e => element(i), &
-                 kind => work%scene%model%mesh%kinds(work%scene%model%mesh%kind(element(i))), &
-                 first => work%scene%model%mesh%first_point(element(i)))
-        if (kind%points == 1) then
-          strain(:, 1) = sample(:, work%samples%before(e) + 1)
-        else
-          call find_strains(work, e, size(work%now%u, 2), strain)
-        end if
-        call errors%compare(kind, work%linear%operator%volume(first), strain, places_of(work, e), smooth)
-        call errors%find_stress(kind, work%linear%materials, first, work%answer%point)
-        field%element(e) = errors%energy(0)
-        if (size(work%now%u, 2) > 0) call sums%add(errors, &
-            work%linear%materials%section(work%scene%model%mesh%section(e)))
+      e = element(i)
+      associate (kind => body%scene%model%mesh%kinds(body%scene%model%mesh%kind(e)), &
+                 first => body%scene%model%mesh%first_point(e), linear => body%linear)
+        place = places_of(body, e)
+        call errors%compare(kind, linear%operator%volume(first), body%answer%strain(1, first), place, &
+                            body%smooth)
+        call errors%find_stress(kind, linear%materials, first, body%answer%point)
+        energy(e) = errors%energy(kind)
+        if (size(product) == 0) cycle
+        call errors%find_weights(kind, linear%operator%b(1, linear%operator%column(first) + 1))
+        product = 0.0_wp
+        do k = 1, kind%nodes
+          do f = 1, size(product)
+            associate (s => errors%of_strain, d => errors%of_displacement, at => place(k))
+              product(f) = product(f) + (s(1, k)*fields%smooth(1, f, at) + s(2, k)*fields%smooth(2, f, at)) &
+                + (s(3, k)*fields%smooth(3, f, at) + s(4, k)*fields%smooth(4, f, at)) &
+                - (d(1, k)*fields%u(1, f, at) + d(2, k)*fields%u(2, f, at))
+            end associate
+          end do
+        end do
       end associate
+      along(1, :) = along(1, :) + product
+      along(2, :) = along(2, :) + abs(product)
     end do
   end subroutine compare_elements
 
   !> Find the positions of the nodes of an element in the list of recovery points of its body.
-  pure function places_of(work, e) result(own)
-    type(comparison), intent(in) :: work
+  pure function places_of(body, e) result(own)
+    type(compared_body), intent(in) :: body
     integer, intent(in) :: e
     integer :: own(most_nodes), k
 
-    do k = 1, work%scene%model%mesh%node_count(e)
-      own(k) = work%table%own(work%table%place(k, e))
+    own = 0
+    do k = 1, body%scene%model%mesh%node_count(e)
+      own(k) = body%table%own(body%table%place(k, e))
     end do
   end function places_of
-
-  !> Find the strains of an element at its integration points: those of the answer, then those of the fields.
-  subroutine find_strains(work, e, fields, strain)
-    type(comparison), intent(in) :: work
-    integer, intent(in) :: e, fields
-    real(wp), intent(inout) :: strain(components*(1 + size(work%now%u, 2)), *)   !! at its points
-    integer :: p
-
-    do p = work%scene%model%mesh%first_point(e), work%scene%model%mesh%first_point(e + 1) - 1
-      strain(:components, p - work%scene%model%mesh%first_point(e) + 1) = work%answer%strain(:, p)
-    end do
-    call work%linear%operator%add_fields(work%scene%model, e, places_of(work, e), fields, work%now%u, strain)
-  end subroutine find_strains
-
-  !> Find the mean strains of an element that has one sampling point.
-  subroutine find_means(work, e, fields, strain)
-    type(comparison), intent(in) :: work
-    integer, intent(in) :: e, fields
-    real(wp), intent(inout) :: strain(components*(1 + size(work%now%u, 2)))
-    integer :: p
-
-    strain(:components) = 0.0_wp
-    associate (first => work%scene%model%mesh%first_point(e), &
-               last => work%scene%model%mesh%first_point(e + 1) - 1, &
-               volume => work%linear%operator%volume)
-      do p = first, last
-        strain(:components) = strain(:components) + volume(p)/sum(volume(first:last))*work%answer%strain(:, p)
-      end do
-    end associate
-    call work%linear%operator%add_means(work%scene%model, e, places_of(work, e), fields, work%now%u, strain)
-  end subroutine find_means
-
-  !> Move the known fields to another object.
-  subroutine hand_over(self, to)
-    class(body_fields), intent(inout) :: self
-    type(body_fields), intent(inout) :: to
-
-    to%batch = self%batch
-    call move_alloc(self%u, to%u)
-    call move_alloc(self%sample, to%sample)
-    call move_alloc(self%smooth, to%smooth)
-    call move_alloc(self%energy, to%energy)
-  end subroutine hand_over
 end module epcont_accuracy_error_fields

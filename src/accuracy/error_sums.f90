@@ -64,10 +64,10 @@ contains
       short = max(abs(field%along(1, j) - near), uncancelled*field%along(2, j))
       ! For forces shared by pairs or bodies, parts do not cancel.
       if (j > max(1, size(loads%motion))) short = of_shares*(field%along(2, j) + abs(near))
-      ! The estimate measures the missing energy by the computed energy: each error is divided by the computed
+      ! The estimate measures the missing energy by the computed energy: the error is divided by the computed
       ! part. Of several element types the largest weight is used.
-      error = vague*(at_ends + maxval(errors%weights%product)*short/ &
-        max(least_energy, 1.0_wp - energy_norm**2)/max(least_energy, 1.0_wp - field%missing(j)))
+      error = vague*(at_ends + &
+                     maxval(errors%weights%product)*short/max(least_energy, 1.0_wp - energy_norm**2))
     end function error_along
   end function sum_errors
 

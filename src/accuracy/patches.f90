@@ -4,6 +4,8 @@
 !> side only do not determine the gradient.
 module epcont_accuracy_patches
   use epcont_base_incidence, only: incidence, new_incidence
+  use epcont_base_kinds, only: wp
+  use epcont_element_element_kind, only: most_nodes
   use epcont_model_model, only: model_type
   implicit none
   private
@@ -21,6 +23,14 @@ module epcont_accuracy_patches
     logical, allocatable :: inside(:)      !! elements surround the point [places]
     type(incidence) :: of_body             !! recovery points of each body
     integer, allocatable :: own(:)         !! number of each point among those of its body [places]
+    !> Number of polynomials that reach a mid-side node, two of each of its elements; 0: corner [places]
+    integer, allocatable :: fits(:)
+    !> Number of sampling points before those of each element, in its body [elements]
+    integer, allocatable :: before(:)
+    integer, allocatable, private :: first_sample(:)   !! of each body, and one more [bodies + 1]
+    real(wp), allocatable, private :: sample(:, :)     !! sampling points, body by body [length] [2, any]
+  contains
+    procedure :: points_of
   end type patch_table
 
 contains
@@ -30,7 +40,7 @@ contains
     type(model_type), intent(in) :: model   !! model
     type(patch_table) :: table
     logical :: free(0:model%mesh%nodes)   ! on an outline
-    integer :: p
+    integer :: e, p
 
     call split_places(table%place, table%node)
     table%places = size(table%node)
@@ -47,6 +57,13 @@ contains
     end associate
     table%of_body = new_incidence(reshape(model%mesh%body(table%node), [1, table%places]), model%mesh%bodies)
     call number_own()
+    allocate (table%fits(table%places), source=0)
+    do e = 1, model%mesh%elements
+      associate (middles => table%place(model%mesh%corners(e) + 1:model%mesh%node_count(e), e))
+        table%fits(middles) = table%fits(middles) + 2
+      end associate
+    end do
+    call place_samples(model, table)
 
   contains
 
@@ -96,6 +113,46 @@ contains
       node = node(:places)
     end subroutine split_places
   end function new_patch_table
+
+  !> Place the sampling points of all elements.
+  subroutine place_samples(model, table)
+    type(model_type), intent(in) :: model   !! model
+    type(patch_table), intent(inout) :: table
+    type(incidence) :: elements
+    real(wp) :: share(most_nodes)   ! of the nodes in the position of a point
+    integer :: b, i, k, last
+
+    elements = model%mesh%elements_of_bodies()
+    allocate (table%before(model%mesh%elements), table%first_sample(model%mesh%bodies + 1), &
+              table%sample(2, sum(model%mesh%kinds(model%mesh%kind)%samples)))
+    last = 0
+    do b = 1, model%mesh%bodies
+      table%first_sample(b) = last + 1
+      do i = elements%start(b), elements%start(b + 1) - 1
+        associate (e => elements%group(i))
+          table%before(e) = last + 1 - table%first_sample(b)
+          associate (kind => model%mesh%kinds(model%mesh%kind(e)))
+            do k = 1, kind%samples
+              last = last + 1
+              share(:kind%nodes) = merge(1.0_wp/kind%nodes, kind%sample_values(:kind%nodes, k), &
+                                         kind%degree == 1)
+              table%sample(:, last) = matmul(model%mesh%coordinates(e), share(:kind%nodes))
+            end do
+          end associate
+        end associate
+      end do
+    end do
+    table%first_sample(b) = last + 1
+  end subroutine place_samples
+
+  !> Sampling points of a body [length] [2, any].
+  pure function points_of(self, b) result(x)
+    class(patch_table), intent(in) :: self
+    integer, intent(in) :: b
+    real(wp), allocatable :: x(:, :)
+
+    x = self%sample(:, self%first_sample(b):self%first_sample(b + 1) - 1)
+  end function points_of
 
   !> Find the elements around a recovery point and around the corners of these elements.
   pure subroutine wide_patch(model, table, place, patch)

@@ -94,8 +94,8 @@ contains
   end function oscillation
 
   !> Find the distance of the peak from the least-squares parabola of p**2 through the nearest pairs (with
-  !! mirrored pairs, and all of equal distance), or from its top, if that is larger. With too few pairs: the
-  !! decrease of Hertz's pressure over half a spacing [stress].
+  !! mirrored pairs, and all of equal distance). With too few pairs: the decrease of Hertz's pressure over
+  !! half a spacing [stress].
   pure real(wp) function off_parabola(seen, error) result(off)
     type(peak_type), intent(in) :: seen          !! of the zone
     type(zone_error), intent(in) :: error        !! errors found so far
@@ -123,26 +123,8 @@ contains
     end do
     square = determinant(m, m(0:2))
     if (square <= dependent*m(0)*m(2)*m(4)) return
-    associate (here => max(0.0_wp, determinant(m, right)/square))
-      off = unit*sqrt(here) - seen%largest
-      off = max(-off, off + error%weights%rise*unit*rise(m, right, here))
-    end associate
+    off = abs(unit*sqrt(max(0.0_wp, determinant(m, right)/square)) - seen%largest)
   end function off_parabola
-
-  !> Find the rise of the square root of a parabola from the peak to its top, if its top is within one
-  !! spacing.
-  pure real(wp) function rise(m, right, here)
-    real(wp), intent(in) :: m(0:4)       !! moments
-    real(wp), intent(in) :: right(0:2)   !! right-hand side of its normal equations
-    real(wp), intent(in) :: here         !! its value at the peak
-    real(wp) :: bend, slope              !! times a positive determinant
-
-    slope = (right(1) - m(1)*here)*m(4) - (right(2) - m(2)*here)*m(3)
-    bend = (right(2) - m(2)*here)*m(2) - (right(1) - m(1)*here)*m(3)
-    rise = 0.0_wp
-    if (bend < 0.0_wp .and. abs(slope) <= -2.0_wp*bend) &
-      rise = sqrt(here - slope**2/(4.0_wp*bend*(m(2)*m(4) - m(3)**2))) - sqrt(here)
-  end function rise
 
   !> Determinant of the normal equations of a parabola, with this first column.
   pure real(wp) function determinant(m, column)

@@ -4,14 +4,14 @@
 !> of a part that sticks: there it reaches the limit with an infinite slope, between two pairs.
 module epcont_accuracy_shear_error
   use epcont_accuracy_surface_line, only: surface_line
+  use epcont_accuracy_peak, only: zone_error
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: no_effect
   use epcont_model_model, only: model_type
   use epcont_result_answer, only: answer_type, pair_slips
-  use epcont_result_zones, only: contact_zone
   implicit none
   private
-  public :: add_shear_error
+  public :: add_shear_errors
 
   !> Sticking ends somewhere between two pairs, and the limit there is unknown by this part of the difference
   !! of their limits (tests/accuracy/score_shear.py).
@@ -27,26 +27,41 @@ module epcont_accuracy_shear_error
 
 contains
 
-  !> Find the largest shear traction of a zone, and its error; negative: unknown, because there is no shear,
-  !! or no estimate for the pressure, or because a pair that sticks beside an open one has the largest shear.
-  pure subroutine add_shear_error(model, line, answer, zone, pressure, largest, error)
+  !> Find the largest shear traction of each zone, and its error.
+  pure subroutine add_shear_errors(model, line, answer, errors)
     type(model_type), intent(in) :: model
-    type(surface_line), intent(in) :: line       !! of its pairs
+    type(surface_line), intent(in) :: line            !! of its pairs
     type(answer_type), intent(in) :: answer
-    type(contact_zone), intent(in) :: zone       !! of these pairs
-    real(wp), intent(in) :: pressure             !! error of its largest pressure; negative: unknown [stress]
-    real(wp), intent(out) :: largest, error      !! [stress]
+    type(zone_error), intent(inout) :: errors(:)      !! of its zones
     type(friction_line) :: friction
-    real(wp) :: more
-    integer :: e, i, other
+    integer :: z
 
     friction = friction_of(model, answer)
-    largest = maxval(abs(friction%shear(zone%pairs)))
-    error = -1.0_wp
-    if (pressure < 0.0_wp .or. largest <= no_effect*maxval(friction%limit(zone%pairs))) return
+    do z = 1, size(errors)
+      call add_shear_error(friction, line, answer, answer%zones(z)%pairs, errors(z))
+      if (errors(z)%shear >= 0.0_wp) errors(z)%shear = errors(z)%shear + &
+        maxval(model%contact%friction(answer%zones(z)%pairs))*errors(z)%pressure
+    end do
+  end subroutine add_shear_errors
+
+  !> Find the largest shear traction of a zone, and its error beyond that of the limit; negative: unknown,
+  !! because there is no shear, or no estimate for the pressure, or because a pair that sticks beside an open
+  !! one has the largest shear.
+  pure subroutine add_shear_error(friction, line, answer, pairs, error)
+    type(friction_line), intent(in) :: friction
+    type(surface_line), intent(in) :: line       !! of all pairs
+    type(answer_type), intent(in) :: answer
+    integer, intent(in) :: pairs(:)              !! of the zone
+    type(zone_error), intent(inout) :: error     !! with that of its largest pressure
+    real(wp) :: largest, more                    ! [stress]
+    integer :: e, i, other
+
+    largest = maxval(abs(friction%shear(pairs)))
+    error%largest_shear = largest
+    if (error%pressure < 0.0_wp .or. largest <= no_effect*maxval(friction%limit(pairs))) return
     more = 0.0_wp
-    do i = 1, size(zone%pairs)
-      associate (pair => zone%pairs(i))
+    do i = 1, size(pairs)
+      associate (pair => pairs(i))
         if (.not. friction%sticks(pair)) cycle
         do e = 1, 2
           other = line%neighbour(e, pair)
@@ -58,7 +73,7 @@ contains
         end do
       end associate
     end do
-    error = more + maxval(model%contact%friction(zone%pairs))*pressure
+    error%shear = more
   end subroutine add_shear_error
 
   !> Collect tractions and states. Pairs that supports hold on a line of symmetry stick.

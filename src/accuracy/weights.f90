@@ -1,8 +1,7 @@
 !> THE table of weights and thresholds of the estimates. Weights that depend on the element type are fitted to
 !> models with known solutions (tests/accuracy/score.py, sets `tuned` to `third`) and to random models
 !> (score_by_chance.py), and scored on others (`unseen`). Each affects a value in
-!> tests/accuracy/estimates.csv, except the weight of the parabola's top (tests/figures/test_found.py). For
-!> the others each line names its source.
+!> tests/accuracy/estimates.csv. For the others each line names its source.
 module epcont_accuracy_weights
   use epcont_base_kinds, only: wp
   use epcont_element_element_kind, only: by_linear_triangles, by_quadrilaterals
@@ -13,19 +12,16 @@ module epcont_accuracy_weights
   !> Weights that depend on the element type.
   type :: estimate_weights
     !> For the largest pressure
-    real(wp) :: parabola, rise, stress, smaller, spacing, square, graded, pressure_energy
+    real(wp) :: parabola, stress, smaller, spacing, square, graded, pressure_energy
     real(wp) :: step, width_energy                                                    !! for the half-width
     real(wp) :: product, between, end                                                 !! for the approach
   end type estimate_weights
 
   !> Weights in thousandths. Columns: linear triangles, quadrilaterals, quadratic elements, axisymmetric
   !! linear triangles, axisymmetric quadratic elements; each for elastic models, then for yielded models.
-  integer, parameter :: thousandths(10, 13) = reshape([ &
+  integer, parameter :: thousandths(10, 12) = reshape([ &
     ! Largest pressure: distance from a parabola through the nearest pairs
     500, 1300, 1050, 1200, 400, 500, 1300, 1500, 1200, 700, &
-    ! its rise to the top between two pairs: forces are means over edges, which are a third of it below the
-    ! maximum (other types, and yielded models, need no such term)
-    0, 0, 1333, 0, 0, 0, 0, 0, 0, 0, &
     ! distance from the recovered stress
     0, 100, 20, 350, 40, 800, 0, 0, 20, 170, &
     ! the smaller of these two distances
@@ -48,7 +44,7 @@ module epcont_accuracy_weights
     ! pressure (h/b)**2 b/E*: overclosure, since nodes are in contact and not the line between them
     0, 0, 300, 400, 0, 0, 0, 0, 0, 0, &
     ! the same for contact that ends at a node: a distance d from the true end counts as d**2
-    100, 400, 150, 300, 140, 750, 200, 120, 350, 400], [10, 13])
+    100, 400, 150, 300, 140, 750, 200, 120, 350, 400], [10, 12])
 
   ! Weights of all element types.
 

@@ -19,8 +19,7 @@ module epcont_assembly_strain_operator
     real(wp), allocatable :: volume(:)       !! volume of each point [length**3] [points]
   contains
     procedure :: strains
-    procedure :: add_fields
-    procedure :: add_means
+    procedure :: weigh_strains
     procedure :: nodal_forces
     procedure :: element_stiffness
   end type strain_operator
@@ -116,69 +115,31 @@ contains
     end function strain_at
   end function strains
 
-  !> Compute strains of one element for several displacement fields, after the field that is there already.
-  pure subroutine add_fields(self, model, element, place, fields, u, strain)
+  !> Compute a weighted sum of the strains at the points of an element, for several displacement fields.
+  pure subroutine weigh_strains(self, first, nodes, weight, place, u, strain)
     class(strain_operator), intent(in) :: self
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: element               !! its number
-    integer, intent(in) :: place(*)              !! positions of its nodes in `u`
-    integer, intent(in) :: fields                !! number of fields
-    real(wp), intent(in) :: u(directions, fields, *)   !! displacements [length]
-    !> At its points: the first field is unchanged [components, 0:fields, points]
-    real(wp), intent(inout) :: strain(components, 0:fields, *)
-    integer :: p
+    integer, intent(in) :: first                !! first of the points
+    integer, intent(in) :: nodes                !! of the element
+    real(wp), intent(in) :: weight(:)           !! of each point
+    integer, intent(in) :: place(:)             !! positions of the nodes in `u`
+    !> Displacements [length] [directions, fields, any]
+    real(wp), contiguous, intent(in) :: u(:, :, :)
+    real(wp), contiguous, intent(out) :: strain(:, :)   !! [components, fields]
+    real(wp) :: b(components, directions)
+    integer :: c, f, i, p
 
-    if (fields == 0) return
-    do p = 1, model%mesh%first_point(element + 1) - model%mesh%first_point(element)
-      call apply(model%mesh%node_count(element), &
-                 self%b(1, self%column(model%mesh%first_point(element) + p - 1) + 1), &
-                 place, fields, u, strain(1, 1, p))
-    end do
-  end subroutine add_fields
-
-  !> Compute mean strains of one element for several displacement fields, with the mean of B.
-  pure subroutine add_means(self, model, element, place, fields, u, strain)
-    class(strain_operator), intent(in) :: self
-    type(model_type), intent(in) :: model
-    integer, intent(in) :: element               !! its number
-    integer, intent(in) :: place(*)              !! positions of its nodes in `u`
-    integer, intent(in) :: fields                !! number of fields
-    real(wp), intent(in) :: u(directions, fields, *)   !! displacements [length]
-    real(wp), intent(inout) :: strain(components, 0:fields)   !! the first field is unchanged
-    real(wp) :: b(components, directions*most_nodes), volume
-    integer :: c, i, p
-
-    if (fields == 0) return
-    b = 0.0_wp
-    associate (first => model%mesh%first_point(element), last => model%mesh%first_point(element + 1) - 1)
-      volume = sum(self%volume(first:last))
-      do p = first, last
-        c = self%column(p)
-        do i = 1, directions*model%mesh%node_count(element)
-          b(:, i) = b(:, i) + self%volume(p)/volume*self%b(:, c + i)
-        end do
+    strain = 0.0_wp
+    do i = 1, nodes
+      b = 0.0_wp
+      do p = 1, size(weight)
+        c = self%column(first + p - 1) + directions*(i - 1)
+        b = b + weight(p)*self%b(:, c + 1:c + directions)
       end do
-    end associate
-    call apply(model%mesh%node_count(element), b, place, fields, u, strain(1, 1))
-  end subroutine add_means
-
-  !> Compute the strains at a point for several fields.
-  pure subroutine apply(nodes, b, place, fields, u, strain)
-    integer, intent(in) :: nodes, place(nodes), fields
-    real(wp), intent(in) :: b(components, directions, nodes)
-    real(wp), intent(in) :: u(directions, fields, *)
-    real(wp), intent(inout) :: strain(components, fields)
-    real(wp) :: now(components)
-    integer :: f, i
-
-    do f = 1, fields
-      now = 0.0_wp
-      do i = 1, nodes
-        now = now + b(:, 1, i)*u(1, f, place(i)) + b(:, 2, i)*u(2, f, place(i))
+      do f = 1, size(u, 2)
+        strain(:, f) = strain(:, f) + b(:, 1)*u(1, f, place(i)) + b(:, 2)*u(2, f, place(i))
       end do
-      strain(:, f) = now
     end do
-  end subroutine apply
+  end subroutine weigh_strains
 
   !> Nodal forces in equilibrium with stresses [force] [directions, nodes].
   pure function nodal_forces(self, model, stress) result(force)

@@ -9,7 +9,7 @@ module epcont_linalg_dense
   private
   public :: cholesky_factor, cholesky_solve
   public :: factor_saddle, solve_saddle
-  public :: lu_factor, lu_substitute, lu_solve, pivoted_cholesky, add_inner_products, add_product, null_space
+  public :: lu_factor, lu_substitute, lu_solve, pivoted_cholesky, add_product, null_space
 
 contains
 
@@ -94,18 +94,6 @@ contains
     call dgemm('N', 'N', size(c, 1), size(c, 2), size(a, 2), factor, a, size(a, 1), b, size(b, 1), &
                1.0_wp, c, size(c, 1))
   end subroutine add_product
-
-  !> c = c + a' b, of the leading rows of both.
-  pure subroutine add_inner_products(rows, a, b, c)
-    integer, intent(in) :: rows                       !! number of leading rows
-    real(wp), contiguous, intent(in) :: a(:, :)       !! [>= rows, n]
-    real(wp), contiguous, intent(in) :: b(:, :)       !! [>= rows, m]
-    real(wp), contiguous, intent(inout) :: c(:, :)    !! [n, m]
-
-    if (rows == 0 .or. size(a) == 0 .or. size(b) == 0) return
-    call dgemm('T', 'N', size(c, 1), size(c, 2), rows, 1.0_wp, a, size(a, 1), b, size(b, 1), &
-               1.0_wp, c, size(c, 1))
-  end subroutine add_inner_products
 
   !> Orthonormal basis of the x with a x = 0.
   pure function null_space(a, tolerance) result(basis)
