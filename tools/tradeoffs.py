@@ -215,6 +215,10 @@ def draw(found, path):
     figure.savefig(path, dpi=110, metadata={"Software": None})
 
 
+#: First of the sections that stay as they are.
+KEPT = "\n## Friction\n"
+
+
 def page(found, quick, spent, picture):
     count = sum(len(runs) + len(failed) for _, runs, failed in found)
     single = [row for scene, runs, failed in found for row in one_at_a_time(runs, failed, scene)]
@@ -253,8 +257,11 @@ def main():
         found.append((scene, *runs_of(scene, options.quick)))
         print(f"{scene.name}: {len(found[-1][1])} runs, {len(found[-1][2])} without an answer, {time.perf_counter() - begin:.0f} s", flush=True)
     draw(found, name.with_name(name.name + ".png"))
-    name.with_name(name.name + ".md").write_text(page(found, options.quick, time.perf_counter() - start, name.name + ".png"), encoding="utf-8")
-    print(name.with_name(name.name + ".md"))
+    target = name.with_name(name.name + ".md")
+    old = target.read_text(encoding="utf-8") if target.exists() else ""
+    kept = old[old.find(KEPT):] if KEPT in old else ""   # not measured here
+    target.write_text(page(found, options.quick, time.perf_counter() - start, name.name + ".png") + kept, encoding="utf-8")
+    print(target)
     return 0
 
 
