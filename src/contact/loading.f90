@@ -20,7 +20,7 @@ module epcont_contact_loading
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: negligible, solved_to
   use epcont_contact_basis, only: respond
-  use epcont_contact_problem, only: contact_solution, history_limit, pivot_record
+  use epcont_contact_problem, only: contact_solution
   use epcont_contact_scaling, only: scaled_problem
   use epcont_contact_state, only: basic_values, contact_state
   use epcont_linalg_dense, only: add_product
@@ -220,18 +220,15 @@ contains
       max(1.0_wp - carried, 0.0_wp)/self%load_rate*(1.0_wp - solved_to) <= self%ratio
   end function is_complete
 
-  !> Exchange the variable that leaves. Its partner enters next. Record the first pivots.
+  !> Exchange the variable that leaves. Its partner enters next.
   subroutine pivot(self, solution)
     class(load_tableau), intent(inout) :: self
     type(contact_solution), intent(inout) :: solution
-    integer :: entered, leaving
+    integer :: leaving
 
-    entered = self%entering
     leaving = self%basic(self%row)
     call self%exchange()
     solution%pivots = solution%pivots + 1
-    if (solution%pivots <= history_limit) solution%history = &
-      [solution%history, pivot_record(entered, leaving, self%value(self%place(load_factor)), self%ratio)]
     ! (3-4), the contact entry rule: R_k for w_k and w_k for R_k, so that they are never both basic
     self%entering = -leaving
   end subroutine pivot

@@ -14,7 +14,7 @@ module epcont_contact_problem
   use epcont_flexibility_motion_matrix, only: motion_matrix
   implicit none
   private
-  public :: contact_problem, contact_solution, new_solution, pivot_record
+  public :: contact_problem, contact_solution, new_solution
 
   !> State of the solution.
   integer, parameter, public :: contact_solved = 0   !! forces, gaps and approach satisfy all conditions
@@ -24,9 +24,6 @@ module epcont_contact_problem
   integer, parameter, public :: contact_overlap = 2
   !> No active set passed the test: inconclusive because of rounding.
   integer, parameter, public :: contact_stalled = 3
-
-  !> Number of pivots kept in `history`; all are counted.
-  integer, parameter, public :: history_limit = 50
 
   type :: contact_problem
     real(wp), allocatable :: flexibility(:, :)  !! F, opening of pair i by a unit force at pair j [n, n]
@@ -51,14 +48,6 @@ module epcont_contact_problem
   contains
     procedure :: between
   end type contact_problem
-
-  !> One pivot. A variable is an integer: k is the force R_k, -k the gap w_k, 0 the load factor.
-  type :: pivot_record
-    integer :: entered = 0          !! the variable that became basic
-    integer :: left = 0             !! the variable that became zero
-    real(wp) :: load_factor = 0.0_wp  !! t after the pivot, from 0 to 1
-    real(wp) :: ratio = 0.0_wp      !! increase of the entered variable, in the solver's scaled units
-  end type pivot_record
 
   type :: contact_solution
     integer :: state = contact_stalled       !! one of the states above
@@ -85,7 +74,6 @@ module epcont_contact_problem
     integer :: sets = 0                      !! active sets tried by RULE JOINED, or with friction; else 0
     integer :: pivots = 0                    !! pairs exchanged by the contact solver that found the set
     integer :: restarts = 0                  !! fresh starts after a set failed the test at full load
-    type(pivot_record), allocatable :: history(:)  !! the first pivots of CONRY, at most `history_limit`
     !> Taken out of the arrays above by `split`: force, slip and sticking of the tangential rows
     real(wp), allocatable :: friction_force(:)   !! [force] [tangential rows]
     real(wp), allocatable :: slip(:)             !! [length] [tangential rows]
@@ -145,6 +133,5 @@ contains
               solution%escape(motions), source=0.0_wp)
     allocate (solution%touching(pairs), solution%at_upper(pairs), solution%overlapping(pairs), &
               solution%indeterminate(pairs), solution%motion_free(motions), source=.false.)
-    allocate (solution%history(0))
   end function new_solution
 end module epcont_contact_problem

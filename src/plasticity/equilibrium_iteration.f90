@@ -2,7 +2,7 @@
 module epcont_plasticity_equilibrium_iteration
   use epcont_base_kinds, only: wp
   use epcont_base_tolerances, only: solved_to
-  use epcont_contact_problem, only: contact_solved, contact_stalled, pivot_record
+  use epcont_contact_problem, only: contact_solved, contact_stalled
   use epcont_element_kinematics, only: components, directions
   use epcont_linear_linear_problem, only: linear_problem, new_linear_problem
   use epcont_linear_solved_state, only: solved_state
@@ -54,7 +54,6 @@ module epcont_plasticity_equilibrium_iteration
     logical :: runs_away = .false.                  !! no equilibrium: displacements grow without end
     integer :: failed_body = 0                      !! body that could not be factored
     type(iteration_record), allocatable :: history(:)   !! every solve
-    type(pivot_record), allocatable :: pivot(:)         !! kept pivots of all solves
     type(solved_state), private :: about             !! state about which the law is linear
     type(iteration_record), private :: now          !! the last solve
     !> Total theory: stresses of the first solve, of elastic bodies [components, points]
@@ -76,7 +75,6 @@ module epcont_plasticity_equilibrium_iteration
     procedure, private :: put_loads
     procedure, private :: set_law
     procedure, private :: judge
-    procedure, private :: keep
     procedure, private :: measure
     procedure, private :: is_over
     procedure, private :: wants_test
@@ -124,7 +122,7 @@ contains
       allocate (self%force(model%contact%pairs), source=0.0_wp)
     end associate
     call self%go_back()
-    allocate (self%history(0), self%pivot(0))
+    allocate (self%history(0))
   end subroutine begin
 
   !> Put the loads of a part of the path on the model.
@@ -273,19 +271,10 @@ contains
         now%force_error = merge(now%force_change, 0.0_wp, now%iteration > 1)
       end if
     end associate
-    call self%keep(found)
+    self%history = [self%history, self%now]
     self%converged = self%is_over()
     if (self%converged .and. self%wants_test(scene)) call self%step_by_tangent(scene, found, watch)
   end subroutine judge
-
-  !> Add a solve to the history. Pivots have a separate list, since nested lists would be copied slowly.
-  subroutine keep(self, found)
-    class(equilibrium_iteration), intent(inout) :: self
-    type(solved_state), intent(in) :: found
-
-    self%history = [self%history, self%now]
-    if (self%now%kept > 0) self%pivot = [self%pivot, found%contact%history]
-  end subroutine keep
 
   !> Measure the change from the last state, and the stress error. Equilibrium and contact are exact in each
   !! solve, so these are the only residuals.
@@ -302,7 +291,6 @@ contains
                                       maxval(found%contact%force))
       now%touching = count(found%contact%touching)
       now%pivots = found%contact%pivots
-      now%kept = size(found%contact%history)
       if (.not. materials%yields) return
       found%point = materials%states(found%strain)
       call materials%measure(scene%model, found%point, found%point_stress, now%residual, now%yielded)
@@ -372,7 +360,7 @@ contains
       self%now%error = self%now%change
       self%now%force_error = self%now%force_change
       self%now%by_tangent = .true.
-      call self%keep(next)
+      self%history = [self%history, self%now]
       call move_alloc(next, found)
     else
       self%estimate%doubt = max(2.0_wp*self%estimate%doubt, min(self%now%change/last%error, most_doubt))

@@ -4,7 +4,7 @@
 module epcont_plasticity_load_path
   use epcont_assembly_bodies, only: weak_pivot
   use epcont_base_kinds, only: wp
-  use epcont_contact_problem, only: contact_no_equilibrium, contact_solved, pivot_record
+  use epcont_contact_problem, only: contact_no_equilibrium, contact_solved
   use epcont_linear_linear_problem, only: linear_problem
   use epcont_linear_solved_state, only: solved_state
   use epcont_plan_iteration_plan, only: iteration_plan
@@ -36,7 +36,6 @@ module epcont_plasticity_load_path
     real(wp) :: condition = 1.0_wp         !! of the stiffness, estimated in the 1-norm
     type(weak_pivot) :: weakest            !! of the stiffness
     type(iteration_record), allocatable :: history(:)   !! every solve
-    type(pivot_record), allocatable :: pivot(:)         !! kept pivots of all solves
     real(wp), private :: largest_force = 0.0_wp         !! largest sum of the contact forces on the path
     real(wp), allocatable :: elastic_stress(:, :)       !! of elastic bodies under the loads of the first load
                                                         !! step [stress] [components, points]
@@ -151,7 +150,6 @@ contains
     class(followed_loads), intent(inout) :: answer
 
     call move_alloc(self%iteration%history, answer%history)
-    call move_alloc(self%iteration%pivot, answer%pivot)
     call move_alloc(self%iteration%first_stress, answer%elastic_stress)
     call move_alloc(self%iteration%virgin, virgin)
     ! The last active set belongs to an equilibrium state.

@@ -22,7 +22,6 @@ module epcont_plasticity_observer
     integer :: touching = 0            !! number of pairs in contact
     integer :: yielded = 0             !! number of yielded elements
     integer :: pivots = 0
-    integer :: kept = 0                !! number of pivots that are kept: the first
   end type iteration_record
 
   !> An observer without output.

@@ -34,7 +34,6 @@ module epcont_report_results
     result_file('.bodies.csv', 'the contact resultant on each body'), &
     result_file('.history.csv', 'the iterations'), &
     result_file('.increments.csv', 'the increments of flow theory: approach, pressure, half-width'), &
-    result_file('.pivots.csv', 'the pivots of each iteration by RULE CONRY, with --tables all'), &
     result_file('.nodes.csv', 'the nodes, if the deck or --tables all asks for them'), &
     result_file('.elements.csv', 'the elements, if the deck or --tables all asks for them'), &
     result_file('.plastic.csv', 'plastic strains of flow theory, with the table of elements'), &

@@ -54,7 +54,6 @@ contains
       wants_table = .true.
       if (name == 'nodes') wants_table = all_tables .or. case%displacement .or. case%spcforces
       if (name == 'elements' .or. name == 'plastic') wants_table = all_tables .or. case%stress
-      if (name == 'pivots') wants_table = all_tables
     end associate
   end function wants_table
 end module epcont_report_run

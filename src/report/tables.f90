@@ -104,14 +104,6 @@ module epcont_report_tables
     column(whole, 'pivots', '', 'of the contact solver', width=10), &
     column(number, 'load_factor', '', 'part of the loads that the iteration is for', width=0)]
 
-  type(column), parameter :: pivot_columns(*) = [ &
-    column(whole, 'iteration', '', 'counted through all load steps'), &
-    column(whole, 'pivot', '', 'counted in the iteration; the first 50 are kept'), &
-    column(word, 'entered', '', 'pair whose force or gap entered the basis, or the load'), &
-    column(word, 'left', '', 'pair whose force or gap left the basis'), &
-    column(number, 'load_factor', '', 'part of the loads after the pivot'), &
-    column(number, 'ratio', '', 'growth of the variable that entered, in scaled units')]
-
 contains
 
   !> Describe the columns of a file of results; empty if it is not one of these tables.
@@ -126,7 +118,6 @@ contains
     if (suffix == '.bodies.csv') columns = body_columns
     if (suffix == '.history.csv') columns = history_columns
     if (suffix == '.increments.csv') columns = increment_columns
-    if (suffix == '.pivots.csv') columns = pivot_columns
     if (suffix == '.nodes.csv') columns = node_columns
     if (suffix == '.elements.csv') columns = element_columns
     if (suffix == '.plastic.csv') columns = plastic_columns
@@ -167,8 +158,6 @@ contains
       call put_history(run, table)
     case ('increments')
       if (run%is_flow()) call put_increments(run, table)
-    case ('pivots')
-      if (size(run%answer%pivot) > 0) call put_pivots(run, table)
     end select
 
   contains
@@ -280,37 +269,6 @@ contains
       end do
     end associate
   end subroutine put_plastic
-
-  !> The first pivots of the simplex in each solve.
-  subroutine put_pivots(run, table)
-    type(run_results), intent(in) :: run
-    type(table_type), intent(inout) :: table
-    integer :: first, i, k
-
-    call table%begin('', pivot_columns, [1.0_wp, 1.0_wp])
-    first = 0
-    do k = 1, size(run%answer%history)
-      do i = 1, run%answer%history(k)%kept
-        associate (pivot => run%answer%pivot(first + i))
-          call table%row([k, i], [pivot%load_factor, pivot%ratio], &
-                         [variable(pivot%entered), variable(pivot%left)])
-        end associate
-      end do
-      first = first + run%answer%history(k)%kept
-    end do
-
-  contains
-
-    !> Name a variable of the simplex by the id of its pair.
-    pure function variable(code) result(text)
-      integer, intent(in) :: code
-      character(len=14) :: text
-
-      text = 'load'
-      if (code > 0) text = 'force '//text_of(run%model%contact%pair_id(code))
-      if (code < 0) text = 'gap '//text_of(run%model%contact%pair_id(-code))
-    end function variable
-  end subroutine put_pivots
 
   !> Stresses and strains: one row for each element.
   subroutine put_elements(run, table)

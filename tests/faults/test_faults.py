@@ -125,12 +125,6 @@ class Choices(Case):
         self.check(self.run_with("PARAM,ORIGINAL,YES", "PARAM,ORIGINAL,YES\nPARAM,MAXIT,2"), 1,
                    "(increase PARAM MAXIT, or remove ORIGINAL)")
 
-    def test_no_table_of_nothing(self):
-        """Joined bodies have no pivots of a simplex."""
-        for rule in ("CONRY", "JOINED"):
-            self.check(self.run_with("PARAM,ORIGINAL,YES", f"PARAM,RULE,{rule}"), 0)
-            self.assertEqual(rule == "CONRY", "deck.pivots.csv" in self.files(self.directory))
-
 
 class Disk(Case):
     def test_full_device(self):

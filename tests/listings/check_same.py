@@ -43,8 +43,7 @@ def run(program, deck, parameter, word, output):
     status = subprocess.run([program, copy, "-o", output, "--tables", "all", "--quiet"], stderr=subprocess.DEVNULL,
                             env=os.environ | ({parameter: word} if kernel else {})).returncode
     tables = {path.suffixes[-2][1:]: list(csv.reader(path.open())) for path in sorted(output.glob("*.csv"))}
-    for name in ("history", "pivots"):
-        tables.pop(name, None)
+    tables.pop("history", None)
     return status, tables
 
 
