@@ -68,6 +68,9 @@ contains
         if (any(name(row) == chosen)) beside = beside//', '//trim(name(row))
       end do
     end associate
+    if (deck%parameter_word('RULE') == 'BLOCK') call found%add_note( &
+      card_param, deck%parameter_row('RULE'), 2, &
+      ': BLOCK is no longer used: AUTO finds the same answer, by CONRY or JOINED')
     if (original .and. beside /= '') call found%add_error( &
       card_param, deck%parameter_row('ORIGINAL'), 2, &
       ': YES chooses what other PARAMs say: '//beside(3:), 'remove them, or ORIGINAL')

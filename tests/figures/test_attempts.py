@@ -9,10 +9,12 @@ import unittest
 SOURCE = pathlib.Path(__file__).resolve().parent.parent.parent
 
 
-def attempts(deck):
-    """The line of the listing about attempts; empty if there was only one."""
+def attempts(deck, *cards):
+    """The line of the listing about attempts, with some cards added to the deck; empty if there was only one."""
     with tempfile.TemporaryDirectory() as folder:
-        subprocess.run([os.environ["EPCONT_PROGRAM"], "--quiet", SOURCE / deck, "-o", folder], capture_output=True, check=False)
+        copy = pathlib.Path(folder) / "deck.dat"
+        copy.write_text((SOURCE / deck).read_text().replace("BEGIN BULK\n", "\n".join(["BEGIN BULK", *cards, ""]), 1))
+        subprocess.run([os.environ["EPCONT_PROGRAM"], "--quiet", copy, "-o", folder], capture_output=True, check=False)
         listing, = pathlib.Path(folder).glob("*.lst")
         return [line.strip() for line in listing.read_text().splitlines() if line.startswith("  attempts: ")]
 
@@ -27,8 +29,8 @@ class Attempts(unittest.TestCase):
                          ["attempts: (1) CONRY: nodes without a pair came near; (2) more pairs: valid"])
 
     def test_other_rule(self):
-        self.assertEqual(attempts("tests/found/a_force_that_drives_nothing.dat"),
-                         ["attempts: (1) CONRY: no active set found; (2) JOINED: valid"])
+        self.assertEqual(attempts("tests/found/g10_6.bdf", "PARAM,RULE,JOINED"),
+                         ["attempts: (1) JOINED: no active set found; (2) CONRY: valid"])
 
     def test_refinement(self):
         self.assertEqual(attempts("tests/found/oblique150x1.bdf"),

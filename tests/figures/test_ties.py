@@ -161,7 +161,7 @@ class Ties(scene.Extremes):
                 ("\n".join(["BEGIN BULK", *ring.split("|"), "ENDDATA"]) + "\n",
                  "RBE2 9: GRID 1 would rotate, and axisymmetric bodies do not\n"),
                 (beam("MOMENT,1,53,,1.0,0.0,0.0,1.0"), "MOMENT 1: GRID 53 is not GN of an RBE2, and elements have no rotations\n"),
-                (beam("RBE2,9,53,12,55|MOMENT,1,53,,1.0,1.0,0.0,1.0"), "MOMENT 1: the moment is not about z\n"),
+                (beam("RBE2,9,53,12,55|MOMENT,1,53,,1.0,1.0,0.0,1.0"), "MOMENT 1: field 6 (N1) is out of range\n"),
                 (beam("RBE2,9,53,12,55|SPC,1,53,6,0.1|SUPORT,53,6"),
                  "SUPORT 53: direction 6 of GRID 53 is fixed by a support or depends on an RBE2\n"),
                 (beam("MPC,5,1,1,1.0,53,1,-1.0"), "MPC 5: direction 1 of GRID 1 is fixed by a support, and cannot depend on the others\n"),
@@ -170,7 +170,7 @@ class Ties(scene.Extremes):
                  "MPC 5: direction 1 of GRID 53 depends on an RBE2 or another MPC already, and cannot depend on the others\n"),
                 (beam("MPC,5,53,1,1.0,51,1,-1.0|MPC,5,51,1,1.0,53,1,-1.0"), "MPC 5: direction 1 of GRID 53 would depend on itself\n"),
                 (beam("MPC,5,53,1,0.0,51,1,-1.0"), "MPC 5: direction 1 of GRID 53 has the coefficient 0.0, and cannot depend on the others\n"),
-                (beam("CELAS1,950,7,53,1"), "CELAS1 950: there is no PELAS 7\n"),
+                (beam("CELAS1,950,7,53,1"), "CELAS1 950: field 3 (PID): there is no PELAS 7\n"),
                 (beam("CELAS2,950,1.0"), "CELAS2 950: has no node\n"),
                 (beam("CELAS2,950,1.0,53"), "CELAS2 950: has no direction there\n"),
                 (beam("CELAS2,950,1.0,53,1,53,1"), "CELAS2 950: has both ends at one DOF\n")):
