@@ -10,7 +10,7 @@ module epcont_contact_solver
   use epcont_contact_scaling, only: drop_motions, scale_problem, scaled_problem
   use epcont_contact_simplex, only: find_contacts
   use epcont_contact_state, only: contact_state, gaps_under, solve_set, terms_of_gaps
-  use epcont_contact_uniqueness, only: find_undetermined_motions, find_indeterminate_forces
+  use epcont_contact_uniqueness, only: find_undetermined_motions, find_indeterminate_forces, share_equally
   use epcont_flexibility_motion_matrix, only: motion_matrix
   implicit none
   private
@@ -85,6 +85,8 @@ contains
     end if
     if (asks_for_others) then
       solution%indeterminate = find_indeterminate_forces(scaled, solution%touching, state%force > zero)
+      call share_equally(scaled, solution%indeterminate, state%force)
+      where (solution%indeterminate) state%change = state%force - scaled%known_force
     end if
     ! In the deck's units.
     solution%force = state%force*scaled%force_unit

@@ -1,7 +1,7 @@
 !> Indeterminate forces and undetermined modes of a contact solution.
 module epcont_contact_uniqueness
   use epcont_base_kinds, only: wp
-  use epcont_base_tolerances, only: null_component
+  use epcont_base_tolerances, only: negligible, null_component
   use epcont_contact_basis, only: are_independent, contact_basis, new_basis, respond
   use epcont_contact_equilibrium, only: can_carry, find_rigid_start, rigid_start
   use epcont_contact_loose_motions, only: loose_motions
@@ -10,7 +10,7 @@ module epcont_contact_uniqueness
   use epcont_linalg_dense, only: add_product, null_space, pivoted_cholesky
   implicit none
   private
-  public :: find_indeterminate_forces, find_undetermined_motions
+  public :: find_indeterminate_forces, share_equally, find_undetermined_motions
 
   !> Rounding in the Schur complement exceeds that in F_g by the condition of the pressed pairs: this factor
   !! allows for it.
@@ -89,6 +89,34 @@ contains
     other = scaled%motion%rows(columns)
     call add_product(1.0_wp, closing, transpose(other), block)
   end function regular_flexibility
+
+  !> Distribute the force of pairs with equal rows in F and A equally.
+  pure subroutine share_equally(problem, indeterminate, force)
+    type(scaled_problem), intent(in) :: problem   !! in its own units
+    logical, intent(in) :: indeterminate(:)    !! [n]
+    real(wp), intent(inout) :: force(:)        !! [n]
+    integer, allocatable :: alike(:), left(:)
+    integer :: k
+
+    left = pack([(k, k=1, size(force))], indeterminate)
+    do while (size(left) > 0)
+      alike = [left(1), pack(left(2:), [(are_alike(left(1), left(k)), k=2, size(left))])]
+      force(alike) = sum(force(alike))/size(alike)
+      left = pack(left, [(all(left(k) /= alike), k=1, size(left))])
+    end do
+
+  contains
+
+    !> Have two pairs the same flexibility and the same entries of modes?
+    pure logical function are_alike(i, k) result(alike)
+      integer, intent(in) :: i, k
+      alike = all(abs(problem%motion%rows([i]) - problem%motion%rows([k])) <= negligible)
+      if (.not. alike) return
+      associate (f => problem%flexibility)
+        alike = all(abs(f(:, i) - f(:, k)) <= negligible*max(f(i, i), f(k, k)))
+      end associate
+    end function are_alike
+  end subroutine share_equally
 
   !> Find modes that the pressed pairs do not restrain, and that idle pairs in contact do not block in both
   !! directions: they do if their forces, all compressive, can carry a load along the mode in both directions.

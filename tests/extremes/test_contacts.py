@@ -149,6 +149,7 @@ class Many(Extremes):
                 deck.parameter("RULE", rule)
                 result = self.valid(deck)
                 self.near(sum(result.force), sum(once.force))
+                self.near(result.force, [0.375/copies]*2*copies)
                 self.assertEqual(result.listing.count(", force not unique"), 2*copies)
                 self.assertIn(f"scene.dat: warning: the forces and pressures of {2*copies} pairs are one choice of many: pairs at "
                                  "one point, or parts that cannot bend (`force not unique` in CONTACT)\n", result.message)

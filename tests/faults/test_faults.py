@@ -247,7 +247,7 @@ class OneRunAtATime(Case):
                                         (3, text, ("--memory", "0.001")), (3, None, ())):
             self.deck(text)
             self.check(self.run_it(sound, "-o", self.directory, *ALL), 0)
-            self.assertEqual(12, len(self.files(self.directory)))
+            self.assertEqual(11, len(self.files(self.directory)))
             sound.unlink()
             if spoilt is not None:
                 self.deck(spoilt)

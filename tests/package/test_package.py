@@ -233,7 +233,7 @@ class Package(unittest.TestCase):
         here = self.place / "here"
         done = run(PROGRAM, self.root / deck.lstrip("/"), "-o", here, "--tables", "all", cwd=self.place, env={})
         self.assertEqual(0, done.returncode, done.stderr)
-        self.assertEqual(9, len(results(here)))
+        self.assertEqual(8, len(results(here)))
         self.assertEqual(results(here), results(out))
 
 
