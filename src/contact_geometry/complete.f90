@@ -131,7 +131,7 @@ contains
     end if
     do s = 1, size(model%sections%curve)
       associate (curve => model%sections%curve(s))
-        if (curve%kinematic == 0.0_wp) cycle
+        if (curve%kinematic == 0.0_wp .or. .not. allocated(curve%stress)) cycle   ! an error of the curve
         if (.not. model%controls%by_increments) then
           call found%add_error(of_theory, 0, 2, ': TOTAL has no kinematic hardening (MATS1 HR 2 or 3)', &
                                'use THEORY FLOW, or HR 1')

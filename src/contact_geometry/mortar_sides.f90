@@ -196,7 +196,9 @@ contains
     type(facing_type), intent(in) :: one, other
     integer :: c, node(2)
 
-    goes_on = one%segment == other%segment .or. any(contact%master%neighbour(:, one%segment) == other%segment)
+    goes_on = one%segment == other%segment
+    if (goes_on .or. min(one%segment, other%segment) == 0) return   ! 0: it faces no edge
+    goes_on = any(contact%master%neighbour(:, one%segment) == other%segment)
     if (goes_on) return
     node = [end_at(contact, one), end_at(contact, other)]
     goes_on = .true.

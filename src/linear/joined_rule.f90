@@ -171,7 +171,8 @@ contains
         given = self%search%upper(n + 1:)
         limit = self%problem%friction*max(state%contact%force(self%problem%pair_of), 0.0_wp)
         before = change
-        change = maxval(abs(limit - given))/max(maxval(state%contact%force), tiny(change))
+        change = maxval(abs(limit - given))   ! below 1/epsilon, if there are no forces
+        change = change/max(maxval(state%contact%force), epsilon(change)*change, tiny(change))
         call self%limit_friction(limit)
         if (change <= exact .or. change <= rounding .and. change > slowly*before) return
         ! While the set stays, forces are linear in the limits, and differences of steps lead to the solution.

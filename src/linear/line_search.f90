@@ -60,7 +60,7 @@ contains
   elemental logical function has_settled(change, before)
     real(wp), intent(in) :: change, before   !! in the last step and the one before, over the largest value
 
-    has_settled = change*merge(min(1.0_wp, change/max(before, tiny(1.0_wp))), 1.0_wp, before <= 1.0_wp) &
+    has_settled = change*merge(change/max(before, change, tiny(1.0_wp)), 1.0_wp, before <= 1.0_wp) &
                   <= negligible .or. change <= no_effect .and. change > 0.5_wp*before
   end function has_settled
 end module epcont_linear_line_search

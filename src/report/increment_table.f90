@@ -58,7 +58,7 @@ contains
     real(wp) :: most   ! friction [force]
     integer :: k
 
-    most = maxval(run%increment%force)*maxval([run%model%contact%friction, 0.0_wp])
+    most = maxval([run%increment%force, 0.0_wp])*maxval([run%model%contact%friction, 0.0_wp])
     call table%begin(title, columns, &
                      [1.0_wp, maxval(run%increment%pressure), maxval(run%increment%half_width), &
                       maxval([abs(run%answer%contact%approach), 0.0_wp]), maxval(run%increment%force), &
