@@ -19,10 +19,10 @@ module epcont_accuracy_element_errors
     real(wp) :: part(most_places) = 0.0_wp        !! part of the volume of each point of comparison
     real(wp) :: own(components, most_places)      !! strains
     real(wp) :: error(components, most_places)    !! recovered strains minus own strains
-    !> Stress error (recovered minus own), times the part of the volume [components, places]
+    !> Recovered minus own stress, times `part` [components, places]
     real(wp) :: stress(components, most_places)
-    !> Product of the stress error and the strain error of another field: factors of the recovered strains and
-    !! of the displacements of the nodes [energy], [force] [any, nodes]
+    !> Weights with which another field enters the product of this stress error and its strain error: weights
+    !! of its recovered strains [energy] and of its displacements [force] [any, nodes]
     real(wp) :: of_strain(components, most_nodes), of_displacement(directions, most_nodes)
   contains
     procedure :: compare
@@ -94,7 +94,7 @@ contains
     end associate
   end subroutine find_stress
 
-  !> Product of the stress error and the strain error: the square of the error [energy].
+  !> Square of the error: stress error times strain error [energy].
   pure real(wp) function energy(self, kind)
     class(element_errors), intent(in) :: self
     type(element_kind), intent(in) :: kind   !! of the element
@@ -107,12 +107,12 @@ contains
     end do
   end function energy
 
-  !> Find the factors of another field: of its recovered strains, and with a minus sign of the displacements
-  !! that cause its own strains.
+  !> Find the weights of another field. Its own strains are subtracted, and so are its displacements, which
+  !! cause them.
   pure subroutine find_weights(self, kind, b)
     class(element_errors), intent(inout) :: self
     type(element_kind), intent(in) :: kind
-    !> Strains at the points by displacements of the nodes [1/length]
+    !> Strain matrix at each point [1/length]
     real(wp), intent(in) :: b(components, directions, kind%nodes, kind%points)
     real(wp) :: at_point(components)
     integer :: c, i, k, p

@@ -1,5 +1,5 @@
-!> Errors of strains of the answer: differences from recovered strains, their energies (Zienkiewicz and Zhu
-!> 1987), and their products with the errors of adjoint fields, body by body.
+!> Strain errors of the answer, body by body. The error is the difference from recovered strains (Zienkiewicz
+!> and Zhu 1987). Its products with the errors of adjoint fields estimate the errors of figures.
 module epcont_accuracy_error_fields
   use epcont_accuracy_element_errors, only: element_errors
   use epcont_accuracy_patches, only: patch_table
@@ -52,8 +52,7 @@ module epcont_accuracy_error_fields
     type(patch_table), pointer :: table => null()       !! of its elements
     integer :: b = 0                                    !! the body
     integer, allocatable :: element(:), place(:)        !! its elements and recovery points
-    !> Recovered strains of the answer [components, places]
-    real(wp), allocatable :: smooth(:, :)
+    real(wp), allocatable :: smooth(:, :)               !! recovered strains [components, places]
   end type compared_body
 
 contains
@@ -72,7 +71,7 @@ contains
     type(incidence) :: elements, rows            ! of each body
     integer, allocatable :: load(:)              ! adjoint loads that act on the body
     real(wp) :: kept                             ! memory for the next load case [bytes]
-    integer :: first, j, p
+    integer :: b, first, j, p
 
     body%scene => scene
     body%linear => linear
@@ -83,18 +82,18 @@ contains
     rows = new_incidence(scene%model%bodies_of_rows(), scene%model%mesh%bodies)
     elements = scene%model%mesh%elements_of_bodies()
     kept = 0.0_wp
-    do while (body%b < scene%model%mesh%bodies)
-      body%b = body%b + 1
-      body%element = elements%of(body%b)
+    do b = 1, scene%model%mesh%bodies
+      body%b = b
+      body%element = elements%of(b)
       if (size(body%element) == 0) cycle
-      body%place = table%of_body%of(body%b)
+      body%place = table%of_body%of(b)
       load = pack([(j, j=1, size(unit_loads%unit))], unit_loads%unit > 0.0_wp .and. &
-                  any(unit_loads%force(rows%of(body%b), :) /= 0.0_wp, dim=1))
-      associate (fields => known(body%b))
+                  any(unit_loads%force(rows%of(b), :) /= 0.0_wp, dim=1))
+      associate (fields => known(b))
         do first = 1, max(1, size(load)), loads_at_once
           associate (batch => load(first:min(first + loads_at_once - 1, size(load))))
             if (.not. allocated(fields%u)) &
-              call find_displacements(body, unit_loads, batch, rows%of(body%b), fields%u)
+              call find_displacements(body, unit_loads, batch, rows%of(b), fields%u)
             call recover_strains(body, fields)
             call add_products(body, fields, batch, field)
           end associate
@@ -132,7 +131,7 @@ contains
     end associate
   end subroutine find_displacements
 
-  !> Forces of gap rows on the nodes of a body, one entry of the rows after the other.
+  !> List the nodal forces of gap rows on a body. A node may occur twice.
   pure type(force_fields) function forces_on(model, b, rows, force) result(loads)
     type(model_type), intent(in) :: model
     integer, intent(in) :: b, rows(:)        !! the body, its gap rows
@@ -157,7 +156,7 @@ contains
     loads%node = loads%node(:n)   ! drop unused entries
   end function forces_on
 
-  !> Recover the strains of the answer in a body, and those of adjoint fields unless they are known.
+  !> Recover the strains of the answer in a body. Those of adjoint fields are recovered once.
   subroutine recover_strains(body, fields)
     type(compared_body), intent(inout) :: body
     type(body_fields), intent(inout) :: fields

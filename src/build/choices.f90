@@ -52,7 +52,8 @@ contains
     end function choice
   end function read_controls
 
-  !> Check that each PARAM is given once, and not together with an ORIGINAL YES that replaces it.
+  !> Check that each PARAM is given once, and not together with an ORIGINAL YES that replaces it. Note a
+  !! choice of earlier versions.
   pure subroutine check_once(deck, original, found)
     type(deck_type), intent(in) :: deck   !! its cards
     logical, intent(in) :: original       !! PARAM ORIGINAL YES

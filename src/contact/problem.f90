@@ -72,7 +72,7 @@ module epcont_contact_problem
     !> False: other solutions are possible, but were not sought because of the number of pairs
     logical :: searched = .true.
     integer :: sets = 0                      !! active sets tried by RULE JOINED, or with friction; else 0
-    integer :: pivots = 0                    !! pairs exchanged by the contact solver that found the set
+    integer :: pivots = 0                    !! of the simplex; pairs exchanged by RULE JOINED
     integer :: restarts = 0                  !! fresh starts after a set failed the test at full load
     !> Taken out of the arrays above by `split`: force, slip and sticking of the tangential rows
     real(wp), allocatable :: friction_force(:)   !! [force] [tangential rows]

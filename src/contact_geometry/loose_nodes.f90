@@ -120,8 +120,7 @@ contains
 
     if (model%constraints%is_tied([node])) return
     associate (outline => drawn%outline, x => model%mesh%x)
-      side = drawn%side_tree(outline%part(own))%meeting(x(:, node) - within, x(:, node) + within)
-      side = side + (outline%first(outline%part(own)) - 1)
+      side = drawn%sides_meeting(outline%part(own), x(:, node) - within, x(:, node) + within)
       do i = 1, size(side)
         associate (ends => outline%node(:2, side(i)), middle => outline%node(3, side(i)))
           if (outline%element(side(i)) == outline%element(own) .or. any(ends == node)) cycle
